@@ -20,7 +20,8 @@ double copyRate() {
     for (int i = 0; i < 5; ++i) {
         const auto start = std::chrono::steady_clock::now();
         from.read(to.data(), bytes);
-        best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        best =
+            std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     }
     return 2 * double(bytes) / best;  // read and written
 }
@@ -65,12 +66,16 @@ const Device& device() {
 }
 
 void add(const std::string& name, const Run& run) {
-    benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+    benchmark::RegisterBenchmark(name.c_str(), run)
+        ->Unit(benchmark::kMillisecond)
+        ->MeasureProcessCPUTime()
+        ->UseRealTime();
 }
 
 void countCopies(benchmark::State& state, double bytes) {
     static const double rate = copyRate();
-    state.counters["copies"] = benchmark::Counter(bytes / rate, benchmark::Counter::kIsIterationInvariantRate);
+    state.counters["copies"] =
+        benchmark::Counter(bytes / rate, benchmark::Counter::kIsIterationInvariantRate);
 }
 
 }  // namespace benchmarks

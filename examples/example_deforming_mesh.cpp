@@ -1,6 +1,6 @@
-// A deforming mesh: its connectivity is analysed once; each frame then only sends positions and normals and submits one
-// asynchronous curvature, while the host prepares the next frame in the other set of buffers. Then a dent moves over
-// the tube: each frame sends and measures only the rows of vertices that changed.
+// A deforming mesh: its connectivity is analysed once; each frame then only sends positions and normals and
+// submits one asynchronous curvature, while the host prepares the next frame in the other set of buffers.
+// Then a dent moves over the tube: each frame sends and measures only the rows of vertices that changed.
 #include <cmath>
 #include <cstdio>
 #include <pellucid/pellucid.hpp>
@@ -24,7 +24,8 @@ std::vector<uint32_t> tubeTriangles() {
 std::vector<float> tube(float radius) {
     std::vector<float> v;
     for (uint32_t i = 0; i < count; ++i) {
-        const float angle = 6.2831853f * float(i % columns) / columns, c = std::cos(angle), s = std::sin(angle);
+        const float angle = 6.2831853f * float(i % columns) / columns, c = std::cos(angle),
+                    s = std::sin(angle);
         v.insert(v.end(), {radius * c, radius * s, float(i / columns), c, s, 0.0f});
     }
     return v;

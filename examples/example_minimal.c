@@ -27,7 +27,8 @@ int main(void) {
     for (int i = 0; i < SIZE * SIZE; ++i) { /* what a renderer would have drawn: a sphere of 8 mm radius */
         const float x = (i % SIZE + 0.5f) / SIZE * 2.2f - 1.1f, y = 1.1f - (i / SIZE + 0.5f) / SIZE * 2.2f;
         material[i] = x * x + y * y < 1.0f;
-        normals[i][0] = x, normals[i][1] = y, normals[i][2] = material[i] ? sqrtf(1.0f - x * x - y * y) : 0.0f;
+        normals[i][0] = x, normals[i][1] = y,
+        normals[i][2] = material[i] ? sqrtf(1.0f - x * x - y * y) : 0.0f;
         curvature[i] = 1.0f / 8.0f;
     }
     PelDevice device;
@@ -59,7 +60,8 @@ int main(void) {
     fprintf(file, "P6 %d %d 255\n", SIZE, SIZE);
     for (int i = 0; i < SIZE * SIZE * 3; ++i) fputc((int)(255.0f * powf(result[i], 1 / 2.2f) + 0.5f), file);
     fclose(file);
-    const float* beyond = radiance[SIZE / 2 * SIZE + SIZE / 2 + 8]; /* just past the terminator: red light only */
+    /* just past the terminator: red light only */
+    const float* beyond = radiance[SIZE / 2 * SIZE + SIZE / 2 + 8];
     printf("just past the terminator: %.3f %.3f %.3f\n", beyond[0], beyond[1], beyond[2]);
     check(pelBufferUnmap(images[0].buffer));
     for (int i = 0; i < 4; ++i) pelBufferRelease(images[i].buffer);

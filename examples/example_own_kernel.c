@@ -19,7 +19,8 @@ static const char* source =
 int main(void) {
     cl_platform_id platform;
     cl_device_id device;
-    if (clGetPlatformIDs(1, &platform, NULL) || clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &device, NULL))
+    if (clGetPlatformIDs(1, &platform, NULL) ||
+        clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &device, NULL))
         return fprintf(stderr, "no OpenCL device\n"), 1;
     cl_context context = clCreateContext(NULL, 1, &device, NULL, NULL, NULL);
     cl_command_queue queue = clCreateCommandQueue(context, device, 0, NULL);
@@ -32,7 +33,8 @@ int main(void) {
     enum { COUNT = 64 };
     float cosines[COUNT], result[COUNT];
     for (int i = 0; i < COUNT; ++i) cosines[i] = (i + 1.0f) / COUNT;
-    cl_mem in = clCreateBuffer(context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof cosines, cosines, NULL);
+    cl_mem in =
+        clCreateBuffer(context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof cosines, cosines, NULL);
     cl_mem out = clCreateBuffer(context, CL_MEM_WRITE_ONLY, sizeof result, NULL, NULL);
     cl_kernel kernel = clCreateKernel(program, "highlights", NULL);
     clSetKernelArg(kernel, 0, sizeof in, &in);

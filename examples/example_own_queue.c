@@ -1,5 +1,6 @@
-/* A renderer that already has an OpenCL context and queue shares them: Pellucid's work goes to that queue, in order with the
- * renderer's own commands, and results stay in the renderer's cl_mem. Here: curvature into a cl_mem, one wait in all. */
+/* A renderer that already has an OpenCL context and queue shares them: Pellucid's work goes to that queue, in
+ * order with the renderer's own commands, and results stay in the renderer's cl_mem. Here: curvature into a
+ * cl_mem, one wait in all. */
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 #include <math.h>
@@ -13,7 +14,8 @@ int main(void) {
     /* The renderer's side. */
     cl_platform_id platform;
     cl_device_id device;
-    if (clGetPlatformIDs(1, &platform, NULL) || clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &device, NULL))
+    if (clGetPlatformIDs(1, &platform, NULL) ||
+        clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &device, NULL))
         return fprintf(stderr, "no OpenCL device\n"), 1;
     cl_context context = clCreateContext(NULL, 1, &device, NULL, NULL, NULL);
     cl_command_queue queue = clCreateCommandQueue(context, device, 0, NULL);
@@ -21,7 +23,8 @@ int main(void) {
     const float positions[18] = {2, 0, 0, -2, 0, 0, 0, 2, 0, 0, -2, 0, 0, 0, 2, 0, 0, -2};
     const float normals[18] = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
     const uint32_t triangles[24] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
-    cl_mem vertices = clCreateBuffer(context, CL_MEM_READ_ONLY, sizeof positions + sizeof normals, NULL, NULL);
+    cl_mem vertices =
+        clCreateBuffer(context, CL_MEM_READ_ONLY, sizeof positions + sizeof normals, NULL, NULL);
     cl_mem result = clCreateBuffer(context, CL_MEM_READ_WRITE, 6 * sizeof(float), NULL, NULL);
     cl_event uploaded;
     clEnqueueWriteBuffer(queue, vertices, CL_FALSE, 0, sizeof positions, positions, 0, NULL, NULL);
@@ -42,7 +45,8 @@ int main(void) {
     CHECK(pelBufferCreateFromCl(pel, result, &out));
     const PelVertexView p = {in, 0, 0, 6}, n = {in, sizeof positions, 0, 6}, c = {out, 0, 0, 6};
     PelCurvatureParams params = pelCurvatureParamsDefaults();
-    params.estimator = PEL_CURVATURE_EDGE; /* exact on a sphere's own normals, however few vertices there are */
+    /* exact on a sphere's own normals, however few vertices there are */
+    params.estimator = PEL_CURVATURE_EDGE;
     PelEvent wait, done;
     CHECK(pelEventCreateFromCl(pel, uploaded, &wait));
     const PelSubmit submit = {&wait, 1, &done};

@@ -1,6 +1,8 @@
-/* Memory that a graphics interface and Pellucid use in place, by way of a cl_mem of the host's own: a buffer of OpenGL (cl_khr_gl_sharing), and a
- * dma-buf (cl_khr_external_memory_dma_buf; Vulkan's exported memory is imported the same way). Each runs where a driver has it, and says so where none has:
- * then the renderer's images are copied, by pelBufferWrite or a buffer over mapped host memory. docs/guide/hosts.md has the same for Vulkan. */
+/* Memory that a graphics interface and Pellucid use in place, by way of a cl_mem of the host's own: a buffer
+ * of OpenGL (cl_khr_gl_sharing), and a dma-buf (cl_khr_external_memory_dma_buf; Vulkan's exported memory is
+ * imported the same way). Each runs where a driver has it, and says so where none has: then the renderer's
+ * images are copied, by pelBufferWrite or a buffer over mapped host memory. docs/guide/hosts.md has the same
+ * for Vulkan. */
 #define _GNU_SOURCE
 #define CL_TARGET_OPENCL_VERSION 300
 #include <CL/cl.h>
@@ -73,7 +75,8 @@ static int dmaBuf(int* pages) {
     *pages = memfd_create("pellucid", MFD_ALLOW_SEALING);
     const int maker = open("/dev/udmabuf", O_RDWR);
     struct UdmabufCreate create = {(uint32_t)*pages, 1 /* close on exec */, 0, RESULT_BYTES};
-    if (*pages < 0 || maker < 0 || ftruncate(*pages, RESULT_BYTES) || fcntl(*pages, F_ADD_SEALS, F_SEAL_SHRINK))
+    if (*pages < 0 || maker < 0 || ftruncate(*pages, RESULT_BYTES) ||
+        fcntl(*pages, F_ADD_SEALS, F_SEAL_SHRINK))
         return -1;
     const int fd = ioctl(maker, _IOW('u', 0x42, struct UdmabufCreate), &create);
     close(maker);
@@ -122,7 +125,8 @@ static int openGl(void** display, void** glContext) {
     egl = dlopen("libEGL.so.1", RTLD_NOW);
     if (!egl) return 0;
     void* (*getDisplay)(void*);
-    unsigned (*initialize)(void*, int*, int*), (*bindApi)(unsigned), (*makeCurrent)(void*, void*, void*, void*);
+    unsigned (*initialize)(void*, int*, int*), (*bindApi)(unsigned),
+        (*makeCurrent)(void*, void*, void*, void*);
     void* (*createContext)(void*, void*, void*, const int*);
     *(void**)&getProc = dlsym(egl, "eglGetProcAddress");
     *(void**)&getDisplay = dlsym(egl, "eglGetDisplay");
@@ -163,7 +167,8 @@ static int shareGl(cl_platform_id platform, cl_device_id device) {
                                                 0};
     cl_context context = clCreateContext(properties, 1, &device, NULL, NULL, &error);
     if (error)
-        return printf("  OpenGL and this device share nothing (error %d): OpenGL draws elsewhere\n", error), 1;
+        return printf("  OpenGL and this device share nothing (error %d): OpenGL draws elsewhere\n", error),
+               1;
     cl_command_queue queue = clCreateCommandQueueWithProperties(context, device, NULL, &error);
     cl_mem memory = clCreateFromGLBuffer(context, CL_MEM_READ_WRITE, name, &error);
     int right = 0;

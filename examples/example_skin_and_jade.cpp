@@ -1,5 +1,5 @@
-// A ball of skin beside a ball of jade, under a warm lamp and a cool one: the G-buffer that a renderer would have drawn, two
-// materials of the library, two lights, a picture (example_skin_and_jade.ppm).
+// A ball of skin beside a ball of jade, under a warm lamp and a cool one: the G-buffer that a renderer would
+// have drawn, two materials of the library, two lights, a picture (example_skin_and_jade.ppm).
 #include <cmath>
 #include <cstdio>
 #include <pellucid/pellucid.hpp>
@@ -48,7 +48,8 @@ int main() try {
     std::fprintf(file, "P6 %u %u 255\n", width, height);
     for (const float v : radiance) std::fputc(int(255 * std::pow(std::fmin(v, 1.0f), 1 / 2.2f) + 0.5f), file);
     std::fclose(file);
-    const float *skin = &radiance[3 * (width * 100 + 100)], *jade = skin + 3 * 200;  // in the middle of each ball
+    // in the middle of each ball
+    const float *skin = &radiance[3 * (width * 100 + 100)], *jade = skin + 3 * 200;
     std::printf("skin %.3f %.3f %.3f, jade %.3f %.3f %.3f\n", skin[0], skin[1], skin[2], jade[0], jade[1],
                 jade[2]);
     return skin[0] > skin[1] && jade[1] > jade[0] && radiance[0] == 0 ? 0 : 1;

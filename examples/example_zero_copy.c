@@ -1,5 +1,6 @@
-/* Host memory in place: curvature is read from and written into one interleaved vertex array of the host's. On a device that
- * shares its memory nothing is copied, which the counters show; on any other, mapping brings the result over. */
+/* Host memory in place: curvature is read from and written into one interleaved vertex array of the host's.
+ * On a device that shares its memory nothing is copied, which the counters show; on any other, mapping brings
+ * the result over. */
 #define _POSIX_C_SOURCE 200112L
 #include <math.h>
 #include <pellucid/pellucid.h>
@@ -16,7 +17,8 @@ typedef struct Vertex {
 enum { ROWS = 64, COLUMNS = 128, COUNT = ROWS * COLUMNS };
 
 int main(void) {
-    /* A band of a sphere of radius 50. Memory aligned to 4096 bytes can be shared by any device that shares memory. */
+    /* A band of a sphere of radius 50. Memory aligned to 4096 bytes can be shared by any device that shares
+     * memory. */
     const size_t bytes = (sizeof(Vertex) * COUNT + 4095) / 4096 * 4096;
     void* memory;
     if (posix_memalign(&memory, 4096, bytes)) return 1;

@@ -1,4 +1,5 @@
-// float32 to half and back by bits, rounding to nearest even: what the kernels' vstore_half_rte must agree with.
+// float32 to half and back by bits, rounding to nearest even: what the kernels' vstore_half_rte must agree
+// with.
 #pragma once
 #include <cmath>
 #include <cstdint>

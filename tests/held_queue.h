@@ -47,8 +47,8 @@ class HeldQueue {
     bool released_ = false;
 };
 
-// Whether it ends. A call that stands still uses no processor time; a slow machine, or one that lets others go first, is not
-// taken for that.
+// Whether it ends. A call that stands still uses no processor time; a slow machine, or one that lets others
+// go first, is not taken for that.
 inline bool ends(const std::future<void>& running) {
     std::clock_t used = std::clock();
     for (int still = 0; still < 20; ++still) {
@@ -60,7 +60,8 @@ inline bool ends(const std::future<void>& running) {
     return false;
 }
 
-// `call` gets what makes it wait for the event, and must return before that is set. Everything has run at the end.
+// `call` gets what makes it wait for the event, and must return before that is set. Everything has run at the
+// end.
 template <class Call>
 void expectReturns(const pellucid::Device& device, const char* what, const Call& call) {
     HeldQueue held(device);

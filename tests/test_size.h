@@ -1,4 +1,5 @@
-// Smaller meshes, tables and images where every instruction is interpreted: ./run check oclgrind sets PELLUCID_TEST_SMALL.
+// Smaller meshes, tables and images where every instruction is interpreted: ./run check oclgrind sets
+// PELLUCID_TEST_SMALL.
 #pragma once
 #include <algorithm>
 #include <cstdint>

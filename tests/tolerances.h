@@ -179,7 +179,8 @@ inline constexpr Tolerance uvScale{
     "uvScale", 2e-6,
     "relative: float edge lengths; their logarithms add up without loss and errors average out"};
 
-inline constexpr Tolerance faceWorksUvScale{"faceWorksUvScale", 1e-5, "FaceWorks adds up logarithms in float"};
+inline constexpr Tolerance faceWorksUvScale{"faceWorksUvScale", 1e-5,
+                                            "FaceWorks adds up logarithms in float"};
 inline constexpr Tolerance scaledMesh{"scaledMesh", 1e-9,
                                       "a mesh scaled by k: the same numbers but for rounding"};
 inline constexpr Tolerance finiteDifference{"finiteDifference", 2e-6, "second differences at a step of 1e-4"};
@@ -190,7 +191,8 @@ inline constexpr Tolerance tensorOnAnalytic{
     "tensorOnAnalytic", 0.05, "relative RMS on 96 x 48 cells, worst of all surfaces and tessellations"};
 inline constexpr Tolerance edgeOnTorus{"edgeOnTorus", 0.2,
                                        "the edge estimator misses by at least this, at any density"};
-inline constexpr Tolerance sampledDeviation{"sampledDeviation", 0.03, "a standard deviation from 1e4 samples"};
+inline constexpr Tolerance sampledDeviation{"sampledDeviation", 0.03,
+                                            "a standard deviation from 1e4 samples"};
 
 // --- shading, absolute per channel, from the same inputs and tables ---
 inline constexpr Tolerance shadeTerm{"shadeTerm", 5e-5,
@@ -212,7 +214,8 @@ inline constexpr Tolerance faceWorksDirect{
     "half a texel of N.L: its table holds D less Lambert, ours D, which is clamped at the last centre"};
 inline constexpr Tolerance faceWorksPass{"faceWorksPass", 2e-5,
                                          "FaceWorks' float arithmetic and ours, vectors turned in float"};
-inline constexpr Tolerance diskMoment{"diskMoment", 0.02, "mean squared radius of a disk, 1/2, from 8 points"};
+inline constexpr Tolerance diskMoment{"diskMoment", 0.02,
+                                      "mean squared radius of a disk, 1/2, from 8 points"};
 inline constexpr Tolerance diskSpacing{
     "diskSpacing", 0.65,
     "least distance over that of a hexagonal packing: 0.7 to 0.75 is called blue noise, 0 is white"};
@@ -307,7 +310,8 @@ inline constexpr Tolerance widePenumbra{
     "widePenumbra", 1e-3, "reciprocal width 1e-3: the smoothstep's foot, and the symmetry of the centre"};
 inline constexpr Tolerance srgbInverse{"srgbInverse", 1e-6, "the standard's two pieces meet to seven digits"};
 inline constexpr Tolerance faceWorksRoundedApart{
-    "faceWorksRoundedApart", 0.1, "share of 8-bit values: an error of 7.7e-4 moves a fifth of a step at most"};
+    "faceWorksRoundedApart", 0.1,
+    "share of 8-bit values: an error of 7.7e-4 moves a fifth of a step at most"};
 inline constexpr Tolerance sampledSphere{"sampledSphere", 1e-3, "averages over 20,000 even directions"};
 inline constexpr Tolerance sampledDisk{"sampledDisk", 2e-3, "an edge through a disk of 5000 even taps"};
 inline constexpr Tolerance oracleExact{"oracleExact", 1e-13, "the same sum in another order of operations"};
@@ -325,7 +329,8 @@ inline constexpr Tolerance sampleFacetNormal{
     "sampleFacetNormal", 1e-4,
     "the ray meets a facet, whose interpolated normal is the sphere's to 2nd order"};
 inline constexpr Tolerance sampleUnit{"sampleUnit", 1e-6, "float rounding of values up to 1"};
-inline constexpr Tolerance samplePixel{"samplePixel", 1e-4, "pixels: float rounding of a position, projected"};
+inline constexpr Tolerance samplePixel{"samplePixel", 1e-4,
+                                       "pixels: float rounding of a position, projected"};
 inline constexpr Tolerance sampleMatrix{"sampleMatrix", 1e-9, "double-precision matrices and closed forms"};
 inline constexpr Tolerance sampleDerivative{"sampleDerivative", 1e-6,
                                             "relative: a central difference of step 1e-5"};
@@ -335,13 +340,15 @@ inline constexpr Tolerance sampleRandomField{"sampleRandomField", 0.15,
                                              "relative: a sum of 100 waves over a few hundred wavelengths"};
 inline constexpr Tolerance sampleMeanSquare{"sampleMeanSquare", 0.03,
                                             "the mean over 20000 points of a random field"};
-inline constexpr Tolerance sampleAlbedoMean{"sampleAlbedoMean", 0.03, "the mean of few, wide random blotches"};
+inline constexpr Tolerance sampleAlbedoMean{"sampleAlbedoMean", 0.03,
+                                            "the mean of few, wide random blotches"};
 inline constexpr Tolerance sampleWaves{"sampleWaves", 1e-4, "single-precision sines with phases up to 100"};
 inline constexpr Tolerance sampleQuadrature{"sampleQuadrature", 1e-5,
                                             "a midpoint rule of 4000 steps over a square root's end"};
 inline constexpr Tolerance sampleWideShadow{
     "sampleWideShadow", 0.003, "texels of 1/200 of the filter: where the edge falls between two of them"};
-inline constexpr Tolerance sampleSky{"sampleSky", 0.02, "what orders above 2 carry of a sky with a soft lamp"};
+inline constexpr Tolerance sampleSky{"sampleSky", 0.02,
+                                     "what orders above 2 carry of a sky with a soft lamp"};
 
 // --- what the search of bench/stability may find beyond the ranges of the tests ---
 inline constexpr Tolerance stretchedNormals{"stretchedNormals", 5e-5,
@@ -459,9 +466,10 @@ inline constexpr Tolerance lightFour[3] = {
     {"lightFourGreen", 67, "65 measured; Lambert 161, 68 without"},
     {"lightFourBlue", 52, "49 measured; Lambert 99"}};
 inline constexpr Tolerance gain{"gain", 6e-3, "curvature by differences of float positions over a window"};
-inline constexpr Tolerance walkHead[3] = {{"walkHeadRed", 65, "against random walks: 62; 84 without the gain"},
-                                          {"walkHeadGreen", 45, "49 without the gain"},
-                                          {"walkHeadBlue", 50, "49 without the gain"}};
+inline constexpr Tolerance walkHead[3] = {
+    {"walkHeadRed", 65, "against random walks: 62; 84 without the gain"},
+    {"walkHeadGreen", 45, "49 without the gain"},
+    {"walkHeadBlue", 50, "49 without the gain"}};
 inline constexpr Tolerance walkHeadTimesFour[3] = {
     {"walkHeadTimesFourRed", 210, "against random walks; 212 without the gain"},
     {"walkHeadTimesFourGreen", 95, "107 without the gain"},
@@ -529,6 +537,7 @@ inline constexpr Tolerance eyePictureRms{"eyePictureRms", 2e-3,
 inline constexpr Tolerance eyeCausticRms{"eyeCausticRms", 1e-2,
                                          "the same, with caustics from a table of 64 x 64 x 32"};
 inline constexpr Tolerance eyeMinified{
-    "eyeMinified", 0.05, "RMS of an iris against one that is evenly grey: neighbouring levels differ by this"};
+    "eyeMinified", 0.05,
+    "RMS of an iris against one that is evenly grey: neighbouring levels differ by this"};
 
 }  // namespace tolerance

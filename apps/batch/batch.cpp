@@ -182,7 +182,9 @@ void addBatch(Command& app) {
     auto a = std::make_shared<Arguments>();
     batch->addOption("manifest", a->manifest, "TOML: [[lut]] and [[grid]] (docs/guide/batch.md)")->required();
     batch->addOption("-o,--output", a->folder, "folder for the files; made if need be")->required();
-    batch->addOption("--device", a->devices, "device; several share the work")->typeName(deviceWord)->oneEach();
+    batch->addOption("--device", a->devices, "device; several share the work")
+        ->typeName(deviceWord)
+        ->oneEach();
     batch->addOption("-j,--jobs", a->jobs, "tables in flight (default: four per core and device)")
         ->check(inRange(1, 256));
     batch->addFlag("--json", a->json, "one JSON object on stdout");

@@ -197,7 +197,8 @@ class Expansion {
     }
 
     void addOne(const TomlReader& reader, const Request& r, const std::string& encoding, const Size& size,
-                const std::string& profileName, const std::string& form, const std::string& axis, float radius) {
+                const std::string& profileName, const std::string& form, const std::string& axis,
+                float radius) {
         BatchEntry entry{pelLutInfoDefaults(), {}, {}, {}, {}, {}, reader.line()};
         entry.info.kind = r.kind;
         entry.encoding = PelLutEncoding(indexOf(reader, "encoding", encoding, encodingNames));
@@ -282,7 +283,8 @@ class Expansion {
         constexpr std::string_view allowed =
             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.+";
         const size_t wrong = name.find_first_not_of(allowed);
-        if (wrong != std::string::npos || name.empty() || name[0] == '.' || name[0] == '-' || name.size() > 200)
+        if (wrong != std::string::npos || name.empty() || name[0] == '.' || name[0] == '-' ||
+            name.size() > 200)
             reader.fail("name", "is '" + name +
                                     "'; up to 200 letters of A to Z, digits and - _ . +, not "
                                     "beginning with . or -, are possible");

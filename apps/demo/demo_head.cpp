@@ -52,8 +52,10 @@ std::vector<sample::Tint> tintsOf(const io::PartedMesh& head, const Bounds (&eye
     for (const double side : {-1.0, 1.0}) {
         add(side * 0.66 * e, left.y - 0.66 * e, {0.5, 0.42, 0.7}, {1.02, 0.84, 0.84}, 1);
         const double x = side > 0 ? skin.high.x : skin.low.x;
-        tints.push_back(
-            {{x, left.y - 0.25 * e, skin.centre().z - 0.1 * e}, Vec3{0.35, 0.75, 0.6} * e, {1.02, 0.80, 0.78}, 1});
+        tints.push_back({{x, left.y - 0.25 * e, skin.centre().z - 0.1 * e},
+                         Vec3{0.35, 0.75, 0.6} * e,
+                         {1.02, 0.80, 0.78},
+                         1});
     }
     add(0, 0.5 * (left.y + lipLine) - 0.02 * e, {0.3, 0.3, 0.5}, {1.02, 0.86, 0.86}, 1);
     // Brows: an arc over each eye, darkest in the middle, of spots that overlap.

@@ -216,7 +216,8 @@ GltfDocument::Span GltfDocument::view(const GltfValue& owner, const char* key) c
     const GltfValue top = root(),
                     view = top["bufferViews"][owner.reference(key, "bufferViews", top.count("bufferViews"))];
     const std::string& buffer = buffers_[view.reference("buffer", "buffers", buffers_.size())];
-    const uint64_t offset = view.whole("byteOffset", 0, mostBytes), length = view["byteLength"].whole(mostBytes);
+    const uint64_t offset = view.whole("byteOffset", 0, mostBytes),
+                   length = view["byteLength"].whole(mostBytes);
     if (offset > buffer.size() || length > buffer.size() - offset)
         view.fail("ends at byte " + std::to_string(offset + length) + " of a buffer of " +
                   std::to_string(buffer.size()));

@@ -143,7 +143,8 @@ class Builder {
         if (node.hasExtension("KHR_lights_punctual")) {
             const GltfValue all = root_["extensions"]["KHR_lights_punctual"];
             GltfLight light = readGltfLight(
-                all["lights"][node.extension("KHR_lights_punctual").reference("light", "lights", all.count("lights"))]);
+                all["lights"]
+                   [node.extension("KHR_lights_punctual").reference("light", "lights", all.count("lights"))]);
             light.position = point(m, {0, 0, 0});
             light.forward = unit({-m[2], -m[6], -m[10]}, {0, 0, -1});
             scene_.lights.push_back(light);
@@ -332,8 +333,9 @@ GltfScene decodeGltf(const std::string& path, const std::string& bytes, const Gl
 
 GltfScene readGltf(const std::string& path) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-    return decodeGltf(path, readWholeFile(path),
-                      [&](const std::string& relative) { return readWholeFile((folder / relative).string()); });
+    return decodeGltf(path, readWholeFile(path), [&](const std::string& relative) {
+        return readWholeFile((folder / relative).string());
+    });
 }
 
 }  // namespace pellucid::io

@@ -33,7 +33,8 @@ std::map<std::string, std::string> profilesOf(const std::vector<std::string>& wo
             if (at == std::string::npos || m.name == word.substr(0, at))
                 chosen[m.name] = profile, found = true;
         if (!found)
-            throw std::invalid_argument("profile " + word + ": there is no such material; there are " + known);
+            throw std::invalid_argument("profile " + word + ": there is no such material; there are " +
+                                        known);
     }
     return chosen;
 }

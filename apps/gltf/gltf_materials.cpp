@@ -30,7 +30,8 @@ GltfMaterial readGltfMaterial(const GltfDocument& document, const GltfValue& mat
         texture(pbr, "metallicRoughnessTexture");
         if (pbr.has("baseColorTexture")) {
             const GltfValue info = pbr["baseColorTexture"], top = document.root();
-            const GltfValue named = top["textures"][info.reference("index", "textures", top.count("textures"))];
+            const GltfValue named =
+                top["textures"][info.reference("index", "textures", top.count("textures"))];
             if (info.whole("texCoord", 0, 255) != 0 || info.hasExtension("KHR_texture_transform"))
                 warnOnce(warnings,
                          "textures with coordinates of their own are left out: TEXCOORD_0 alone is read");

@@ -21,7 +21,8 @@ struct GltfLook {
 
 // Material `id`. `profile`: a profile of the library or a .toml file that replaces the volume of the glTF
 // material; "" keeps it.
-GltfLook lookOf(const GltfMaterial& material, const std::string& name, uint32_t id, const std::string& profile);
+GltfLook lookOf(const GltfMaterial& material, const std::string& name, uint32_t id,
+                const std::string& profile);
 
 // Of a light whose position and range are in millimetres. `brightness` multiplies its colour.
 SceneLight sceneLight(const GltfLight& light, double brightness);

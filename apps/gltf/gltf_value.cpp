@@ -59,7 +59,8 @@ double GltfValue::number(double low, double high) const {
 uint64_t GltfValue::whole(uint64_t most) const {
     const double value = anyNumber();  // some programs write whole numbers with a point
     if (!(value >= 0 && value <= double(most)) || value != std::floor(value))
-        fail("is " + json_->dump() + "; a whole number from 0 to " + std::to_string(most) + " would be right");
+        fail("is " + json_->dump() + "; a whole number from 0 to " + std::to_string(most) +
+             " would be right");
     return uint64_t(value);
 }
 

@@ -28,7 +28,8 @@ struct Texture {
         const double x = (u - std::floor(u)) * width - 0.5, y = (v - std::floor(v)) * height - 0.5;
         const double fx = x - std::floor(x), fy = y - std::floor(y);
         const auto wrapped = [](double at, int size) { return (int(std::floor(at)) % size + size) % size; };
-        const int x0 = wrapped(x, width), x1 = (x0 + 1) % width, y0 = wrapped(y, height), y1 = (y0 + 1) % height;
+        const int x0 = wrapped(x, width), x1 = (x0 + 1) % width, y0 = wrapped(y, height),
+                  y1 = (y0 + 1) % height;
         const auto texel = [&](int tx, int ty, int c) {
             return double(rgb[3 * (size_t(ty) * size_t(width) + size_t(tx)) + size_t(c)]);
         };
@@ -109,7 +110,8 @@ void applyTextures(Run& run, const io::GltfScene& v, sample::GBuffer& g) {
     }
 }
 
-void addShadowMap(const std::string& folder, const sample::Scene& scene, size_t number, io::SceneLight& light) {
+void addShadowMap(const std::string& folder, const sample::Scene& scene, size_t number,
+                  io::SceneLight& light) {
     PelLight& p = light.light;
     sample::ShadowMap map;
     if (p.type == PEL_LIGHT_DIRECTIONAL) {
@@ -118,9 +120,10 @@ void addShadowMap(const std::string& folder, const sample::Scene& scene, size_t 
         p.shadowProjection = PEL_SHADOW_PARALLEL;
         p.shadowDepthRange = float(map.depthRange);
     } else if (p.type == PEL_LIGHT_SPOT) {
-        const sample::SpotLight spot{{p.position[0], p.position[1], p.position[2]},
-                                     {p.spotDirection[0], p.spotDirection[1], p.spotDirection[2]},
-                                     std::min(std::acos(double(p.spotCosOuter)) * 180 / std::numbers::pi, 80.0)};
+        const sample::SpotLight spot{
+            {p.position[0], p.position[1], p.position[2]},
+            {p.spotDirection[0], p.spotDirection[1], p.spotDirection[2]},
+            std::min(std::acos(double(p.spotCosOuter)) * 180 / std::numbers::pi, 80.0)};
         map = sample::renderShadowMap(scene, spot, shadowMapSize);
         p.shadowProjection = PEL_SHADOW_PERSPECTIVE;
         p.shadowDepthA = float(map.depthA), p.shadowDepthB = float(map.depthB);

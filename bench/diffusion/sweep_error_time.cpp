@@ -52,7 +52,8 @@ std::vector<Setting> settings() {
     }
     // With visibility given, as an image; what the camera does not see is in the map.
     for (uint32_t taps : {9u, 17u, 25u, 51u, 101u}) {
-        Setting& s = add("separable", "2 x " + std::to_string(taps) + " taps", PEL_SCATTERING_SEPARABLE, true);
+        Setting& s =
+            add("separable", "2 x " + std::to_string(taps) + " taps", PEL_SCATTERING_SEPARABLE, true);
         s.request.scatterTaps = taps;
         s.shown = taps == 25;
     }
@@ -101,7 +102,8 @@ template <class Stream, class Vectors>
 void each(Stream& stream, LitScene& s, const Vectors& vectors) {
     vectors(stream, s.positions), vectors(stream, s.normals), vectors(stream, s.irradiance);
     vectors(stream, s.truth), vectors(stream, s.covered), vectors(stream, s.subsets);
-    vectors(stream, s.gbuffer.curvature.data), vectors(stream, s.gbuffer.material), vectors(stream, s.map.depth);
+    vectors(stream, s.gbuffer.curvature.data), vectors(stream, s.gbuffer.material),
+        vectors(stream, s.map.depth);
 }
 
 void store(const std::string& path, Stored& stored) {

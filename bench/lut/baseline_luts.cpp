@@ -44,7 +44,8 @@ void sampledCurvatureLut(const std::vector<LutGaussian>& profile, int width, int
         for (int x = 0; x < width; ++x) {
             const float theta = std::acos(-1 + (float(x) + 0.5f) * 2 / float(width));
             sample(
-                profile, end, samples, [&](float s) { return std::max(0.0f, std::cos(theta - s * curvature)); },
+                profile, end, samples,
+                [&](float s) { return std::max(0.0f, std::cos(theta - s * curvature)); },
                 texels.data() + (size_t(y) * width + x) * 3);
         }
     }

@@ -55,7 +55,8 @@ void addSampled(const std::string& name, const Desc& desc, const Loop& loop) {
                                  [=](benchmark::State& state) {
                                      std::vector<float> texels;
                                      for (auto _ : state) loop(texels);
-                                     const auto exact = Lut(device(), desc).template read<float>(PEL_LUT_FLOAT);
+                                     const auto exact =
+                                         Lut(device(), desc).template read<float>(PEL_LUT_FLOAT);
                                      double worst = 0;
                                      for (size_t i = 0; i < exact.size(); ++i)
                                          worst = std::max(worst, double(std::abs(exact[i] - texels[i])));

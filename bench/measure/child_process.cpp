@@ -41,7 +41,8 @@ ChildProcess::ChildProcess(std::vector<std::string> command,
     std::vector<std::string> variables;
     for (char** entry = environ; *entry; ++entry) {
         const std::string name(*entry, std::strcspn(*entry, "="));
-        if (std::none_of(environment.begin(), environment.end(), [&](const auto& e) { return e.first == name; }))
+        if (std::none_of(environment.begin(), environment.end(),
+                         [&](const auto& e) { return e.first == name; }))
             variables.push_back(*entry);
     }
     for (const auto& [name, value] : environment)

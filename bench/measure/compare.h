@@ -18,7 +18,8 @@ nlohmann::ordered_json parseReport(const std::string& text);
 // change of the device's own copies and arithmetic between the two reports). The standard error of a median
 // is 1.2533 sigma / sqrt(samples); sigma is 1.4826 times the median absolute deviation [Rousseeuw and Croux
 // 1993]. An error counts as grown when it is more than 1.5 times the old one and 1e-7 above it.
-nlohmann::ordered_json compareReports(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after);
+nlohmann::ordered_json compareReports(const nlohmann::ordered_json& before,
+                                      const nlohmann::ordered_json& after);
 
 // A table for people.
 std::string describeComparison(const nlohmann::ordered_json& comparison);

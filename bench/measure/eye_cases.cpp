@@ -30,7 +30,8 @@ reference::Eye adult() {
 double covered(const PelEyeLutDesc& desc, uint32_t i, uint32_t j) {
     int on = 0;
     for (int k = 0; k < 64; ++k)
-        on += std::hypot((i + (k % 8 + 0.5) / 8) / desc.width * 2 - 1, (j + (k / 8 + 0.5) / 8) / desc.height) < 1;
+        on += std::hypot((i + (k % 8 + 0.5) / 8) / desc.width * 2 - 1,
+                         (j + (k / 8 + 0.5) / 8) / desc.height) < 1;
     return on / 64.0;
 }
 
@@ -39,7 +40,8 @@ Case tableCase(const Device& device, Size size) {
     if (size.quick) desc.width = desc.height = 32, desc.depth = 16;
     const auto lut = std::make_shared<Lut>();
     Case c;
-    c.what = std::to_string(desc.width) + "x" + std::to_string(desc.height) + "x" + std::to_string(desc.depth);
+    c.what =
+        std::to_string(desc.width) + "x" + std::to_string(desc.height) + "x" + std::to_string(desc.depth);
     c.items = double(desc.width) * desc.height * desc.depth;
     c.unit = "texels";
     c.bytes = 16 * c.items;
@@ -141,9 +143,10 @@ struct EyeFrame {
             const Vec3 p{position[3 * i], position[3 * i + 1], position[3 * i + 2]};
             const Vec3 v = reference::normalized(from - p), ball = reference::normalized(p);
             const reference::EyeHit h = traceEye(eye, from, -1.0 * v);
-            const Vec3 n = h.share > 0 ? reference::normalized((1 - h.share) * ball +
-                                                               h.share * eye.corneaNormal(h.point.x, h.point.y))
-                                       : ball;
+            const Vec3 n = h.share > 0
+                               ? reference::normalized((1 - h.share) * ball +
+                                                       h.share * eye.corneaNormal(h.point.x, h.point.y))
+                               : ball;
             double expected = (1 - h.share) * scleraAlbedo * std::max(0.0, dot(ball, l)) +
                               tearGloss(n, l, v, eye.tearRoughness, eye.nTear);
             if (h.share > 0)
@@ -170,7 +173,8 @@ std::vector<Factory> eyeCases(const Device& device, Size size) {
         c.truth = "the tracer in double precision with the same table, at drawn pixels of the eye; absolute";
         return c;
     };
-    return {{"table-eye", "tables", [=] { return tableCase(device, size); }}, {"shade-eye", "shading", frame}};
+    return {{"table-eye", "tables", [=] { return tableCase(device, size); }},
+            {"shade-eye", "shading", frame}};
 }
 
 }  // namespace pellucid::bench

@@ -77,8 +77,9 @@ std::vector<Factory> meshCases(const Device& device, Size size) {
     };
     // Positions, normals, two triangles per vertex, one result.
     constexpr double bytes = 12 + 12 + 24 + 4;
-    const auto curvature = [=](PelCurvatureEstimator estimator, uint32_t passes, bool exact, double operations,
-                               std::function<std::vector<double>(const Torus&)> truth, const char* of) {
+    const auto curvature = [=](PelCurvatureEstimator estimator, uint32_t passes, bool exact,
+                               double operations, std::function<std::vector<double>(const Torus&)> truth,
+                               const char* of) {
         return [=] {
             const auto t = torus();
             Case c = begin(*t, passes ? ", " + std::to_string(passes) + " smoothing passes" : "");

@@ -75,17 +75,17 @@ std::string operationsTable(const Json& device) {
             continue;
         }
         const double rate = value(e, "per_second");
-        html +=
-            cell(words(e, "what"), " class='text'") + cell(shortNumber(value(e, "median_ms"))) +
-            cell(shortNumber(value(e, "mad_ms"))) +
-            cell(value(e, "device_ms") > 0 ? shortNumber(value(e, "device_ms")) : "–") +
-            cell((rate >= 1e9   ? shortNumber(rate * 1e-9) + " G"
-                  : rate >= 1e6 ? shortNumber(rate * 1e-6) + " M"
-                                : shortNumber(rate) + " ") +
-                 words(e, "unit")) +
-            cell(percent(value(e, "bandwidth_share"))) + cell(percent(value(e, "arithmetic_share"))) +
-            cell("<span title='" + words(e, "truth") + "'>" + shortNumber(value(e, "error_max")) + "</span>") +
-            cell(shortNumber(value(e, "error_rms"))) + "</tr>";
+        html += cell(words(e, "what"), " class='text'") + cell(shortNumber(value(e, "median_ms"))) +
+                cell(shortNumber(value(e, "mad_ms"))) +
+                cell(value(e, "device_ms") > 0 ? shortNumber(value(e, "device_ms")) : "–") +
+                cell((rate >= 1e9   ? shortNumber(rate * 1e-9) + " G"
+                      : rate >= 1e6 ? shortNumber(rate * 1e-6) + " M"
+                                    : shortNumber(rate) + " ") +
+                     words(e, "unit")) +
+                cell(percent(value(e, "bandwidth_share"))) + cell(percent(value(e, "arithmetic_share"))) +
+                cell("<span title='" + words(e, "truth") + "'>" + shortNumber(value(e, "error_max")) +
+                     "</span>") +
+                cell(shortNumber(value(e, "error_rms"))) + "</tr>";
     }
     return html + "</table></div>";
 }
@@ -140,9 +140,10 @@ std::string htmlPage(const Json& report) {
         "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>pellucid bench</title>";
     html += style;
     html += "</head><body><h1>pellucid bench</h1><p>Version " + words(host, "pellucid") + ", " +
-            words(host, "date") + ", " + words(host, "cpu") + " with " + std::to_string(host.value("cores", 0)) +
-            " threads" + (report.value("quick", false) ? ", <b>quick: small sizes, few repetitions</b>" : "") +
-            ".</p>" + framesTable(devices);
+            words(host, "date") + ", " + words(host, "cpu") + " with " +
+            std::to_string(host.value("cores", 0)) + " threads" +
+            (report.value("quick", false) ? ", <b>quick: small sizes, few repetitions</b>" : "") + ".</p>" +
+            framesTable(devices);
     html +=
         "<p class='note'>Times are medians of blocking calls, cases interleaved in rounds; MAD is the median "
         "absolute deviation. "

@@ -41,7 +41,10 @@ struct Pass {
     Shader shader;
 
     Pass(std::shared_ptr<SkinFrame> f, FrameSettings s, uint32_t coverage)
-        : frame(std::move(f)), settings(std::move(s)), rows(images().height * coverage / 100), shader(make()) {}
+        : frame(std::move(f)),
+          settings(std::move(s)),
+          rows(images().height * coverage / 100),
+          shader(make()) {}
 
     const FrameImages& images() const { return frame->images(); }
     bool scattering() const { return settings.terms == Terms::scattering; }

@@ -87,7 +87,8 @@ Json measureCasesApart(const Request& request) {
         lost.push_back({{"name", name}, {"group", outcome.at.at("group")}, {"failed", outcome.why}});
         // The process did not reach any case, or reached one that was left out.
         if (name == "start" || !without.insert(name).second)
-            return {{"copy_bytes_per_second", Json()}, {"operations_per_second", Json()}, {"operations", lost}};
+            return {
+                {"copy_bytes_per_second", Json()}, {"operations_per_second", Json()}, {"operations", lost}};
     }
 }
 
@@ -95,8 +96,9 @@ void measureFirstUse(const Request& request, Json& report) {
     const std::filesystem::path cache =
         std::filesystem::temp_directory_path() / ("pellucid-bench-" + std::to_string(::getpid()));
     std::vector<std::pair<std::string, std::string>> environment;
-    for (const char* variable : {"POCL_CACHE_DIR", "CUDA_CACHE_PATH", "MESA_SHADER_CACHE_DIR",
-                                 "NEO_CACHE_DIR", "cl_cache_dir", "AMD_COMGR_CACHE_DIR", "PELLUCID_CACHE_DIR"})
+    for (const char* variable :
+         {"POCL_CACHE_DIR", "CUDA_CACHE_PATH", "MESA_SHADER_CACHE_DIR", "NEO_CACHE_DIR", "cl_cache_dir",
+          "AMD_COMGR_CACHE_DIR", "PELLUCID_CACHE_DIR"})
         environment.emplace_back(variable, cache.string());
     for (const char* key : {"first_use", "warm_start"}) {
         std::filesystem::create_directories(cache);

@@ -73,7 +73,8 @@ PelCurvatureParams estimated(PelCurvatureEstimator estimator, uint32_t passes) {
 
 // Adds a case of a torus: `work(torus)` is timed.
 template <class Work>
-void addCase(const std::string& name, uint32_t vertices, Order order, const std::string& more, const Work& work) {
+void addCase(const std::string& name, uint32_t vertices, Order order, const std::string& more,
+             const Work& work) {
     add(name + "/vertices:" + std::to_string(vertices) + "/order:" + std::to_string(order) + more,
         [=](benchmark::State& state) {
             const Torus& t = torus(vertices, order);

@@ -98,7 +98,8 @@ void measure(const reference::AnalyticMesh& truth, bool plane, Noise noise, PelC
     std::fflush(stdout);
 }
 
-constexpr PelCurvatureEstimator estimators[] = {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC};
+constexpr PelCurvatureEstimator estimators[] = {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR,
+                                                PEL_CURVATURE_QUADRIC};
 
 // Relative RMS errors of an irregular sphere of that radius, moved by `distance` along all three axes;
 // normals are exact.

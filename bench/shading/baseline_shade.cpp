@@ -109,14 +109,14 @@ V shadePixel(const ShadeSettings& s, bool skipping, size_t i) {
             n = load(f.shading, i), nb = load(f.blurred, i), p = load(f.position, i),
             albedo = load(f.albedo, i);
     const float bl = dot(nb, l), nl = dot(n, l), w = f.wideShadow[i];
-    const V d =
-        sample(s.in.curvatureTable, 0.5f * bl + 0.5f, s.rowsCurvature[0] * f.curvature[i] + s.rowsCurvature[1]);
+    const V d = sample(s.in.curvatureTable, 0.5f * bl + 0.5f,
+                       s.rowsCurvature[0] * f.curvature[i] + s.rowsCurvature[1]);
     const float away = sat(1 - bl) * sat(1 - bl), lambert = std::max(bl, 0.0f);
     const V direct{sat(d.x - lambert + sat(bl)),
                    sat(d.y - lambert + sat(dot(l, normalize(mix(n, nb, 0.3f + 0.7f * away))))),
                    sat(d.z - lambert + sat(dot(l, normalize(mix(n, nb, away)))))};
-    const V t =
-        sample(s.in.shadowTable, w, s.rowsShadow[0] * sat(dot(ng, l)) / m.shadowFilterWidth + s.rowsShadow[1]);
+    const V t = sample(s.in.shadowTable, w,
+                       s.rowsShadow[0] * sat(dot(ng, l)) / m.shadowFilterWidth + s.rowsShadow[1]);
     const V between = normalize(mix(n, nb, 0.3f));
     V diffuse{irradiance(s, nb, 0), irradiance(s, between, 1), irradiance(s, n, 2)};
     V lit = direct * t;
@@ -136,8 +136,9 @@ V shadePixel(const ShadeSettings& s, bool skipping, size_t i) {
             const float lobe = std::exp(-tan2 / m2) / (m2 * nh * nh * nh * nh);
             const float fresnel = m.f0 + (1 - m.f0) * std::pow(1 - dot(v, unit), 5.0f);
             const float k = sat(w * sharpening + 0.5f * (1 - sharpening));
-            result = result +
-                     (k * k * (3 - 2 * k) * m.specular * std::max(nl, 0.0f) * lobe * fresnel / dot(h, h)) * color;
+            result =
+                result +
+                (k * k * (3 - 2 * k) * m.specular * std::max(nl, 0.0f) * lobe * fresnel / dot(h, h)) * color;
         }
     }
     return result;

@@ -180,7 +180,8 @@ void addDemoViews() {
         add("library/" + name + "_blur", library(view, {.taps = 32, .blurNormals = true}));
         for (const bool every : {true, false})
             for (const uint32_t texels : {256, 48, 24, 16, 12, 8})
-                add("wideShadow/" + name + "/texels:" + std::to_string(texels) + (every ? "/every_pixel" : ""),
+                add("wideShadow/" + name + "/texels:" + std::to_string(texels) +
+                        (every ? "/every_pixel" : ""),
                     wideShadow(view, {.taps = 32, .filterTexels = texels, .everyPixel = every}));
         addOpenMp(name, view, 32);
     }

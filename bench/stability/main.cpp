@@ -83,7 +83,8 @@ int main(int argc, char** argv) try {
             }
             const auto start = std::chrono::steady_clock::now();
             const Found f = search(o, share, seconds);
-            const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            const double took =
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
             const bool fine = f.worst <= o.header.limit;
             within &= fine;
             std::printf(

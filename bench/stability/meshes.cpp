@@ -46,7 +46,8 @@ class TensorCurvature : public MovedMesh {
   public:
     TensorCurvature(const Point& p, PelCurvatureQuantity quantity) : MovedMesh(p), quantity_(quantity) {}
     std::vector<float> measured() override {
-        return curvature(estimated(PEL_CURVATURE_TENSOR, quantity_), quantity_ == PEL_QUANTITY_PRINCIPAL ? 2 : 1);
+        return curvature(estimated(PEL_CURVATURE_TENSOR, quantity_),
+                         quantity_ == PEL_QUANTITY_PRINCIPAL ? 2 : 1);
     }
     std::vector<double> truth() override {
         std::vector<double> t;
@@ -89,7 +90,8 @@ class PrincipalDirections : public MovedMesh {
         const auto values = curvature(estimated(PEL_CURVATURE_QUADRIC, PEL_QUANTITY_FRAME), 8);
         std::vector<float> off;
         for (size_t i = 0; i < before_.size(); ++i)
-            off.push_back(float(between(before_[i], {values[8 * i + 2], values[8 * i + 3], values[8 * i + 4]})));
+            off.push_back(
+                float(between(before_[i], {values[8 * i + 2], values[8 * i + 3], values[8 * i + 4]})));
         return off;
     }
     // Of the moved inputs against those before.
@@ -178,10 +180,11 @@ std::vector<Operation> meshOperations() {
         {"Gaussian", PEL_QUANTITY_GAUSSIAN},      {"first", PEL_QUANTITY_FIRST},
         {"second", PEL_QUANTITY_SECOND},          {"both principal", PEL_QUANTITY_PRINCIPAL}};
     for (const auto& [name, quantity] : quantities)
-        all.push_back(operation(
-            {std::string("curvature, tensor: ") + name, meshRange, Unit::largest, tolerance::tensorCurvature,
-             4, 250},
-            [quantity = quantity](const Point& p) { return std::make_unique<TensorCurvature>(p, quantity); }));
+        all.push_back(operation({std::string("curvature, tensor: ") + name, meshRange, Unit::largest,
+                                 tolerance::tensorCurvature, 4, 250},
+                                [quantity = quantity](const Point& p) {
+                                    return std::make_unique<TensorCurvature>(p, quantity);
+                                }));
     for (Operation& o : all)
         if (o.header.name == "normals" || o.header.name.ends_with("Gaussian"))
             o.axis = Axis{2, 0.02, 1, "height over width"};

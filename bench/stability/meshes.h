@@ -15,7 +15,8 @@ class MovedMesh : public Case {
     explicit MovedMesh(const Point& p, reference::Tessellation kind = reference::Tessellation::irregular) {
         scale = logBetween(p[0], 1e-6, 1e6);
         const double away = p[1] < 0.1 ? 0 : logBetween(p[1], 1e-3, 1e3), flat = logBetween(p[2], 0.02, 1);
-        mesh = reference::tessellate(reference::torusSurface(3, 1), 24, 14, kind, uint32_t(1 + p[3] * 8)).mesh;
+        mesh =
+            reference::tessellate(reference::torusSurface(3, 1), 24, 14, kind, uint32_t(1 + p[3] * 8)).mesh;
         for (auto& v : mesh.positions) {
             v = {scale * (v.x + 4 * away), scale * v.y, scale * flat * v.z};
             for (int i = 0; i < 3; ++i) positions.push_back(float(v[i]));

@@ -18,7 +18,8 @@ class ScreenCurvature : public Case {
                      aside = std::clamp(1.4 * (p[3] - 0.5), -0.7 + 16 * step, 0.7 - 16 * step);
         for (uint32_t i = 0; i < width * height; ++i) {
             const double x = std::clamp(aside + (i % width - 16.0) * step, -0.95, 0.95),
-                         y = (i / width - 4.0) * step * 0.75, z = std::sqrt(std::max(0.01, 1 - x * x - y * y));
+                         y = (i / width - 4.0) * step * 0.75,
+                         z = std::sqrt(std::max(0.01, 1 - x * x - y * y));
             for (double v : {x, y, z}) normals_.push_back(float(v));
             for (double v : {x + away, y, z}) positions_.push_back(float(radius * v));
         }

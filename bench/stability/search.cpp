@@ -156,7 +156,8 @@ Found search(const Operation& o, double share, double seconds) {
             keepWorst(found.worst, errors[i]);
             if (o.axis)
                 keepWorst(
-                    found.alongAxis[std::min(axisParts - 1, size_t(points[i][o.axis->dimension] * axisParts))],
+                    found
+                        .alongAxis[std::min(axisParts - 1, size_t(points[i][o.axis->dimension] * axisParts))],
                     errors[i]);
         }
         found.points += next.size();

@@ -12,9 +12,9 @@ reference::Vec3 vector(const float (&v)[3]) {
 
 // `axis` turned by an angle; `around`, 0 to 1 for a full turn, is the azimuth of the turn.
 reference::Vec3 turned(reference::Vec3 axis, double angle, double around) {
-    const reference::Vec3 side = reference::normalized(reference::cross(axis, std::abs(axis.x) < 0.7
-                                                                                  ? reference::Vec3{1, 0, 0}
-                                                                                  : reference::Vec3{0, 1, 0})),
+    const reference::Vec3 side = reference::normalized(
+                              reference::cross(axis, std::abs(axis.x) < 0.7 ? reference::Vec3{1, 0, 0}
+                                                                            : reference::Vec3{0, 1, 0})),
                           other = reference::cross(axis, side);
     const double turn = 2 * 3.14159265358979323846 * around;
     return reference::normalized(std::cos(angle) * axis +
@@ -171,7 +171,8 @@ class Shading : public Pixels {
         if (kind_.output == PEL_SLOT_OUT_THICKNESS)
             return {truthLight(frame_, m, frame_.lights[0], i).thickness};
         for (const Light& l : frame_.lights)  // nothing beyond the range
-            if (l.params.range > 0 && std::abs(length(vector(lamp.position) - place(i)) / lamp.range - 1) < 1e-5)
+            if (l.params.range > 0 &&
+                std::abs(length(vector(lamp.position) - place(i)) / lamp.range - 1) < 1e-5)
                 return {NAN, NAN, NAN};
         if (kind_.focus == Focus::half &&
             length(toLight(i) + normalized(vector(frame_.camera.position) - place(i))) < leastHalf)
@@ -188,7 +189,8 @@ class Shading : public Pixels {
     Vec3 place(size_t i) const { return frame_.slots[PEL_SLOT_POSITION].vec(i); }
     Vec3 toLight(size_t i) const {
         const PelLight& l = frame_.lights[0].params;
-        return l.type == PEL_LIGHT_DIRECTIONAL ? vector(l.toLight) : normalized(vector(l.position) - place(i));
+        return l.type == PEL_LIGHT_DIRECTIONAL ? vector(l.toLight)
+                                               : normalized(vector(l.position) - place(i));
     }
     void put(PelImageSlot slot, size_t i, Vec3 v) {
         for (int c = 0; c < 3; ++c) frame_.slots[slot].values[3 * i + size_t(c)] = float(v[c]);
@@ -223,7 +225,8 @@ Operation shading(const char* name, const char* range, Kind kind, const toleranc
     return operation(
         {name, range, kind.output == PEL_SLOT_OUT_THICKNESS ? Unit::length : Unit::absolute, limit,
          dimensions, points},
-        1, [kind](size_t, const std::vector<Point>& points) { return std::make_unique<Shading>(kind, points); },
+        1,
+        [kind](size_t, const std::vector<Point>& points) { return std::make_unique<Shading>(kind, points); },
         [kind](size_t, const Point& p) {
             const PelMaterial& m = base().materials.at(1 + uint32_t(p[material] * (materials - 1e-6)) * 2);
             std::string s = text("normal %.3g degrees from the ", turnOf(kind, p) / degree) +
@@ -277,8 +280,10 @@ std::vector<Operation> shadingOperations() {
                 tolerance::shadeSum, 200000),
         shading("specular, GGX", shine, kind(directional, PEL_SLOT_OUT_SPECULAR, Focus::half, true),
                 tolerance::shadeSum, 200000),
-        shading("ambient, constant", white, kind(constant, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm, 50000),
-        shading("ambient, harmonics", white, kind(harmonics, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm, 50000),
+        shading("ambient, constant", white, kind(constant, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm,
+                50000),
+        shading("ambient, harmonics", white, kind(harmonics, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm,
+                50000),
         shading("ambient, cube map", white, kind(cube, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm, 50000),
         shading("radiance, all terms", shine, kind(Lit::all, PEL_SLOT_RADIANCE, Focus::half),
                 tolerance::shadeSum, 200000)};

@@ -109,7 +109,8 @@ inline double between(double t, double low, double high) {
     return low + t * (high - low);
 }
 
-inline std::string text(const char* format, double a, double b = 0, double c = 0, double d = 0, double e = 0) {
+inline std::string text(const char* format, double a, double b = 0, double c = 0, double d = 0,
+                        double e = 0) {
     char buffer[256];
     std::snprintf(buffer, sizeof buffer, format, a, b, c, d, e);
     return buffer;

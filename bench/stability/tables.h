@@ -34,7 +34,8 @@ std::vector<double> truthOf(const std::vector<size_t>& chosen, Texel texel) {
 
 class CurvatureTable : public Case {
   public:
-    CurvatureTable(const PelCurvatureLutDesc& desc, reference::ProfilePtr profile, bool all, Profile ours = {})
+    CurvatureTable(const PelCurvatureLutDesc& desc, reference::ProfilePtr profile, bool all,
+                   Profile ours = {})
         : desc_(desc),
           profile_(std::move(profile)),
           ours_(std::move(ours)),
@@ -75,7 +76,8 @@ class CurvatureTable : public Case {
 class ShadowTable : public Case {
   public:
     // Widths and sharpening refer to the diffusion radius of desc, lengths of the profile to its own.
-    ShadowTable(const PelShadowLutDesc& desc, reference::ProfilePtr profile, bool all = true, Profile ours = {})
+    ShadowTable(const PelShadowLutDesc& desc, reference::ProfilePtr profile, bool all = true,
+                Profile ours = {})
         : desc_(desc),
           profile_(std::move(profile)),
           ours_(std::move(ours)),
@@ -84,7 +86,8 @@ class ShadowTable : public Case {
     }
     void move(Jitter& j) override {
         desc_.widthMin = j(desc_.widthMin), desc_.widthMax = j(desc_.widthMax);
-        desc_.diffusionRadius = j(desc_.diffusionRadius), desc_.sharpening = std::max(1.0f, j(desc_.sharpening));
+        desc_.diffusionRadius = j(desc_.diffusionRadius),
+        desc_.sharpening = std::max(1.0f, j(desc_.sharpening));
     }
     std::vector<float> measured() override { return texelsOf(Lut(device(), desc_), texels_); }
     std::vector<double> truth() override {

@@ -1,4 +1,5 @@
-// Processes that compile kernels beside this one. PoCL compiles one kernel at a time in a process, and keeps kernels on disk.
+// Processes that compile kernels beside this one. PoCL compiles one kernel at a time in a process, and keeps
+// kernels on disk.
 #pragma once
 #include <condition_variable>
 #include <mutex>
@@ -11,9 +12,9 @@
 
 namespace pellucid::cli {
 
-// Make it before the programs of a scene are built, and call finish() afterwards. Where building takes longer than a moment,
-// other cores run `pellucid warm-up` for the same scene; each process builds what no other has begun. After a second, a line
-// on standard error says what takes the time.
+// Make it before the programs of a scene are built, and call finish() afterwards. Where building takes longer
+// than a moment, other cores run `pellucid warm-up` for the same scene; each process builds what no other has
+// begun. After a second, a line on standard error says what takes the time.
 class BuildHelpers {
   public:
     // Without a scene no other process helps.

@@ -77,7 +77,8 @@ void Run::finish() {
     for (const auto& [key, value] : report.items()) {
         // Tables are for programs: people saw theirs on the way.
         if (value.is_array() && (value.empty() || value[0].is_object())) continue;
-        std::cout << key << ": " << (value.is_string() ? value.get<std::string>() : jsonText(value, -1)) << "\n";
+        std::cout << key << ": " << (value.is_string() ? value.get<std::string>() : jsonText(value, -1))
+                  << "\n";
     }
     std::cout << std::flush;
 }

@@ -171,7 +171,9 @@ void writePicture(const Arguments& a, const Rgb& one, const Rgb& two, const std:
             error[i] = std::max(error[i], std::abs(one.values[3 * i + c] - two.values[3 * i + c]));
     const float high = float(p99 > 0 ? p99 : 1e-3);
     const io::ToneMap tone{a.exposure};
-    const auto rgb = [&](const Rgb& p) { return io::Picture(p.width, p.height, io::toSrgb8(p.values, tone)); };
+    const auto rgb = [&](const Rgb& p) {
+        return io::Picture(p.width, p.height, io::toSrgb8(p.values, tone));
+    };
     io::Picture difference(one.width, one.height + 40, io::Srgb8{20, 20, 20});
     difference.paste(0, 0, io::colored(one.width, one.height, error, 0, high, shown));
     if (one.width >= 160)

@@ -22,7 +22,8 @@ io::Picture curvatureView(const sample::Scene& scene, const sample::HeadPose& po
     sample::GBufferOptions options;
     options.detail.enabled = false;
     const sample::GBuffer g = renderGBuffer(scene, camera, width, height, options);
-    io::Picture picture = io::colored(width, height, g.curvature.data, low, high, g.coverage.data, background);
+    io::Picture picture =
+        io::colored(width, height, g.curvature.data, low, high, g.coverage.data, background);
     const sample::Vec3 toEye = camera.forward() * -1.0;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
@@ -40,8 +41,9 @@ io::Picture curvatureView(const sample::Scene& scene, const sample::HeadPose& po
 
 }  // namespace
 
-void writeCurvaturePicture(const std::string& path, const io::MeshData& mesh, const std::vector<float>& values,
-                           float low, float high, char up, const std::string& unit) {
+void writeCurvaturePicture(const std::string& path, const io::MeshData& mesh,
+                           const std::vector<float>& values, float low, float high, char up,
+                           const std::string& unit) {
     sample::MeshView viewed;
     viewed.positions = mesh.positions;
     viewed.normals = mesh.normals;

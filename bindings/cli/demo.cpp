@@ -163,9 +163,9 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
     if (!a.noReference) {
         io::SceneFrame smooth(run.device(), view.gbuffer, smoothAndDull(view.scene), luts, view.shadowMaps);
         smooth.shade();
-        stages.measure(view.name + ": reference", pixels / (referenceStride * referenceStride), "pixels", 0, [&] {
-            shaded.reference = demoReference(run.device(), scene, head, view, smooth.radiance());
-        });
+        stages.measure(
+            view.name + ": reference", pixels / (referenceStride * referenceStride), "pixels", 0,
+            [&] { shaded.reference = demoReference(run.device(), scene, head, view, smooth.radiance()); });
         run.report["rms_against_reference"][view.name] = shaded.reference->rms;
     }
     const std::string& folder = a.output;

@@ -146,7 +146,8 @@ io::Picture curvatureMap(const DemoView& view) {
     for (size_t i = 0; i < curvature.size(); ++i)
         if (material[i] > 0) seen.push_back(curvature[i]);
     const float high = std::max(percentile(seen, 0.98), 1e-6f);
-    const io::Picture whole = io::colored(view.gbuffer.width, view.gbuffer.height, curvature, 0, high, material);
+    const io::Picture whole =
+        io::colored(view.gbuffer.width, view.gbuffer.height, curvature, 0, high, material);
     const io::Picture map = io::shrunk(cropped(whole, coveredPart(view)), sheetShrink);
     return io::withColorBar(map, 0, high, "1/mm");
 }
@@ -174,8 +175,9 @@ std::string writeParts(const std::string& folder, const DemoView& view, const io
     add("diffuse", developed(view, frame.output(PEL_SLOT_OUT_DIFFUSE)));
     add("transmission", developed(view, frame.output(PEL_SLOT_OUT_DEEP_SCATTER)));
     add("specular", developed(view, frame.output(PEL_SLOT_OUT_SPECULAR)));
-    add("thickness", io::colored(view.gbuffer.width, view.gbuffer.height, frame.output(PEL_SLOT_OUT_THICKNESS),
-                                 0, longest, view.gbuffer.channel("Material.I").pixels));
+    add("thickness",
+        io::colored(view.gbuffer.width, view.gbuffer.height, frame.output(PEL_SLOT_OUT_THICKNESS), 0, longest,
+                    view.gbuffer.channel("Material.I").pixels));
     tiles.back().picture = io::withColorBar(tiles.back().picture, 0, longest, "mm", 1);
     const io::Picture sheet = io::contactSheet(tiles, int(tiles.size()));
     const std::string file = folder + "/" + view.name + "_parts.png";

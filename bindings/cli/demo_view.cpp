@@ -97,7 +97,8 @@ std::vector<float> wetLine(const sample::GBuffer& g) {
 void addShadow(DemoView& view, const sample::Scene& mesh, const sample::GBuffer& g, const DemoLight& lamp,
                const sample::DirectionalLight& direction, float filterWidth, io::SceneLight& light) {
     sample::ShadowMap map;
-    view.shadowMapMilliseconds += timed([&] { map = sample::renderShadowMap(mesh, direction, shadowMapSize); });
+    view.shadowMapMilliseconds +=
+        timed([&] { map = sample::renderShadowMap(mesh, direction, shadowMapSize); });
     sample::Image wide;
     sample::WideShadowOptions filter;
     filter.filterWidth = filterWidth;
@@ -180,13 +181,15 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     }
 
     for (const DemoLight& lamp : request.lights) {
-        const sample::DirectionalLight direction{sample::headDirection(head.pose, lamp.azimuth, lamp.elevation)};
+        const sample::DirectionalLight direction{
+            sample::headDirection(head.pose, lamp.azimuth, lamp.elevation)};
         io::SceneLight light;
         light.light.type = PEL_LIGHT_DIRECTIONAL;
         copy(light.light.toLight, direction.toLight);
         std::ranges::copy(lamp.color, light.light.color);
         if (lamp.shadow)
-            addShadow(view, mesh, g, lamp, direction, view.scene.materials[0].material.shadowFilterWidth, light);
+            addShadow(view, mesh, g, lamp, direction, view.scene.materials[0].material.shadowFilterWidth,
+                      light);
         view.scene.lights.push_back(light);
     }
 
@@ -198,7 +201,8 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
         for (int c = 0; c < 3; ++c)
             view.scene.ambient.sh[i][c] = float(harmonics[size_t(i)][size_t(c)]) * request.skyScale;
     copy(view.scene.camera.position, camera.eye);
-    std::ranges::copy(camera.inverseViewProjection(aspect).toFloats(), view.scene.camera.inverseViewProjection);
+    std::ranges::copy(camera.inverseViewProjection(aspect).toFloats(),
+                      view.scene.camera.inverseViewProjection);
     return view;
 }
 

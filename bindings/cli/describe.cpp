@@ -112,8 +112,9 @@ std::string unknownOptions(const CLI::App& app) {
     for (const std::string& given : words) {
         const std::string word = given.substr(0, given.find('='));
         const std::string nearest = isOption(word) ? io::nearestWord(word, known) : "";
-        message += (message.empty() ? "" : "; ") + path + (isOption(word) ? " has no " : " does not expect ") +
-                   "'" + word + "'" + (nearest.empty() ? "" : "; did you mean " + nearest + "?");
+        message += (message.empty() ? "" : "; ") + path +
+                   (isOption(word) ? " has no " : " does not expect ") + "'" + word + "'" +
+                   (nearest.empty() ? "" : "; did you mean " + nearest + "?");
     }
     return message + "\nRun '" + path + " --help' for all options.";
 }

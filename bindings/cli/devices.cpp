@@ -33,9 +33,10 @@ nlohmann::ordered_json toJson(const PelDeviceInfo& d) {
 void print(const PelDeviceInfo& d, bool standard) {
     std::printf("%u: %s (%s)%s\n", d.index, d.name, typeName(d.type), standard ? ", the default" : "");
     std::printf("   %s; %s; driver %s\n", d.platform, d.version, d.driver);
-    std::printf("   %u units at %u MHz, %.1f GiB (%.1f GiB at once), %llu KiB local, %s memory\n", d.computeUnits,
-                d.clockMhz, double(d.globalMemoryBytes) / (1 << 30), double(d.maxAllocationBytes) / (1 << 30),
-                static_cast<unsigned long long>(d.localMemoryBytes / 1024), d.sharedMemory ? "shared" : "own");
+    std::printf(
+        "   %u units at %u MHz, %.1f GiB (%.1f GiB at once), %llu KiB local, %s memory\n", d.computeUnits,
+        d.clockMhz, double(d.globalMemoryBytes) / (1 << 30), double(d.maxAllocationBytes) / (1 << 30),
+        static_cast<unsigned long long>(d.localMemoryBytes / 1024), d.sharedMemory ? "shared" : "own");
     std::printf("   preferred float width %u, used %u\n", d.preferredFloatWidth, d.mathWidth);
     if (*d.quirks) std::printf("   quirks: %s\n", d.quirks);
 }

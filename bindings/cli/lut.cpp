@@ -222,7 +222,8 @@ void addLut(Command& app) {
         "faceworks)");
     shadow->addOption("--width-max", a->shadow.widthMax,
                       "widest penumbra, mm (default: 1000 times the narrowest; 100 with --preset faceworks)");
-    shadow->addOption("--sharpening", a->shadow.sharpening, "how much narrower the shadow gets, from 1")->showDefault();
+    shadow->addOption("--sharpening", a->shadow.sharpening, "how much narrower the shadow gets, from 1")
+        ->showDefault();
     shadow->addFlag("--open-ends", a->openEnds,
                     "rows are not rescaled to run from 0 to 1 (--preset faceworks does not either)");
     shadow->callback([a, shadow, shadowRadius] {

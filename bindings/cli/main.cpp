@@ -51,8 +51,9 @@ int main(int argc, char** argv) {
     CLI::App app("Subsurface scattering for deferred renderers on OpenCL", "pellucid");
     app.formatter(helpFormatter());  // before the subcommands, which inherit it
     app.require_subcommand(1);
-    app.set_version_flag("--version", std::to_string(PEL_VERSION_MAJOR) + "." + std::to_string(PEL_VERSION_MINOR) +
-                                          "." + std::to_string(PEL_VERSION_PATCH));
+    app.set_version_flag("--version", std::to_string(PEL_VERSION_MAJOR) + "." +
+                                          std::to_string(PEL_VERSION_MINOR) + "." +
+                                          std::to_string(PEL_VERSION_PATCH));
     Command root(app);
     for (const auto add : {addDevices, addCurvature, addLut, addProfile, addBatch, addShade, addReference,
                            addImport, addCompare, addWarmUp, addDemo, addBench, addView})
@@ -72,7 +73,8 @@ int main(int argc, char** argv) {
         // A mistyped option may be why a required one is missing.
         for (const std::string& word : app.remaining(true))
             if (word.starts_with("-")) return fail(exitWrongUse, unknownOptions(app).c_str());
-        return fail(exitWrongUse, (e.what() + std::string("\nRun with --help for more information.")).c_str());
+        return fail(exitWrongUse,
+                    (e.what() + std::string("\nRun with --help for more information.")).c_str());
     } catch (const UsageError& e) {
         return fail(exitWrongUse, e.what());
     } catch (const InputError& e) {

@@ -44,7 +44,8 @@ void reportMesh(Run& run, const PelMeshReport& r) {
     } oddities[] = {
         {"nonmanifold_edges", r.nonManifoldEdges,
          "edges belong to three or more triangles; all of them count"},
-        {"unreferenced_vertices", r.unreferencedVertices, "vertices are in no triangle; their curvature is 0"},
+        {"unreferenced_vertices", r.unreferencedVertices,
+         "vertices are in no triangle; their curvature is 0"},
         {"degenerate_triangles", r.degenerateTriangles, "triangles repeat an index and were skipped"},
         {"zero_length_edges", r.zeroLengthEdges, "edges have no length and were skipped"},
         {"nonfinite_positions", r.nonFinitePositions, "positions are not finite; edges to them were skipped"},

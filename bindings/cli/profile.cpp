@@ -106,7 +106,8 @@ void plot(const Arguments& a) {
             for (size_t i = 0; i < at.size(); ++i) {
                 const double level = std::log10(std::max(values[3 * i + c], 1e-300) / peak) / decades;
                 const int y = top + int(std::min(1.0, -level) * (height - top - bottom));
-                const int from = before < 0 ? y : std::min(before, y), to = before < 0 ? y : std::max(before, y);
+                const int from = before < 0 ? y : std::min(before, y),
+                          to = before < 0 ? y : std::max(before, y);
                 // R as a full line, P as a dashed one
                 if (level > -1 && (view == 0 || i / 8 % 2 == 0))
                     for (int p = from; p <= to; ++p) picture.paint(left + int(i), p, colors[c]);
@@ -173,7 +174,9 @@ void addProfile(Command& app) {
     };
     add("list", "The library of materials", list, false);
     add("show", "Widths, normal blend factors and values of one profile", show, true);
-    add("plot", "Draws R and P", plot, true)->addOption("-o,--output", a->output, ".png to write")->required();
+    add("plot", "Draws R and P", plot, true)
+        ->addOption("-o,--output", a->output, ".png to write")
+        ->required();
     Command* fitting = add("fit", "The best sum of K Gaussians", fit, true);
     fitting->addOption("--gaussians", a->gaussians, "how many")->check(inRange(1, 12))->showDefault();
     fitting->addOption("-o,--output", a->output, "profile file (.toml) to write");

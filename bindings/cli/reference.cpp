@@ -159,7 +159,8 @@ class Reference {
             for (size_t i = 0; i < halves.size(); ++i) halves[i] = float(halves[i] / A[i % 3]);
             io::writeNpy(a_.output, shape, halves);
         } else {
-            const std::vector<float> S = integrate(run_, a_, d, lit(d, body.material()), mesh_.mesh.positions);
+            const std::vector<float> S =
+                integrate(run_, a_, d, lit(d, body.material()), mesh_.mesh.positions);
             const size_t shape[] = {count, 3};
             io::writeNpy(a_.output, shape, S);
         }
@@ -225,7 +226,8 @@ class Reference {
             const RgbValues A = reflectanceOf(&material, albedos, pixels);
             const sample::WalkedLight light = walked(body, d, points, A, &material);
             const auto at = [&](size_t k) { return 3 * pixels[k / 3] + k % 3; };
-            store(layers.surface, [&](size_t k) { return (light.first[k] + light.second[k]) / 2 / A[k % 3]; });
+            store(layers.surface,
+                  [&](size_t k) { return (light.first[k] + light.second[k]) / 2 / A[k % 3]; });
             store(layers.first, [&](size_t k) { return light.first[k] / A[k % 3] * albedo(at(k)); });
             store(layers.second, [&](size_t k) { return light.second[k] / A[k % 3] * albedo(at(k)); });
             store(layers.meanFreePath, [&](size_t k) { return medium_.meanFreePath[k % 3]; });

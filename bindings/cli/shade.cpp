@@ -28,7 +28,8 @@ struct Arguments {
 };
 
 // The files to write beside radiance: those of the scene, and those of --outputs, named after -o.
-std::vector<std::pair<PelImageSlot, std::string>> outputFiles(const Arguments& a, const io::SceneFile& scene) {
+std::vector<std::pair<PelImageSlot, std::string>> outputFiles(const Arguments& a,
+                                                              const io::SceneFile& scene) {
     std::vector<std::pair<PelImageSlot, std::string>> files;
     const std::string stem = a.output.substr(0, a.output.rfind('.'));
     for (const auto& [slot, key] : io::outputKeys) {
@@ -229,7 +230,8 @@ void addShade(Command& app) {
     Command* command = app.addCommand("shade", "Shade a G-buffer");
     auto a = std::make_shared<Arguments>();
     command->addOption("gbuffer", a->gbuffer, "multi-layer EXR")->required();
-    command->addOption("--scene", a->scene, "scene file (TOML): lights, materials, which channel is what")->required();
+    command->addOption("--scene", a->scene, "scene file (TOML): lights, materials, which channel is what")
+        ->required();
     command
         ->addOption(
             "-o,--output", a->output,

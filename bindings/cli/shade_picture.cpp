@@ -34,18 +34,21 @@ void writeShadePicture(const std::string& path, const io::Image& gbuffer, const 
             const io::Picture map = io::colored(gbuffer.width, gbuffer.height, lengths, 0, longest, lengths);
             tiles.push_back({part, io::withColorBar(map, 0, longest, "length", 1)});
         } else {
-            tiles.push_back(
-                {part, io::Picture(gbuffer.width, gbuffer.height,
-                                   io::toSrgb8(slot == PEL_SLOT_RADIANCE ? frame.radiance() : frame.output(slot),
-                                               tone))});
+            tiles.push_back({part, io::Picture(gbuffer.width, gbuffer.height,
+                                               io::toSrgb8(slot == PEL_SLOT_RADIANCE ? frame.radiance()
+                                                                                     : frame.output(slot),
+                                                           tone))});
         }
     }
-    const io::Picture whole = tiles.size() == 1 ? tiles[0].picture : io::contactSheet(tiles, int(tiles.size()));
+    const io::Picture whole =
+        tiles.size() == 1 ? tiles[0].picture : io::contactSheet(tiles, int(tiles.size()));
     io::writeImage8(path, whole.width, whole.height, 3, whole.rgb);
 }
 
 void addToneOptions(Command& command, io::ToneMap& tone) {
-    command.addOption("--exposure", tone.exposure, "of pictures: multiplies radiance")->check(isPositive())->showDefault();
+    command.addOption("--exposure", tone.exposure, "of pictures: multiplies radiance")
+        ->check(isPositive())
+        ->showDefault();
     command
         .addOptionOf(
             "--tonemap",

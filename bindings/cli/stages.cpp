@@ -17,7 +17,8 @@ void Stages::add(const std::string& name, double wallMilliseconds, double device
     if (stages_.empty())
         std::fprintf(stderr, "%-38s %9s %10s %8s %8s  %s\n", "stage", "wall ms", "device ms", "MB", "M/s",
                      "of");
-    const Stage& s = stages_.emplace_back(Stage{name, unit, wallMilliseconds, deviceMilliseconds, count, bytes});
+    const Stage& s =
+        stages_.emplace_back(Stage{name, unit, wallMilliseconds, deviceMilliseconds, count, bytes});
     std::fprintf(stderr, "%-38s %9.1f", name.c_str(), s.wall);
     // Blank instead of 0 if a stage has no such value.
     s.device > 0 ? std::fprintf(stderr, " %10.2f", s.device) : std::fprintf(stderr, " %10s", "");

@@ -94,7 +94,8 @@ std::vector<uint32_t> idsOf(const std::string& path, const io::PartedMesh& mesh,
 
 }  // namespace
 
-ReferenceMesh loadReferenceMesh(const std::string& path, int subdivide, const std::vector<std::string>& parts) {
+ReferenceMesh loadReferenceMesh(const std::string& path, int subdivide,
+                                const std::vector<std::string>& parts) {
     ReferenceMesh out;
     if (io::extensionOf(path) == "obj" && (subdivide > 0 || !parts.empty())) {
         io::PartedMesh parted = io::loadParts(path, subdivide);

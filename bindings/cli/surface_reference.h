@@ -24,6 +24,7 @@ struct ReferenceMesh {
 // `subdivide` levels: Catmull-Clark of OBJ files, Loop of others. `parts`: groups of an OBJ file that
 // scatter, all others just cast shadows; none: all scatter. Either one GROUP, for all materials, or ID=GROUP
 // for each material that has a body of its own.
-ReferenceMesh loadReferenceMesh(const std::string& path, int subdivide, const std::vector<std::string>& parts);
+ReferenceMesh loadReferenceMesh(const std::string& path, int subdivide,
+                                const std::vector<std::string>& parts);
 
 }  // namespace pellucid::cli

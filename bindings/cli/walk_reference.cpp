@@ -50,8 +50,9 @@ sample::Medium mediumOf(const WalkArguments& walk, const Profile& profile, doubl
     RgbValues lengths;
     // The line spread of Burley's profile of length d has a standard deviation of sqrt(7) d.
     for (int c = 0; c < 3; ++c) lengths[c] = scale * info.width[c] / std::sqrt(7.0);
-    return burleyMedium(lengths, reflectance,
-                        walk.boundary == "fresnel" ? sample::Boundary::Fresnel : sample::Boundary::IndexMatched);
+    return burleyMedium(
+        lengths, reflectance,
+        walk.boundary == "fresnel" ? sample::Boundary::Fresnel : sample::Boundary::IndexMatched);
 }
 
 sample::WalkedLight walk(Run& run, const WalkArguments& walk, const sample::WalkBody& body,
@@ -89,7 +90,8 @@ std::vector<float> meanCurvatureAt(Run& run, const io::MeshData& mesh,
     return out;
 }
 
-std::vector<float> thicknessAt(const sample::WalkBody& body, const std::vector<sample::SurfacePoint>& points) {
+std::vector<float> thicknessAt(const sample::WalkBody& body,
+                               const std::vector<sample::SurfacePoint>& points) {
     const sample::Bounds& bounds = body.body().bounds();
     const double extent = length(bounds.high - bounds.low);
     std::vector<float> out;
@@ -97,7 +99,8 @@ std::vector<float> thicknessAt(const sample::WalkBody& body, const std::vector<s
         const sample::Surface s = surfaceAt(body.lit().mesh(), p);
         sample::Vec3 normal;
         const double start = 1e-6 * extent;
-        const sample::Hit hit = body.body().firstHit({s.position - s.normal * start, -s.normal}, extent, normal);
+        const sample::Hit hit =
+            body.body().firstHit({s.position - s.normal * start, -s.normal}, extent, normal);
         out.push_back(float(std::min(hit.distance + start, extent)));
     }
     return out;

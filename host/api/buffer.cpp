@@ -40,7 +40,8 @@ PelError pelBufferGetCl(PelBuffer buffer, void** clMem) {
     return entry([&] { output(clMem, "clMem") = fromHandle<Buffer>(buffer)->memory().get(); });
 }
 
-PelError pelBufferRead(PelBuffer buffer, size_t offset, size_t bytes, void* destination, const PelSubmit* submit) {
+PelError pelBufferRead(PelBuffer buffer, size_t offset, size_t bytes, void* destination,
+                       const PelSubmit* submit) {
     return entry([&] {
         const Ref<Buffer> b = fromHandle<Buffer>(buffer);
         b->checkRange(offset, bytes, "the read");

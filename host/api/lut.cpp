@@ -9,8 +9,8 @@ using namespace pel;
 
 namespace {
 
-// Makes a table from a description by `integrate`. `olderHeaders`: defaults for fields that older headers lack; the first
-// headers had the fields of FaceWorks.
+// Makes a table from a description by `integrate`. `olderHeaders`: defaults for fields that older headers
+// lack; the first headers had the fields of FaceWorks.
 template <class Desc, class Integrate>
 PelError createLut(PelDevice device, const Desc* desc, const Desc& olderHeaders, const char* name,
                    PelLut* lut, const PelSubmit* submit, Integrate&& integrate) {
@@ -51,7 +51,8 @@ PelError pelCurvatureLutCreate(PelDevice device, const PelCurvatureLutDesc* desc
                      });
 }
 
-PelError pelShadowLutCreate(PelDevice device, const PelShadowLutDesc* desc, PelLut* lut, const PelSubmit* submit) {
+PelError pelShadowLutCreate(PelDevice device, const PelShadowLutDesc* desc, PelLut* lut,
+                            const PelSubmit* submit) {
     return createLut(device, desc, pelShadowLutDescFaceWorks(), "PelShadowLutDesc", lut, submit,
                      integrateShadowLut);
 }

@@ -58,8 +58,10 @@ PelError pelProfileCreateDipole(const float absorption[3], const float reducedSc
     });
 }
 
-PelError pelProfileCreateTable(const float* distances, const float* values, uint32_t count, PelProfile* profile) {
-    return entry([&] { handOut(profile, "profile", [&] { return Profile::table(distances, values, count); }); });
+PelError pelProfileCreateTable(const float* distances, const float* values, uint32_t count,
+                               PelProfile* profile) {
+    return entry(
+        [&] { handOut(profile, "profile", [&] { return Profile::table(distances, values, count); }); });
 }
 
 void pelProfileRetain(PelProfile profile) {

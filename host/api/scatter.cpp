@@ -57,7 +57,8 @@ PelError pelScatterExecute(PelScatter scatter, const PelScatterParams* params, c
             return ImageView();
         };
         const ScatterImages images{view(irradiance, "irradiance", true), view(positions, "positions", false),
-                                   view(depth, "depth", false), view(ids, "ids", false), view(out, "out", true)};
+                                   view(depth, "depth", false), view(ids, "ids", false),
+                                   view(out, "out", true)};
         Submission submission(object->device(), submit);
         object->execute(full, images);
         submission.finish();

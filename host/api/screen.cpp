@@ -4,9 +4,10 @@
 
 using namespace pel;
 
-PelError pelScreenCurvature(PelDevice device, const PelScreenCurvatureParams* params, const PelImageDesc* normals,
-                            const PelImageDesc* positions, const PelImageDesc* depth, const PelImageDesc* ids,
-                            const PelImageDesc* curvature, const PelSubmit* submit) {
+PelError pelScreenCurvature(PelDevice device, const PelScreenCurvatureParams* params,
+                            const PelImageDesc* normals, const PelImageDesc* positions,
+                            const PelImageDesc* depth, const PelImageDesc* ids, const PelImageDesc* curvature,
+                            const PelSubmit* submit) {
     return entry([&] {
         const Ref<Device> on = fromHandle<Device>(device);
         const auto defaults = pelScreenCurvatureParamsDefaults();

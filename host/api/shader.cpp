@@ -72,7 +72,8 @@ PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t c
     return entry([&] { fromHandle<Shader>(shader)->setLights(lights, count); });
 }
 
-PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot slot, const PelImageDesc* image) {
+PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot slot,
+                                const PelImageDesc* image) {
     return entry([&] { fromHandle<Shader>(shader)->setLightImage(light, slot, image); });
 }
 

@@ -14,7 +14,8 @@ ImageView viewOf(const PelImageDesc* desc, const TextureScatter& object, const c
 
 }  // namespace
 
-PelError pelTextureScatterCreate(PelDevice device, const PelTextureScatterDesc* desc, PelTextureScatter* scatter) {
+PelError pelTextureScatterCreate(PelDevice device, const PelTextureScatterDesc* desc,
+                                 PelTextureScatter* scatter) {
     return entry([&] {
         handOut(scatter, "scatter", [&] {
             return TextureScatter::create(
@@ -35,8 +36,8 @@ PelError pelTextureScatterSetPositions(PelTextureScatter scatter, const PelVerte
                                        const PelSubmit* submit) {
     return entry([&] {
         const Ref<TextureScatter> object = fromHandle<TextureScatter>(scatter);
-        const VertexView view =
-            checkedView(positions, "positions", object->device(), object->vertices(), 3, "the texture's mesh");
+        const VertexView view = checkedView(positions, "positions", object->device(), object->vertices(), 3,
+                                            "the texture's mesh");
         Submission submission(object->device(), submit);
         object->setPositions(view);
         submission.finish();

@@ -19,7 +19,8 @@ struct Use {
 Use wanted(cl_device_id device) {
     const char* text = std::getenv("PELLUCID_CACHE");
     const std::string value = text ? text : "";
-    // PoCL compiles everything again to make a binary, but loads one faster than it finds a program in its cache.
+    // PoCL compiles everything again to make a binary, but loads one faster than it finds a program in its
+    // cache.
     if (value.empty() || value == "auto")
         return {!keepsPrograms(device) || isPocl(device), !keepsPrograms(device)};
     if (value == "on" || value == "1") return {true, true};
@@ -33,7 +34,8 @@ uint64_t limitBytes() {
     char* end = nullptr;
     const unsigned long long value = std::strtoull(text, &end, 10);
     if (*end || *text < '0' || *text > '9' || value > (1ull << 40))
-        invalidArgument("PELLUCID_CACHE_MB is \"", text, "\"; it can be a number of MiB, such as ", defaultLimit);
+        invalidArgument("PELLUCID_CACHE_MB is \"", text, "\"; it can be a number of MiB, such as ",
+                        defaultLimit);
     return uint64_t(value) << 20;
 }
 
@@ -101,7 +103,8 @@ bool BinaryCache::store(const Program& program, const std::string& source, const
     if (!files_ || !stores_) return false;
     // A program of a context with several devices has an entry for each.
     cl_uint count = 0;
-    if (clGetProgramInfo(program.get(), CL_PROGRAM_NUM_DEVICES, sizeof count, &count, nullptr) != CL_SUCCESS ||
+    if (clGetProgramInfo(program.get(), CL_PROGRAM_NUM_DEVICES, sizeof count, &count, nullptr) !=
+            CL_SUCCESS ||
         !count)
         return false;
     std::vector<cl_device_id> devices(count);

@@ -18,8 +18,8 @@ class BinaryFiles {
     // The oldest files are deleted when there are more than `limit` bytes.
     BinaryFiles(std::filesystem::path folder, uint64_t limit) : folder_(std::move(folder)), limit_(limit) {}
 
-    // The binary stored under this name. Empty if the file is missing or incomplete, or if others than this user
-    // and root may write to the folder: it is machine code that this process will run.
+    // The binary stored under this name. Empty if the file is missing or incomplete, or if others than this
+    // user and root may write to the folder: it is machine code that this process will run.
     std::optional<std::string> load(const Digest& name) const;
     bool store(const Digest& name, const std::string& binary) const;
 

@@ -56,9 +56,10 @@ bool BuildScope::launches(cl_program program, const char* kernel, cl_command_que
     cl_device_id device = nullptr;
     check(clGetCommandQueueInfo(queue, CL_QUEUE_DEVICE, sizeof device, &device, nullptr),
           "clGetCommandQueueInfo");
-    const std::string options = queryString("clGetProgramBuildInfo", [&](size_t room, void* to, size_t* size) {
-        return clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_OPTIONS, room, to, size);
-    });
+    const std::string options =
+        queryString("clGetProgramBuildInfo", [&](size_t room, void* to, size_t* size) {
+            return clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_OPTIONS, room, to, size);
+        });
     return claimBuild(std::string(kernel) + options);
 }
 

@@ -1,5 +1,6 @@
-// A warm-up that several processes share. PoCL compiles one kernel at a time in a process, and keeps kernels on
-// disk. PELLUCID_BUILD_SHARE names a folder; each process that sees the variable builds what no other has begun.
+// A warm-up that several processes share. PoCL compiles one kernel at a time in a process, and keeps kernels
+// on disk. PELLUCID_BUILD_SHARE names a folder; each process that sees the variable builds what no other has
+// begun.
 #pragma once
 #include <string>
 

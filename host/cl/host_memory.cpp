@@ -70,7 +70,8 @@ Memory createInHostMemory(cl_context context, size_t bytes, const void* initial,
     auto block = std::make_unique<Block>(bytes, zeros && !initial);
     if (initial) std::memcpy(block->at(), initial, bytes);
     cl_int code = CL_SUCCESS;
-    Memory memory(clCreateBuffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, block->at(), &code));
+    Memory memory(
+        clCreateBuffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, block->at(), &code));
     if (code != CL_SUCCESS) check(code, text("clCreateBuffer(", bytes, " bytes)").c_str());
     const auto giveBack = [](cl_mem, void* user) { delete static_cast<Block*>(user); };
     code = clSetMemObjectDestructorCallback(memory.get(), +giveBack, block.get());

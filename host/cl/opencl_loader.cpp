@@ -1,7 +1,7 @@
-// Stands in for libOpenCL: the functions of OpenCL that Pellucid calls. Only clGetPlatformIDs needs a library,
-// which is the system's loader or a driver. Every OpenCL object begins with a pointer to its driver's table of
-// functions (cl_khr_icd), and all other calls use that table, as loaders do. So objects of a host's own loader
-// work, too.
+// Stands in for libOpenCL: the functions of OpenCL that Pellucid calls. Only clGetPlatformIDs needs a
+// library, which is the system's loader or a driver. Every OpenCL object begins with a pointer to its
+// driver's table of functions (cl_khr_icd), and all other calls use that table, as loaders do. So objects of
+// a host's own loader work, too.
 #include "cl/opencl_loader.h"
 
 #define CL_USE_DEPRECATED_OPENCL_1_0_APIS  // the tables list them
@@ -75,7 +75,8 @@ Library find() {
         void* const library = system::openLibrary(name, why);
         const GetPlatforms entry = library ? entryOf(library) : nullptr;
         if (!entry) {
-            found.why += (found.why.empty() ? "" : "; ") + (library ? name + " is no library of OpenCL" : why);
+            found.why +=
+                (found.why.empty() ? "" : "; ") + (library ? name + " is no library of OpenCL" : why);
             continue;
         }
         cl_uint count = 0;

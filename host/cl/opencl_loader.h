@@ -5,8 +5,8 @@
 
 namespace pel::cl {
 
-// Why no library was found that lists OpenCL's devices, with what to do; "" if one was found, or if this build
-// links with one.
+// Why no library was found that lists OpenCL's devices, with what to do; "" if one was found, or if this
+// build links with one.
 std::string whyNoLoader();
 
 }  // namespace pel::cl

@@ -60,9 +60,10 @@ bool whole(const fs::path& path, uint64_t size) {
 // PoCL's folders: two letters, then the rest of a program's hash; in that program.bc, and a .so for each
 // kernel and size.
 unsigned removeDamagedPrograms(const fs::path& folder) {
-    // Skips files that were complete at the last check and have not been written since, and files that another
-    // process may be writing. A large cache takes long to walk: programs that nobody used for a day before the
-    // last check are skipped whole, since PoCL touches last_accessed before it writes into a program's folder.
+    // Skips files that were complete at the last check and have not been written since, and files that
+    // another process may be writing. A large cache takes long to walk: programs that nobody used for a day
+    // before the last check are skipped whole, since PoCL touches last_accessed before it writes into a
+    // program's folder.
     const fs::path stamp = folder / "checked";
     const auto now = fs::file_time_type::clock::now();
     std::error_code error;

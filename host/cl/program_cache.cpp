@@ -10,7 +10,10 @@
 namespace pel::cl {
 
 ProgramCache::ProgramCache(Context context, cl_device_id device, uint32_t mathWidth)
-    : context_(std::move(context)), device_(device), mathWidth_(mathWidth), binaries_(context_.get(), device) {}
+    : context_(std::move(context)),
+      device_(device),
+      mathWidth_(mathWidth),
+      binaries_(context_.get(), device) {}
 
 std::string ProgramCache::optionsOf(const ProgramKey& key) const {
     Defines all = key.defines;

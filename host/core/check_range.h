@@ -9,12 +9,14 @@ inline void checkRange(std::string_view structure, const char* field, float valu
     if (!range.holds(value))
         invalidArgument(structure, ".", field, " is ", value, "; it must be ", describe(range));
 }
-inline void checkRange(std::string_view structure, const char* field, uint32_t value, const FieldRange& range) {
+inline void checkRange(std::string_view structure, const char* field, uint32_t value,
+                       const FieldRange& range) {
     if (!range.holds(float(value)))
         invalidArgument(structure, ".", field, " is ", value, "; it must be ", describe(range));
 }
 template <size_t N>
-void checkRange(std::string_view structure, const char* field, const float (&values)[N], const FieldRange& range) {
+void checkRange(std::string_view structure, const char* field, const float (&values)[N],
+                const FieldRange& range) {
     for (const float value : values) checkRange(structure, field, value, range);
 }
 

@@ -64,7 +64,8 @@ Device::~Device() {
 
 cl::Queue Device::anotherQueue() const {
     cl_int code = CL_SUCCESS;
-    cl::Queue queue(clCreateCommandQueue(context_.get(), id_, profiling_ ? CL_QUEUE_PROFILING_ENABLE : 0, &code));
+    cl::Queue queue(
+        clCreateCommandQueue(context_.get(), id_, profiling_ ? CL_QUEUE_PROFILING_ENABLE : 0, &code));
     cl::check(code, "clCreateCommandQueue");
     return queue;
 }
@@ -217,7 +218,8 @@ double eventMilliseconds(const cl::Event& event) {
     if (!event ||
         clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_START, sizeof start, &start, nullptr) !=
             CL_SUCCESS ||
-        clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr) != CL_SUCCESS ||
+        clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr) !=
+            CL_SUCCESS ||
         end < start)
         return 0;
     return double(end - start) * 1e-6;

@@ -22,11 +22,11 @@ class Device final : public Object {
     cl_command_queue queue() const { return queue_.get(); }
     cl::ProgramCache& programs() { return programs_; }
 
-    // Enqueues on the in-order queue, or on another one of this context, and counts the launch. Returns its event
-    // (empty for an
-    // empty range).
+    // Enqueues on the in-order queue, or on another one of this context, and counts the launch. Returns its
+    // event (empty for an empty range).
     cl::Event launch(cl::Launch& launch, const cl::Range& range, cl_command_queue queue = nullptr);
-    // For work that a call waits for: the device's own queue may wait for an event that the caller sets later.
+    // For work that a call waits for: the device's own queue may wait for an event that the caller sets
+    // later.
     cl::Queue anotherQueue() const;
 
     // Device memory: a copy of `initial`, or uninitialised.
@@ -38,9 +38,8 @@ class Device final : public Object {
               cl_command_queue queue = nullptr);
     void write(cl_mem memory, size_t offset, size_t bytes, const void* source, bool blocking,
                cl_command_queue queue = nullptr);
-    // The first bytes of memory that no queued command uses, at once: on another queue, and with shared memory
-    // without a
-    // transfer.
+    // The first bytes of memory that no queued command uses, at once: on another queue, and with shared
+    // memory without a transfer.
     void readAside(cl_mem memory, size_t bytes, void* destination) {
         exchange(memory, bytes, nullptr, destination);
     }

@@ -63,8 +63,9 @@ class HandleTable {
     Slot& visit(const void* pointer, Kind kind) {
         if (!pointer) invalidArgument("a ", kindName(kind), " is needed here, not NULL");
         const uint64_t handle = reinterpret_cast<uintptr_t>(pointer);
-        Slot* slot = (handle & 1) && handle >> markShift == mark ? find(uint32_t(handle >> 1 & mask(placeBits)))
-                                                                 : nullptr;
+        Slot* slot = (handle & 1) && handle >> markShift == mark
+                         ? find(uint32_t(handle >> 1 & mask(placeBits)))
+                         : nullptr;
         if (!slot) unknown(handle, kind);
         uint64_t counts = slot->counts.load(std::memory_order_relaxed);
         do {
@@ -136,7 +137,8 @@ class HandleTable {
         Object* const object = slot.object;
         {
             std::lock_guard lock(mutex_);
-            const uint32_t place = uint32_t(slot.handle.load(std::memory_order_relaxed) >> 1 & mask(placeBits));
+            const uint32_t place =
+                uint32_t(slot.handle.load(std::memory_order_relaxed) >> 1 & mask(placeBits));
             slot.handle.store(0, std::memory_order_relaxed);
             slot.object = nullptr;
             ++slot.generation;

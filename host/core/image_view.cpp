@@ -41,7 +41,8 @@ ImageView makeImageView(const PelImageDesc* given, Device& device, const char* w
         invalidArgument("the ", what, " image is ", desc.width, " x ", desc.height,
                         "; both must be between 1 and 16384");
     ImageView view;
-    view.buffer = about([&] { return fromHandle<Buffer>(desc.buffer); }, "the buffer of the ", what, " image");
+    view.buffer =
+        about([&] { return fromHandle<Buffer>(desc.buffer); }, "the buffer of the ", what, " image");
     if (&view.buffer->device() != &device)
         invalidArgument("the buffer of the ", what, " image belongs to another PelDevice than the shader");
     view.format = desc.format;

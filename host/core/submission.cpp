@@ -14,8 +14,9 @@ void Event::wait() const {
 
 cl_int Event::status() const {
     cl_int status = CL_QUEUED;
-    cl::check(clGetEventInfo(event_.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr),
-              "clGetEventInfo");
+    cl::check(
+        clGetEventInfo(event_.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr),
+        "clGetEventInfo");
     return status;
 }
 

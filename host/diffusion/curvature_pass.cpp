@@ -85,7 +85,9 @@ class CurvaturePass final : public Pass {
                        rows = (work.rows.end - work.rows.begin) * PEL_TILE_HEIGHT,
                        lanes = work.device.info().mathWidth;
         cl::Launch launch(program(), "mean_curvature");
-        launch.arg(constants_.memory()).arg(memoryOf(normals_)).arg(memoryOf(positions_ ? positions_ : depth_));
+        launch.arg(constants_.memory())
+            .arg(memoryOf(normals_))
+            .arg(memoryOf(positions_ ? positions_ : depth_));
         launch.arg(memoryOf(ids_)).arg(out_->memory());
         launch.arg(cl_uint(work.rows.begin * PEL_TILE_HEIGHT)).arg(cl_uint(rows)).arg(cl_uint(outRow_));
         work.launch(launch, cl::folded(size_t((width + lanes - 1) / lanes) * rows, PEL_CURVATURE_GROUP));

@@ -59,7 +59,8 @@ class GatherPass final : public Pass {
 
     void addStats(Device&, const ShaderPlan& plan, uint64_t, PelShaderStats& stats) const override {
         const ScatterCounts counts = scatter_->counts();
-        addScatterCounts(counts, form == Form::disk ? PEL_SCATTERING_SCREEN : PEL_SCATTERING_SEPARABLE, stats);
+        addScatterCounts(counts, form == Form::disk ? PEL_SCATTERING_SCREEN : PEL_SCATTERING_SEPARABLE,
+                         stats);
         if (std::ranges::all_of(plan.state.materials, [](const auto& m) {
                 return !takes(m.second) || m.second.given.scattering == PEL_SCATTERING_AUTO;
             }))

@@ -16,7 +16,8 @@ namespace {
 // As the device reads a table.
 Rgb densityAt(const ProfileNodes& nodes, float distance2) {
     const int32_t last = int32_t((nodes.table.nodes - 1) << PEL_PROFILE_NODE_BITS) - 1;
-    const int32_t bits = std::clamp(std::bit_cast<int32_t>(distance2) - int32_t(nodes.table.firstBits), 0, last);
+    const int32_t bits =
+        std::clamp(std::bit_cast<int32_t>(distance2) - int32_t(nodes.table.firstBits), 0, last);
     const size_t at = 4 * size_t(bits >> PEL_PROFILE_NODE_BITS);
     const double f = double(bits & ((1 << PEL_PROFILE_NODE_BITS) - 1)) / (1 << PEL_PROFILE_NODE_BITS);
     Rgb density;
@@ -148,8 +149,9 @@ std::vector<cl::ProgramKey> GatherScatter::programs(const GatherImages& images) 
         {"PEL_WEIGHT_COMPONENTS", text(images.weight ? images.weight.info().components : 0)}};
     const cl::Defines outputs{
         {"PEL_WIDTH", one}, {"PEL_FORMAT_IRRADIANCE", code(of.irradiance)}, {"PEL_FORMAT_OUT", code(of.out)}};
-    return {{{"diffusion/gather_surface.cl"}, inputs},
-            {{form_ == Form::disk ? "diffusion/scatter_disk.cl" : "diffusion/scatter_separable.cl"}, outputs}};
+    return {
+        {{"diffusion/gather_surface.cl"}, inputs},
+        {{form_ == Form::disk ? "diffusion/scatter_disk.cl" : "diffusion/scatter_separable.cl"}, outputs}};
 }
 
 void GatherScatter::enqueue(const GatherImages& images, std::vector<cl::Event>& events) {
@@ -161,14 +163,17 @@ void GatherScatter::enqueue(const GatherImages& images, std::vector<cl::Event>& 
     };
     device_->fill(counters_.get(), 0, PEL_DIFFUSION_COUNTERS * sizeof(cl_uint), 0);
     cl::Launch points(programs[SURFACE], "gather_points");
-    points.arg(constants_.memory()).arg(memoryOf(of.irradiance)).arg(memoryOf(of.positions ? of.positions : of.depth));
+    points.arg(constants_.memory())
+        .arg(memoryOf(of.irradiance))
+        .arg(memoryOf(of.positions ? of.positions : of.depth));
     points.arg(memoryOf(of.ids)).arg(memoryOf(images.weight)).arg(points_).arg(counters_);
     launch(points, size_t(PEL_ROW_PARTS) * frame_.height);
     const size_t tiles = size_t(frame_.tilesX) * frame_.tilesY;
     cl::Launch areas(programs[SURFACE], "gather_areas");
     areas.arg(constants_.memory()).arg(points_).arg(described_).arg(tiles_).arg(counters_);
     launch(areas, tiles);
-    const size_t items = std::min<size_t>(tiles, 64 * size_t(device_->info().computeUnits)) * PEL_DIFFUSION_GROUP;
+    const size_t items =
+        std::min<size_t>(tiles, 64 * size_t(device_->info().computeUnits)) * PEL_DIFFUSION_GROUP;
     const auto gather = [&](const char* kernel, auto&& arguments) {
         cl::Launch one(programs[GATHER], kernel);
         one.arg(constants_.memory()).arg(points_).arg(described_).arg(taps_).arg(nodes_).arg(tiles_);

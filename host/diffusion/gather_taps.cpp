@@ -25,8 +25,8 @@ class Shares {
     // by 134 in red, and by 171 if channels count alike.
     double place(double part) const {
         const auto least = [](const Rgb& s) { return std::min({s[0], s[1], s[2]}); };
-        const auto after =
-            std::partition_point(shares_.begin(), shares_.end(), [&](const Rgb& s) { return least(s) < part; });
+        const auto after = std::partition_point(shares_.begin(), shares_.end(),
+                                                [&](const Rgb& s) { return least(s) < part; });
         const size_t i = std::clamp<size_t>(size_t(after - shares_.begin()), 1, shares_.size() - 1);
         const double low = least(shares_[i - 1]), high = least(shares_[i]);
         const double t = high > low ? std::clamp((part - low) / (high - low), 0.0, 1.0) : 0;

@@ -124,7 +124,8 @@ PelLightMap describe(const ShaderLight& light, uint32_t number, Matrix m, const 
 
 }  // namespace
 
-std::vector<LightMap> lightMaps(const std::vector<ShaderLight>& lights, const float origin[3], double coarsest) {
+std::vector<LightMap> lightMaps(const std::vector<ShaderLight>& lights, const float origin[3],
+                                double coarsest) {
     std::vector<LightMap> all;
     for (uint32_t i = 0; i < lights.size(); ++i) {
         const ShaderLight& light = lights[i];
@@ -146,9 +147,9 @@ std::vector<LightMap> lightMaps(const std::vector<ShaderLight>& lights, const fl
             if (!*cascade.map) continue;
             Matrix m;
             std::copy_n(*cascade.worldToShadow, 16, m.begin());
-            LightMap map{
-                describe(light, i, m, *cascade.map, cascade.map->width, cascade.map->height, origin, coarsest),
-                *cascade.map};
+            LightMap map{describe(light, i, m, *cascade.map, cascade.map->width, cascade.map->height, origin,
+                                  coarsest),
+                         *cascade.map};
             map.constants.finer = k;
             all.push_back(map);
         }

@@ -67,7 +67,8 @@ void LightSpace::describeLevels() {
     const auto sameLevels = [](const PelLightMap& a, const PelLightMap& b) {
         return !std::memcmp(a.level, b.level, sizeof a.level);
     };
-    if (bytes != pyramidBytes_ || !std::equal(now.begin(), now.end(), sent_.begin(), sent_.end(), sameLevels)) {
+    if (bytes != pyramidBytes_ ||
+        !std::equal(now.begin(), now.end(), sent_.begin(), sent_.end(), sameLevels)) {
         pyramid_ = cl::Memory();
         pyramidBytes_ = 0;
         pyramid_ = device_->allocateZeros(bytes);  // no light outside of the maps
@@ -177,7 +178,12 @@ void LightSpace::enqueueHidden(const ScreenMemory& screen, std::vector<cl::Event
         .arg(screen.nodes)
         .arg(screen.tiles)
         .arg(screen.sums);
-    hidden.arg(parts_).arg(mapUpload_.memory()).arg(cl_uint(maps_.size())).arg(pyramid_).arg(hiddenMemory_).arg(counters_);
+    hidden.arg(parts_)
+        .arg(mapUpload_.memory())
+        .arg(cl_uint(maps_.size()))
+        .arg(pyramid_)
+        .arg(hiddenMemory_)
+        .arg(counters_);
     const size_t groups = std::min<size_t>(screen.tileCount, 64 * size_t(device_->info().computeUnits));
     events.push_back(
         device_->launch(hidden, {{groups * PEL_DIFFUSION_GROUP, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}}));
@@ -187,7 +193,11 @@ void LightSpace::enqueueSums(const ScatterImages& images, const ScreenMemory& sc
                              std::vector<cl::Event>& events) {
     cl::Launch scatter(screen.program, "scatter_light");
     scatter.arg(screen.frame).arg(screen.pyramid).arg(screen.tables).arg(screen.nodes).arg(parts_);
-    scatter.arg(mapUpload_.memory()).arg(cl_uint(maps_.size())).arg(pyramid_).arg(images.out.buffer->memory()).arg(counters_);
+    scatter.arg(mapUpload_.memory())
+        .arg(cl_uint(maps_.size()))
+        .arg(pyramid_)
+        .arg(images.out.buffer->memory())
+        .arg(counters_);
     const size_t groups = std::min<size_t>(screen.tileCount, 64 * size_t(device_->info().computeUnits));
     events.push_back(
         device_->launch(scatter, {{groups * PEL_DIFFUSION_GROUP, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}}));

@@ -35,7 +35,8 @@ class LightSpace {
     // longer.
     void addFiles(cl::ProgramKey& program) const;
     // Builds the lights' pyramids and classifies tiles; after the screen's pyramid and its tile flags.
-    void enqueuePyramids(const ScatterImages& images, const ScreenMemory& screen, std::vector<cl::Event>& events);
+    void enqueuePyramids(const ScatterImages& images, const ScreenMemory& screen,
+                         std::vector<cl::Event>& events);
     // Sums occluded light; after the screen's sums by levels and before its last step.
     void enqueueHidden(const ScreenMemory& screen, std::vector<cl::Event>& events);
     const cl::Memory& hidden() const { return hiddenMemory_; }
@@ -44,7 +45,8 @@ class LightSpace {
     LightCounts counts();
     static uint64_t bytesFor(const std::vector<ShaderLight>& lights, bool hidden);
     size_t bytes() const {
-        return pyramidBytes_ + seenBytes_ + hiddenBytes_ + 2 * cellBytes_ + maps_.size() * sizeof(PelLightMap);
+        return pyramidBytes_ + seenBytes_ + hiddenBytes_ + 2 * cellBytes_ +
+               maps_.size() * sizeof(PelLightMap);
     }
 
   private:

@@ -14,7 +14,8 @@ namespace {
 Rgb lightBetween(const ProfileShape& shape, double begin, double end) {
     constexpr double points[] = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
                                  0.8611363115940526};
-    constexpr double weights[] = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461, 0.3478548451374538};
+    constexpr double weights[] = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
+                                  0.3478548451374538};
     const double middle = std::log(begin * end) / 2, half = std::log(end / begin) / 2;
     Rgb sum{};
     for (int k = 0; k < 4; ++k) {
@@ -120,7 +121,8 @@ std::vector<Rgb> gaussiansOf(const Density& density, double widest, double reach
         for (int j = 0; j <= i; ++j) {
             double sum = 0;
             for (size_t s = 0; s < light.size(); ++s) sum += columns[i][s] * columns[j][s];
-            a[size_t(i * n + j)] = a[size_t(j * n + i)] = sum / (lengths[i] * lengths[j]) + (i == j ? 1e-6 : 0);
+            a[size_t(i * n + j)] = a[size_t(j * n + i)] =
+                sum / (lengths[i] * lengths[j]) + (i == j ? 1e-6 : 0);
         }
     for (int i = 0; i < n; ++i)
         for (int c = 0; c < 3; ++c) {
@@ -150,7 +152,8 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
     constexpr uint32_t step = 1u << PEL_PROFILE_NODE_BITS;
     const uint32_t firstBits = nodeOf(first), lastBits = nodeOf(farthest) + step;
     Rgb within{};
-    for (uint32_t octave = 24 * PEL_PROFILE_NODES; octave > 0; --octave) {  // 12 octaves of r below the first node
+    // 12 octaves of r below the first node
+    for (uint32_t octave = 24 * PEL_PROFILE_NODES; octave > 0; --octave) {
         const Rgb light = lightBetween(shape, radiusOfNode(firstBits - octave * step) / scale,
                                        radiusOfNode(firstBits - (octave - 1) * step) / scale);
         for (int c = 0; c < 3; ++c) within[c] += light[c];
@@ -178,7 +181,8 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
     const Rgb all = shares[nodes - 1];
     for (size_t k = 0; k < nodes; ++k) {
         const uint32_t bits = firstBits + uint32_t(k) * step;
-        const Rgb density = valueOfNode([&](double r) { return shape.radial(r / scale); }, bits, step, k == 0),
+        const Rgb density =
+                      valueOfNode([&](double r) { return shape.radial(r / scale); }, bits, step, k == 0),
                   blocks = valueOfNode([&](double r) { return densityOfBlock(shape, r / scale); }, bits, step,
                                        k == 0);
         for (int c = 0; c < 3; ++c) {

@@ -16,7 +16,8 @@ void checkParams(const PelScatterParams& params) {
         invalidArgument("PelScatterParams.targetError is ", params.targetError,
                         "; a finite number of at least 0 is needed, typical is 0.002");
     if (!(params.white > 0) || !std::isfinite(params.white))
-        invalidArgument("PelScatterParams.white is ", params.white, "; a finite irradiance above 0 is needed");
+        invalidArgument("PelScatterParams.white is ", params.white,
+                        "; a finite irradiance above 0 is needed");
     checkFinite("PelScatterParams", "inverseViewProjection", params.inverseViewProjection, 16);
 }
 
@@ -40,9 +41,10 @@ void checkImages(const ScatterImages& images) {
         const bool same = view->format == images.out.format && view->byteOffset == images.out.byteOffset &&
                           !overlapsElsewhere(images.out, *view);
         if (sharesBytes(images.out, *view) && !(slot == PEL_SLOT_ALBEDO && same))
-            invalidArgument(
-                "the output overlaps the ", name, " image, which is read",
-                slot == PEL_SLOT_ALBEDO ? "; only the same pixels in the same format may be written over" : "");
+            invalidArgument("the output overlaps the ", name, " image, which is read",
+                            slot == PEL_SLOT_ALBEDO
+                                ? "; only the same pixels in the same format may be written over"
+                                : "");
     }
 }
 
@@ -190,7 +192,8 @@ void Scatter::execute(const PelScatterParams& params, const ScatterImages& image
         now.out = --left == 0 && !plan.finishes ? images.out : scratch(next, images.out);
         next = 3 - next;
     };
-    const auto gather = [&](GatherScatter& method, const std::map<uint32_t, GatherScatter::Material>& materials,
+    const auto gather = [&](GatherScatter& method,
+                            const std::map<uint32_t, GatherScatter::Material>& materials,
                             PelScattering scattering) {
         if (materials.empty()) return;
         target();

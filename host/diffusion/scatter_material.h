@@ -27,7 +27,8 @@ inline uint32_t scatterTapsOf(PelScattering scattering, uint32_t taps) {
 }
 
 // The images of the plan for a method that scatters into `out`, which becomes the irradiance of the plan.
-ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Buffer>& out, bool inPlace = false);
+ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Buffer>& out,
+                             bool inPlace = false);
 
 void addScatterCounts(const ScatterCounts& counts, PelScattering scattering, PelShaderStats& stats);
 // Counts pixels of PEL_SCATTERING_AUTO that kept their irradiance as not scattered.

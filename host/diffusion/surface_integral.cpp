@@ -128,9 +128,11 @@ void surfaceIntegral(Device& device, const PelSurfaceIntegralDesc& desc, const V
     sum.whole = float(0.5 / std::numbers::pi);
     sum.piecesPerU = float(1 / table.piece);
     const auto upload = [&](const auto& values) {
-        return values.empty() ? cl::Memory() : device.allocate(values.size() * sizeof values[0], values.data());
+        return values.empty() ? cl::Memory()
+                              : device.allocate(values.size() * sizeof values[0], values.data());
     };
-    const cl::Memory nodes = upload(tree.nodes), triangles = upload(tree.triangles), rows = upload(table.rows);
+    const cl::Memory nodes = upload(tree.nodes), triangles = upload(tree.triangles),
+                     rows = upload(table.rows);
     const uint32_t lanes = device.info().mathWidth;
     const size_t group = launchPolicy(device).group;
     const cl::Program program =

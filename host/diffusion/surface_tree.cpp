@@ -47,7 +47,8 @@ Vec corner(const SurfaceTriangle& t, int k) {
 // nothing cancels.
 Moments momentsOf(const SurfaceTriangle& t, const Vec& origin) {
     const Vec a = corner(t, 0) - origin, ab = corner(t, 1) - corner(t, 0), ac = corner(t, 2) - corner(t, 0);
-    const Vec normal{ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2], ab[0] * ac[1] - ab[1] * ac[0]};
+    const Vec normal{ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2],
+                     ab[0] * ac[1] - ab[1] * ac[0]};
     const double area = length(normal) / 2;
     Moments sum;
     const double at[4][3] = {{1 / 3., 1 / 3., 1 / 3.}, {.6, .2, .2}, {.2, .6, .2}, {.2, .2, .6}};

@@ -44,7 +44,8 @@ void checkParams(const PelTextureScatterParams& params, const Profile& profile, 
         invalidArgument("PelTextureScatterParams.albedoBefore is ", params.albedoBefore,
                         "; it must be between 0 and 1");
     if (params.gaussians < 2 || params.gaussians > 12)
-        invalidArgument("PelTextureScatterParams.gaussians is ", params.gaussians, "; 2 to 12 would be right");
+        invalidArgument("PelTextureScatterParams.gaussians is ", params.gaussians,
+                        "; 2 to 12 would be right");
     if ((params.albedoBefore > 0 || params.albedoAfter) && !albedo)
         invalidArgument("PelTextureScatterParams.", params.albedoAfter ? "albedoAfter" : "albedoBefore",
                         " is set, and there is no albedo");
@@ -69,7 +70,8 @@ Ref<TextureScatter> TextureScatter::create(const Ref<Device>& device, const PelT
         invalidArgument("PelTextureScatterDesc.uvStride is ", stride, " bytes; u and v need 8");
     for (uint64_t i = 0; i < desc.numIndices; ++i)
         if (desc.indices[i] >= desc.numVertices)
-            invalidArgument("triangle ", i / 3, " has the vertex ", desc.indices[i], " of ", desc.numVertices);
+            invalidArgument("triangle ", i / 3, " has the vertex ", desc.indices[i], " of ",
+                            desc.numVertices);
     const std::vector<uint32_t> indices(desc.indices, desc.indices + desc.numIndices);
     std::vector<float> uvs(2 * size_t(desc.numVertices));
     for (uint32_t i = 0; i < desc.numVertices; ++i) {
@@ -86,10 +88,12 @@ Ref<TextureScatter> TextureScatter::create(const Ref<Device>& device, const PelT
 
 void TextureScatter::drawMesh(const std::vector<uint32_t>& indices, const std::vector<float>& uvs) {
     triangles_ = uint32_t(indices.size() / 3);
-    indices_ = indices.empty() ? device_->allocate(16) : device_->allocate(indices.size() * 4, indices.data());
+    indices_ =
+        indices.empty() ? device_->allocate(16) : device_->allocate(indices.size() * 4, indices.data());
     uvs_ = uvs.empty() ? device_->allocate(16) : device_->allocate(uvs.size() * 4, uvs.data());
     const std::vector<uint32_t> islands = islandsOf(indices, vertices_);
-    islands_ = islands.empty() ? device_->allocate(16) : device_->allocate(islands.size() * 4, islands.data());
+    islands_ =
+        islands.empty() ? device_->allocate(16) : device_->allocate(islands.size() * 4, islands.data());
     owners_ = device_->allocate(texels() * sizeof(cl_uint));
     tileFlags_ = device_->allocate(tiles() * sizeof(cl_uint));
     counters_ = device_->allocate(PEL_TEXTURE_COUNTERS * sizeof(cl_uint));
@@ -201,13 +205,19 @@ void TextureScatter::execute(const PelTextureScatterParams& params, const Ref<Pr
     events_.clear();
     const cl::Program kernels = program("diffusion/scatter_texture.cl", irradiance, albedo, out);
     cl::Launch light(kernels, "texture_light");
-    light.arg(frameMemory_).arg(stretch_).arg(memoryOf(irradiance)).arg(memoryOf(albedo)).arg(light_).arg(counters_);
+    light.arg(frameMemory_)
+        .arg(stretch_)
+        .arg(memoryOf(irradiance))
+        .arg(memoryOf(albedo))
+        .arg(light_)
+        .arg(counters_);
     launch(light, texels());
     for (uint32_t i = 0; i < blurs.size(); ++i) {
         cl::Launch blur(kernels, "texture_blur");
         blur.arg(frameMemory_).arg(blurs_).arg(cl_uint(i)).arg(stretch_).arg(tileFlags_);
         blur.arg(i % 2 ? blurred_ : light_).arg(i % 2 ? light_ : blurred_).arg(result_);
-        launch(blur, std::min<size_t>(tiles(), 64 * size_t(device_->info().computeUnits)) * PEL_TEXTURE_GROUP);
+        launch(blur,
+               std::min<size_t>(tiles(), 64 * size_t(device_->info().computeUnits)) * PEL_TEXTURE_GROUP);
     }
     cl::Launch result(kernels, "texture_result");
     result.arg(frameMemory_).arg(light_).arg(result_).arg(memoryOf(albedo)).arg(memoryOf(out));

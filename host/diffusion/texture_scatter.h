@@ -27,7 +27,11 @@ class TextureScatter final : public Object {
 
   private:
     TextureScatter(const Ref<Device>& device, const PelTextureScatterDesc& desc)
-        : Object(kind), device_(device), width_(desc.width), height_(desc.height), vertices_(desc.numVertices) {}
+        : Object(kind),
+          device_(device),
+          width_(desc.width),
+          height_(desc.height),
+          vertices_(desc.numVertices) {}
     ~TextureScatter() override = default;
     void drawMesh(const std::vector<uint32_t>& indices, const std::vector<float>& uvs);
     void describe(const ImageView& irradiance, const ImageView& albedo, const ImageView& out, float before,

@@ -72,10 +72,12 @@ struct TomlReader::Nodes {
         for (const toml::node& entry : *node->as_array()) use(entry);
     }
 
-    static float toFloat(const TomlReader& reader, std::string_view key, const toml::node& node, Range range) {
+    static float toFloat(const TomlReader& reader, std::string_view key, const toml::node& node,
+                         Range range) {
         if (!node.is_number()) reader.fail(key, "is " + typeName(node) + "; a number would be right");
-        const auto value = static_cast<float>(node.is_integer() ? static_cast<double>(node.as_integer()->get())
-                                                                : node.as_floating_point()->get());
+        const auto value =
+            static_cast<float>(node.is_integer() ? static_cast<double>(node.as_integer()->get())
+                                                 : node.as_floating_point()->get());
         if (range.holds(value)) return value;
         std::ostringstream text;
         text << "is " << value << "; it must be " << describe(range);
@@ -85,8 +87,8 @@ struct TomlReader::Nodes {
 
 std::shared_ptr<const TomlTable> parseToml(const std::string& file, const std::string& text) {
     if (text.size() > textLimit)
-        throw FileError(
-            file, "has " + std::to_string(text.size()) + " bytes; TOML may have " + std::to_string(textLimit));
+        throw FileError(file, "has " + std::to_string(text.size()) + " bytes; TOML may have " +
+                                  std::to_string(textLimit));
     checkTomlDepth(file, text);
     try {
         const auto root = std::make_shared<const toml::table>(toml::parse(text, file));

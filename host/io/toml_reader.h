@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "io/file_error.h"
 #include "fields/field_ranges.h"
+#include "io/file_error.h"
 
 namespace pellucid::io {
 

@@ -14,7 +14,8 @@ double dot(const double* a, const double* b, size_t n) {
 
 // Least squares over the columns of `free` alone, with weights that add up to 1: the last weight is 1 minus
 // the others.
-std::vector<double> onFreeColumns(const Columns& a, std::span<const double> b, const std::vector<size_t>& free) {
+std::vector<double> onFreeColumns(const Columns& a, std::span<const double> b,
+                                  const std::vector<size_t>& free) {
     const size_t last = free.size() - 1;
     Columns reduced{a.rows, last, std::vector<double>(a.rows * last)};
     const double* base = a.column(free[last]);

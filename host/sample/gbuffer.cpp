@@ -69,7 +69,8 @@ class Renderer {
         return sum;
     }
     Vec3 interpolate3(const std::vector<float>& values, const Hit& hit) const {
-        return {interpolate(values, hit, 3, 0), interpolate(values, hit, 3, 1), interpolate(values, hit, 3, 2)};
+        return {interpolate(values, hit, 3, 0), interpolate(values, hit, 3, 1),
+                interpolate(values, hit, 3, 2)};
     }
     Vec3 faceNormal(const Hit& hit) const {
         Vec3 p[3];
@@ -89,7 +90,8 @@ class Renderer {
     void pixel(int x, int y, const Ray& ray, const Hit& hit) {
         const Vec3 position = ray.origin + ray.direction * hit.distance;
         const Vec3 face = faceNormal(hit);
-        const Vec3 geometric = mesh_.normals.empty() ? face : normalize(interpolate3(mesh_.normals, hit), face);
+        const Vec3 geometric =
+            mesh_.normals.empty() ? face : normalize(interpolate3(mesh_.normals, hit), face);
         const double depth = hit.distance * dot(ray.direction, view_.forward);
         store(out_.position, x, y, position);
         store(out_.geometricNormal, x, y, geometric);

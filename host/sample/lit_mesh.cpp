@@ -93,7 +93,9 @@ class Refiner {
             for (const Piece& p : pieces) halves.push_back({p, {}});
             lightPoints(
                 halves,
-                [](const Halves& h, int k) { return middle(h.piece.weights[k], h.piece.weights[(k + 1) % 3]); },
+                [](const Halves& h, int k) {
+                    return middle(h.piece.weights[k], h.piece.weights[(k + 1) % 3]);
+                },
                 [](Halves & h, int k) -> auto& { return h.light[k]; });
             pieces.clear();
             for (const Halves& h : halves) split(h, pieces);
@@ -178,7 +180,8 @@ Surface surfaceAt(const Mesh& mesh, const SurfacePoint& point) {
     const uint32_t* v = &mesh.triangles[3 * size_t(point.triangle)];
     const Vec3 a = vectorAt(mesh.positions, v[0]), b = vectorAt(mesh.positions, v[1]),
                c = vectorAt(mesh.positions, v[2]);
-    return {a * point.weights[0] + b * point.weights[1] + c * point.weights[2], normalize(cross(b - a, c - a))};
+    return {a * point.weights[0] + b * point.weights[1] + c * point.weights[2],
+            normalize(cross(b - a, c - a))};
 }
 
 std::vector<SurfacePoint> nearestPoints(const Scene& scene, std::span<const float> positions,

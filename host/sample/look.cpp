@@ -36,7 +36,8 @@ LinearColor EyeLook::at(Vec3 p) const {
     LinearColor color = iris;
     for (double& c : color) c *= fibres * ring;
     color = mix(color, sclera, smoothstep(irisRadius - 0.3 * blend, irisRadius + blend, r));
-    return mix({0.01, 0.01, 0.01}, color, smoothstep(pupilRadius - 0.2 * blend, pupilRadius + 0.2 * blend, r));
+    return mix({0.01, 0.01, 0.01}, color,
+               smoothstep(pupilRadius - 0.2 * blend, pupilRadius + 0.2 * blend, r));
 }
 
 }  // namespace pellucid::sample

@@ -60,14 +60,15 @@ std::vector<ShadowMap> renderCascades(const Scene& scene, const DirectionalLight
         map.depth.assign(size_t(size) * size_t(size), 1.0f);
         map.extent = extent;
         const double u = dot(focus, map.right), v = dot(focus, map.down);
-        map.worldToUvz = Matrix4::fromRows(map.right * (1 / extent), 0.5 - u / extent, map.down * (1 / extent),
-                                           0.5 - v / extent, map.forward * (1 / map.depthRange),
-                                           -map.nearDistance / map.depthRange);
+        map.worldToUvz = Matrix4::fromRows(
+            map.right * (1 / extent), 0.5 - u / extent, map.down * (1 / extent), 0.5 - v / extent,
+            map.forward * (1 / map.depthRange), -map.nearDistance / map.depthRange);
         traceRays(
             scene, size, size,
             [&](int x, int y) {
                 return Ray{map.right * (u + ((x + 0.5) / size - 0.5) * extent) +
-                               map.down * (v + ((y + 0.5) / size - 0.5) * extent) + map.forward * map.nearDistance,
+                               map.down * (v + ((y + 0.5) / size - 0.5) * extent) +
+                               map.forward * map.nearDistance,
                            map.forward};
             },
             [&](int x, int y, const Ray&, const Hit& hit) {

@@ -39,7 +39,8 @@ void trace(const Scene& scene, ShadowMap& map, RayAt rayAt, ZAt zAt) {
 }  // namespace
 
 double ShadowMap::distance(double z) const {
-    return projection == ShadowProjection::Parallel ? nearDistance + z * depthRange : 1 / (depthA * z + depthB);
+    return projection == ShadowProjection::Parallel ? nearDistance + z * depthRange
+                                                    : 1 / (depthA * z + depthB);
 }
 
 double ShadowMap::zPerLength(double distance) const {
@@ -63,9 +64,9 @@ ShadowMap renderShadowMap(const Scene& scene, const DirectionalLight& light, int
     map.extent = std::max(seen.high.x - seen.low.x, seen.high.y - seen.low.y) + 2 * margin;
     map.nearDistance = seen.low.z - margin;
     map.depthRange = seen.high.z - seen.low.z + 2 * margin;
-    map.worldToUvz = Matrix4::fromRows(map.right * (1 / map.extent), 0.5 - centre.x / map.extent,
-                                       map.down * (1 / map.extent), 0.5 - centre.y / map.extent,
-                                       map.forward * (1 / map.depthRange), -map.nearDistance / map.depthRange);
+    map.worldToUvz = Matrix4::fromRows(
+        map.right * (1 / map.extent), 0.5 - centre.x / map.extent, map.down * (1 / map.extent),
+        0.5 - centre.y / map.extent, map.forward * (1 / map.depthRange), -map.nearDistance / map.depthRange);
     trace(
         scene, map,
         [&](double u, double v) {

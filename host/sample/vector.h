@@ -39,7 +39,8 @@ Vec3 perpendicular(Vec3 direction, Vec3 wish);
 struct Matrix4 {
     std::array<double, 16> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
-    static Matrix4 fromRows(Vec3 x, double xw, Vec3 y, double yw, Vec3 z, double zw, Vec3 w = {}, double ww = 1) {
+    static Matrix4 fromRows(Vec3 x, double xw, Vec3 y, double yw, Vec3 z, double zw, Vec3 w = {},
+                            double ww = 1) {
         return {{x.x, x.y, x.z, xw, y.x, y.y, y.z, yw, z.x, z.y, z.z, zw, w.x, w.y, w.z, ww}};
     }
     std::array<float, 16> toFloats() const;

@@ -101,7 +101,8 @@ float filterPixel(const ShadowMap& map, const WideShadowOptions& options, Vec3 p
     // Towards the light, scaled so that it has length 1 along the map's axis.
     Vec3 toLight = -map.forward;
     if (map.projection == ShadowProjection::Perspective)
-        toLight = toLight - map.right * ((uvz.x - 0.5) * map.extent) - map.down * ((uvz.y - 0.5) * map.extent);
+        toLight =
+            toLight - map.right * ((uvz.x - 0.5) * map.extent) - map.down * ((uvz.y - 0.5) * map.extent);
     const double distance = map.distance(uvz.z), zPerLength = map.zPerLength(distance);
     const double texel = map.lengthPerUv(distance) / map.size;
     const double cosine = dot(normal, toLight);

@@ -236,7 +236,8 @@ void SceneFrame::setLights(const SceneFile& scene) {
     }
 }
 
-PelImageDesc SceneFrame::mapOf(const std::string& file, const std::string& channel, const std::string& second) {
+PelImageDesc SceneFrame::mapOf(const std::string& file, const std::string& channel,
+                               const std::string& second) {
     const std::vector<std::string> key{file, channel, second};
     if (const auto kept = maps_.find(key); kept != maps_.end()) return kept->second;
     const Image* known = nullptr;
@@ -259,7 +260,8 @@ void SceneFrame::setMaterial(const SceneFile& scene, const SceneMaterial& m, Lut
         if (!m.profile.empty()) profile = findProfile(m.profile).profile;
     } catch (const FileError& e) {
         throw FileError(scene.source,
-                        "the profile of material " + std::to_string(m.id) + " is refused: " + e.what(), m.line);
+                        "the profile of material " + std::to_string(m.id) + " is refused: " + e.what(),
+                        m.line);
     }
     if (m.preset == ScenePreset::faceworks) {
         if (!profile) profile = Profile::skin();
@@ -354,7 +356,8 @@ PelImageDesc SceneFrame::upload(const Image& image, const std::vector<std::strin
     for (const std::string& name : channels) image.channel(name);  // an error before memory is taken
     const Buffer& buffer = to.emplace_back(device_, channels.size() * image.pixelCount() * sizeof(float));
     image.interleave(channels, MappedBuffer(buffer).at());
-    return imageDesc(buffer, groupFormats[channels.size() - 1], uint32_t(image.width), uint32_t(image.height));
+    return imageDesc(buffer, groupFormats[channels.size() - 1], uint32_t(image.width),
+                     uint32_t(image.height));
 }
 
 void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance) {

@@ -51,7 +51,8 @@ class SceneFrame {
     // The G-buffer must outlive the last update(). `buildOnly`: builds programs with progress instead of
     // committing; show() must follow (scene_programs.h). Throws FileError if a channel is missing.
     SceneFrame(const Device& device, const Image& gbuffer, const SceneFile& scene, LutStore& luts,
-               const ShadowMaps& shadowMaps = {}, const PelShaderOptions& options = pelShaderOptionsDefaults(),
+               const ShadowMaps& shadowMaps = {},
+               const PelShaderOptions& options = pelShaderOptionsDefaults(),
                const std::vector<PelImageSlot>& outputs = {}, bool buildOnly = false);
 
     // Replaces the G-buffer and the shadow maps, and commits. Textures, cube maps and tables are kept.
@@ -88,7 +89,8 @@ class SceneFrame {
     PelImageDesc measureCurvature(const SceneFile& scene);
     PelImageDesc cubeImage(const std::string& file);
     void setEye(const SceneFile& scene, const SceneEye& e);
-    PelImageDesc upload(const Image& image, const std::vector<std::string>& channels, std::vector<Buffer>& to);
+    PelImageDesc upload(const Image& image, const std::vector<std::string>& channels,
+                        std::vector<Buffer>& to);
 
     Device device_;
     std::vector<PelImageSlot> wanted_;  // beside radiance

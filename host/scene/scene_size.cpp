@@ -55,7 +55,8 @@ Extent extentOf(const Image& gbuffer, const SceneFile& scene, const DeviceImages
     const float* m = scene.camera.inverseViewProjection;
     eachPixel(gbuffer, scene, images, PEL_SLOT_DEPTH, [&](const float* depth, size_t i) {
         const double clip[] = {(double(i % size_t(gbuffer.width)) + 0.5) * 2 / gbuffer.width - 1,
-                               1 - (double(i / size_t(gbuffer.width)) + 0.5) * 2 / gbuffer.height, depth[0], 1};
+                               1 - (double(i / size_t(gbuffer.width)) + 0.5) * 2 / gbuffer.height, depth[0],
+                               1};
         double p[4] = {};
         for (int row = 0; row < 4; ++row)
             for (int c = 0; c < 4; ++c) p[row] += double(m[4 * row + c]) * clip[c];

@@ -44,9 +44,12 @@ class CubeNodes final : public Pass {
             .arg(cl_ulong(faces.byteOffset))
             .arg(cl_ulong(step))
             .arg(cl_ulong(faces.rowStride));
-        launch.arg(cl_ulong(faces.planeStride)).arg(cl_uint(faces.pixelStride)).arg(size).arg(nodes_->memory());
-        work.launch(launch,
-                    {{size + size_t(2), 6 * (size + size_t(2)), 1}, {launchPolicy(work.device).texels, 1, 1}});
+        launch.arg(cl_ulong(faces.planeStride))
+            .arg(cl_uint(faces.pixelStride))
+            .arg(size)
+            .arg(nodes_->memory());
+        work.launch(launch, {{size + size_t(2), 6 * (size + size_t(2)), 1},
+                             {launchPolicy(work.device).texels, 1, 1}});
     }
 
   private:
@@ -57,7 +60,7 @@ class CubeNodes final : public Pass {
 
 constinit const PassKind ambientCubePass =
     passKind<CubeNodes<&ShaderState::ambientCube, &ShaderPlan::ambientNodes, PEL_FEATURE_AMBIENT_CUBE>>();
-constinit const PassKind reflectionCubePass =
-    passKind<CubeNodes<&ShaderState::reflectionCube, &ShaderPlan::reflectionNodes, PEL_FEATURE_REFLECTION_CUBE>>();
+constinit const PassKind reflectionCubePass = passKind<
+    CubeNodes<&ShaderState::reflectionCube, &ShaderPlan::reflectionNodes, PEL_FEATURE_REFLECTION_CUBE>>();
 
 }  // namespace pel

@@ -14,7 +14,8 @@ class BlurNormals final : public Pass {
     static bool needed(const ShaderPlan& plan) { return plan.features & PEL_FEATURE_BLUR_NORMALS; }
 
     PassScratch scratch(const ShaderPlan&) const override {
-        return {10 * sizeof(float), 10 * planeGuardBytes, PEL_BLUR_TAPS * PEL_BLUR_STEP_MAX / PEL_TILE_HEIGHT};
+        return {10 * sizeof(float), 10 * planeGuardBytes,
+                PEL_BLUR_TAPS * PEL_BLUR_STEP_MAX / PEL_TILE_HEIGHT};
     }
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
         const size_t plane = scratchPlaneBytes(plan);
@@ -48,7 +49,8 @@ class BlurNormals final : public Pass {
         const auto& images = work.plan.state.images;
         cl::Launch launch(program(), "prepare_normals");
         launch.arg(work.constants.frameMemory()).arg(work.plan.tileLists);
-        for (PelImageSlot slot : {PEL_SLOT_MATERIAL, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_POSITION, PEL_SLOT_DEPTH})
+        for (PelImageSlot slot :
+             {PEL_SLOT_MATERIAL, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_POSITION, PEL_SLOT_DEPTH})
             launch.arg(memoryOf(images[slot]));
         launch.arg(normals_.memory()).arg(positions_->memory()).arg(tags_->memory());
         launch.arg(cl_uint(work.plan.scratchPlane));

@@ -85,9 +85,11 @@ void checkContent(const ShaderLight& light, const std::string& name) {
         invalidArgument("the shadow map of ", name, " has format ", map.info().name,
                         "; PEL_SHADOW_CONTENT_MOMENTS needs two components, the means of z and of z^2");
     if (l.shadowContent != PEL_SHADOW_CONTENT_EXPONENTIAL) return;
-    const bool nearness = l.shadowProjection == PEL_SHADOW_PERSPECTIVE || l.shadowProjection == PEL_SHADOW_CUBE;
+    const bool nearness =
+        l.shadowProjection == PEL_SHADOW_PERSPECTIVE || l.shadowProjection == PEL_SHADOW_CUBE;
     const float growth = nearness ? -l.shadowDepthA : l.shadowDepthRange;
-    if (!std::isfinite(l.shadowExponent) || !(l.shadowExponent * growth > 0) || std::abs(l.shadowExponent) > 1e4f)
+    if (!std::isfinite(l.shadowExponent) || !(l.shadowExponent * growth > 0) ||
+        std::abs(l.shadowExponent) > 1e4f)
         invalidArgument(name, ".shadowExponent is ", l.shadowExponent,
                         "; exponential maps need c of exp(c z), ", growth > 0 ? "above" : "below",
                         " 0 here so that c z grows away from the light, such as ", growth > 0 ? "80" : "-80");

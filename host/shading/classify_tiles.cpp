@@ -15,7 +15,8 @@ class ClassifyTiles final : public Pass {
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
         const size_t lists = plan.variants.size() > 1 ? 1 + plan.variants.size() : 1;
-        const size_t bytes = (PEL_TILE_LISTS + lists * size_t(plan.listRows()) * plan.tilesX) * sizeof(cl_uint);
+        const size_t bytes =
+            (PEL_TILE_LISTS + lists * size_t(plan.listRows()) * plan.tilesX) * sizeof(cl_uint);
         resize(lists_, device, bytes);
         resize(bandCounts_, device, plan.bandRows < plan.tileRows ? plan.tileRows * countBytes : 0);
         plan.tileLists = lists_->memory();
@@ -35,7 +36,8 @@ class ClassifyTiles final : public Pass {
         if (work.plan.bandRows < work.plan.tileRows) keepCounts(work);
     }
 
-    void addStats(Device& device, const ShaderPlan& plan, uint64_t bands, PelShaderStats& stats) const override {
+    void addStats(Device& device, const ShaderPlan& plan, uint64_t bands,
+                  PelShaderStats& stats) const override {
         if (!listsTiles(plan)) return;
         std::vector<cl_uint> counts(std::max<size_t>(bands, 1) * PEL_TILE_LISTS);
         device.read((bands > 1 ? bandCounts_ : lists_)->memory().get(), 0, counts.size() * sizeof(cl_uint),
@@ -69,9 +71,10 @@ class ClassifyTiles final : public Pass {
 
     // The next band starts counting again.
     void keepCounts(PassWork& work) const {
-        cl::check(clEnqueueCopyBuffer(work.device.queue(), lists_->memory().get(), bandCounts_->memory().get(),
-                                      0, work.band * countBytes, countBytes, 0, nullptr, nullptr),
-                  "clEnqueueCopyBuffer");
+        cl::check(
+            clEnqueueCopyBuffer(work.device.queue(), lists_->memory().get(), bandCounts_->memory().get(), 0,
+                                work.band * countBytes, countBytes, 0, nullptr, nullptr),
+            "clEnqueueCopyBuffer");
     }
 
     Ref<Buffer> lists_, bandCounts_;  // bandCounts_: the counts of the lists, one band after another

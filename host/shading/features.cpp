@@ -87,7 +87,8 @@ void checkShadowMaps(const ShaderState& state) {
                  ", another ", int(light.params.shadowContent),
                  "; the shadow maps of all lights need the same");
         for (uint32_t i = 1; i < light.params.shadowCascades; ++i)
-            if (const ImageView& cascade = *shadowCascade(light, i).map; cascade && cascade.format != map.format)
+            if (const ImageView& cascade = *shadowCascade(light, i).map;
+                cascade && cascade.format != map.format)
                 fail(PEL_ERROR_UNSUPPORTED, "the first cascade has format ", map.info().name, ", another ",
                      cascade.info().name, "; all shadow maps need the same");
     }
@@ -116,7 +117,8 @@ bool makesIrradiance(const ShaderState& state) {
 
 bool makesLightFromBehind(const ShaderState& state, uint32_t features) {
     return features & PEL_FEATURE_MAKE_IRRADIANCE && !state.images[PEL_SLOT_IRRADIANCE_BACK] &&
-           std::ranges::any_of(state.materials, [](const auto& m) { return m.second.params.thinThickness > 0; });
+           std::ranges::any_of(state.materials,
+                               [](const auto& m) { return m.second.params.thinThickness > 0; });
 }
 
 // Irradiance that has to be made, or specular light beside it.
@@ -146,15 +148,16 @@ uint32_t formFeatures(const PelLight& l) {
 }
 
 bool isBlack(const PelAmbient& a) {
-    return black(a.constant) && std::all_of(std::begin(a.sh), std::end(a.sh), [](auto& c) { return black(c); });
+    return black(a.constant) &&
+           std::all_of(std::begin(a.sh), std::end(a.sh), [](auto& c) { return black(c); });
 }
 
 uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material) {
     const auto& images = state.images;
     const PelMaterial& m = material.params;
     const auto some = [&](auto has) { return std::any_of(state.lights.begin(), state.lights.end(), has); };
-    const bool wide =
-        some([&](const ShaderLight& l) { return l.images[PEL_LIGHT_WIDE_SHADOW] || filtersShadow(state, l); });
+    const bool wide = some(
+        [&](const ShaderLight& l) { return l.images[PEL_LIGHT_WIDE_SHADOW] || filtersShadow(state, l); });
     const bool map = some([](const ShaderLight& l) { return bool(l.images[PEL_LIGHT_SHADOW_MAP]); });
     const bool tables = !readsIrradiance(material);
     uint32_t needs = tables ? 0 : PEL_FEATURE_IRRADIANCE;

@@ -108,7 +108,8 @@ void prepareEyes(const Ref<Device>& device, std::map<uint32_t, ShaderMaterial>& 
                 eye.ambient = other.eye->ambient;
                 eye.ambientKnown = true;
             }
-            if (!eye.caustics && other.eye->ownCaustics && other.eye->irisProfile.get() == eye.irisProfile.get())
+            if (!eye.caustics && other.eye->ownCaustics &&
+                other.eye->irisProfile.get() == eye.irisProfile.get())
                 eye.caustics = other.eye->caustics;
         }
         if (!eye.ambientKnown) eye.ambient = ambientNodes(eye.params);

@@ -21,9 +21,9 @@ class Irradiance final : public Pass {
     size_t bytes() const override { return planes_.bytes(); }
 
     std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
-        cl::Defines defines =
-            sceneDefines(device, plan.state,
-                         plan.features & (PEL_FEATURE_SHADOW | PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_CUBE));
+        cl::Defines defines = sceneDefines(
+            device, plan.state,
+            plan.features & (PEL_FEATURE_SHADOW | PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_CUBE));
         defines["PEL_THIN"] = text(int(makesLightFromBehind(plan.state, plan.features)));
         defines["PEL_PASS_GROUP"] = text(tileGroup(device));
         return {{{"shading/irradiance.cl"}, defines}};

@@ -83,8 +83,9 @@ ProfileTables::Tables& ProfileTables::get(const Ref<Device>& device, Profile& pr
 
 void ProfileTables::keepOnly(const std::map<uint32_t, ShaderMaterial>& materials) {
     std::erase_if(all_, [&](const Tables& t) {
-        return std::none_of(materials.begin(), materials.end(),
-                            [&](const auto& m) { return m.second.transmission.get() == t.transmission.get(); });
+        return std::none_of(materials.begin(), materials.end(), [&](const auto& m) {
+            return m.second.transmission.get() == t.transmission.get();
+        });
     });
 }
 
@@ -98,7 +99,8 @@ void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const 
     material.shadowLut = material.givenShadowLut;
     material.transmission = {};
     if (m.shadowFilterWidth == 0)
-        m.shadowFilterWidth = float((profile ? double(pelShadowFilterWidthOf(&info)) : plainFilterWidth) / unit);
+        m.shadowFilterWidth =
+            float((profile ? double(pelShadowFilterWidthOf(&info)) : plainFilterWidth) / unit);
     material.shadowBias = float((profile ? biasWidths * widest(info) : plainBias) / unit);
     material.shadowSoftness = profile ? softness : plainSoftness;
     material.shadowConeSlope = profile ? coneSlope : plainConeSlope;

@@ -63,8 +63,8 @@ class NormalMap final : public Pass {
         defines["PEL_FORMAT_UV_GRADIENT"] = code(PEL_SLOT_UV_GRADIENT);
         defines["PEL_FORMAT_TANGENT"] = code(PEL_SLOT_TANGENT);
         defines["PEL_TANGENT_COMPONENTS"] = text(tangent.info().components);
-        defines["PEL_TANGENT_UNORM"] =
-            text(int(tangent.info().kind == FormatKind::UNORM || tangent.info().kind == FormatKind::OCTAHEDRAL));
+        defines["PEL_TANGENT_UNORM"] = text(
+            int(tangent.info().kind == FormatKind::UNORM || tangent.info().kind == FormatKind::OCTAHEDRAL));
         defines["PEL_FORMAT_NORMAL_MAP"] = text(formatCode(plan.state.materials.at(ids_[0]).normalMap[0], 1));
         return {{{"shading/normal_map.cl"}, defines}};
     }

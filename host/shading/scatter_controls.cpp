@@ -7,7 +7,8 @@ namespace pel {
 namespace {
 
 bool byTaps(const PelMaterial& m) {
-    return m.scattering == PEL_SCATTERING_SEPARABLE || (m.scattering == PEL_SCATTERING_SCREEN && m.scatterTaps);
+    return m.scattering == PEL_SCATTERING_SEPARABLE ||
+           (m.scattering == PEL_SCATTERING_SCREEN && m.scatterTaps);
 }
 
 void checkMaterial(uint32_t id, const ShaderMaterial& material, const ShaderState& state) {

@@ -8,7 +8,10 @@ namespace pel {
 
 void sceneArguments(cl::Launch& launch, const PassWork& work) {
     const ShadingConstants& constants = work.constants;
-    launch.arg(constants.frameMemory()).arg(constants.materials()).arg(constants.lights()).arg(constants.luts());
+    launch.arg(constants.frameMemory())
+        .arg(constants.materials())
+        .arg(constants.lights())
+        .arg(constants.luts());
     launch.arg(work.plan.tileLists).arg(work.plan.counters).arg(work.plan.ambientNodes);
     launch.arg(constants.eyes()).arg(work.plan.irises).arg(work.plan.reflectionNodes);
     launch.arg(work.plan.tapCells);

@@ -11,7 +11,8 @@ const cl::Memory& memoryOf(const ImageView& view);
 void resize(Ref<Buffer>& buffer, const Ref<Device>& device, size_t bytes);
 
 // An image as wide as the frame inside scratch memory.
-ImageView scratchImage(const Ref<Buffer>& buffer, const ImageView& frame, PelFormat format, uint64_t offset = 0);
+ImageView scratchImage(const Ref<Buffer>& buffer, const ImageView& frame, PelFormat format,
+                       uint64_t offset = 0);
 
 // Rewrites the start of a PelShadeImage at `at` in `memory`: to where the image would begin if it also had
 // the rows before `row`.

@@ -22,7 +22,8 @@ void checkScreenCurvature(const PelScreenCurvatureParams& params, const ScreenCu
                         images.depth ? "not both" : "and both are NULL");
     for (float m : params.inverseViewProjection)
         if (images.depth && !std::isfinite(m))
-            invalidArgument("PelScreenCurvatureParams.inverseViewProjection holds ", m, "; it must be finite");
+            invalidArgument("PelScreenCurvatureParams.inverseViewProjection holds ", m,
+                            "; it must be finite");
     if (images.curvature.format != PEL_FORMAT_R32F)
         invalidArgument("the curvature image has format ", images.curvature.info().name, "; it needs R32F");
     const std::pair<PelImageSlot, const ImageView*> inputs[] = {{PEL_SLOT_NORMAL_SHADING, &images.normals},
@@ -42,7 +43,8 @@ void checkScreenCurvature(const PelScreenCurvatureParams& params, const ScreenCu
     }
 }
 
-void screenCurvature(Device& device, const PelScreenCurvatureParams& params, const ScreenCurvatureImages& images) {
+void screenCurvature(Device& device, const PelScreenCurvatureParams& params,
+                     const ScreenCurvatureImages& images) {
     const uint32_t lanes = device.info().mathWidth;
     const ImageView& where = images.positions ? images.positions : images.depth;
     ScreenCurvatureFrame frame{};
@@ -68,7 +70,8 @@ void screenCurvature(Device& device, const PelScreenCurvatureParams& params, con
     // Copied now: the queue may be busy and is not used for this.
     const cl::Memory memory = device.allocate(sizeof frame, &frame);
     launch.arg(memory).arg(images.normals.buffer->memory()).arg(where.buffer->memory());
-    launch.arg(images.ids ? images.ids.buffer->memory() : cl::Memory()).arg(images.curvature.buffer->memory());
+    launch.arg(images.ids ? images.ids.buffer->memory() : cl::Memory())
+        .arg(images.curvature.buffer->memory());
     const size_t across = (frame.width + lanes - 1) / lanes;
     device.launch(launch, {{across * frame.height, 1, 1}, {group, 1, 1}});
 }

@@ -12,6 +12,7 @@ struct ScreenCurvatureImages {
 // Throws if parameters or images are wrong or do not match.
 void checkScreenCurvature(const PelScreenCurvatureParams& params, const ScreenCurvatureImages& images);
 // Enqueues everything.
-void screenCurvature(Device& device, const PelScreenCurvatureParams& params, const ScreenCurvatureImages& images);
+void screenCurvature(Device& device, const PelScreenCurvatureParams& params,
+                     const ScreenCurvatureImages& images);
 
 }  // namespace pel

@@ -96,7 +96,8 @@ void Shader::finishPlan() {
 // Sends the plan's constants.
 void Shader::send() {
     scratchRow_.reset();
-    bytesUploaded_ += constants_.update(*device_, plan_.state, plan_.variants, plan_.tilesX * plan_.listRows());
+    bytesUploaded_ +=
+        constants_.update(*device_, plan_.state, plan_.variants, plan_.tilesX * plan_.listRows());
     passes_.each([&](Pass& pass) { bytesUploaded_ += pass.upload(*device_, plan_); });
 }
 

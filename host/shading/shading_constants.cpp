@@ -75,7 +75,8 @@ void ShadingConstants::gatherLuts(Device& device, const ShaderState& state) {
     for (const auto& [id, material] : state.materials)
         for (const Ref<Lut>& lut : {material.curvatureLut, material.shadowLut, material.transmission,
                                     material.eye ? material.eye->caustics : Ref<Lut>()})
-            if (lut && std::none_of(wanted.begin(), wanted.end(), [&](auto& w) { return w.get() == lut.get(); }))
+            if (lut &&
+                std::none_of(wanted.begin(), wanted.end(), [&](auto& w) { return w.get() == lut.get(); }))
                 wanted.push_back(lut);
     const bool same = std::equal(wanted.begin(), wanted.end(), gathered_.begin(), gathered_.end(),
                                  [](auto& a, auto& b) { return a.get() == b.get(); });
@@ -143,13 +144,13 @@ void ShadingConstants::fillFrame(const ShaderState& state) {
                                std::sqrt(5 / (16 * pi)), two, 0.5 * two};
     for (int i = 0; i < 9; ++i)
         for (int c = 0; c < 3; ++c)
-            frame_.ambient[i][c] =
-                float(factors[i] * state.ambient.sh[i][c] + (i == 0 ? double(state.ambient.constant[c]) : 0.0));
+            frame_.ambient[i][c] = float(factors[i] * state.ambient.sh[i][c] +
+                                         (i == 0 ? double(state.ambient.constant[c]) : 0.0));
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot) frame_.images[slot] = describeImage(state.images[slot]);
 }
 
-std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(const ShaderState& state,
-                                                                  const std::vector<uint32_t>& variants) const {
+std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(
+    const ShaderState& state, const std::vector<uint32_t>& variants) const {
     std::vector<PelShadeMaterial> table(state.materials.empty() ? 1 : state.materials.rbegin()->first + 1);
     const std::vector<float> disks = tapDisks(state);
     uint32_t eyes = 0;
@@ -182,7 +183,8 @@ std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(const ShaderSt
         to.shadowSoftness = from.shadowSoftness;
         to.shadowConeSlope = from.shadowConeSlope;
         to.scattering = m.scattering;
-        to.albedoAfter = readsIrradiance(from) && m.scattering != PEL_SCATTERING_NONE ? 1 - m.albedoBefore : 1;
+        to.albedoAfter =
+            readsIrradiance(from) && m.scattering != PEL_SCATTERING_NONE ? 1 - m.albedoBefore : 1;
         copy(to.through, from.through);
         to.named = from.given.scattering;
         to.specularModel = m.specularModel;

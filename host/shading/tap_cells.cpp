@@ -28,7 +28,8 @@ bool hasDisk(const ShaderState& state, const ShaderMaterial& material) {
 // How much u (row 0) or v (row 1) of a parallel map grows per length.
 double uvPerLength(const float (&m)[16], int row) {
     const float* r = m + 4 * row;
-    return std::sqrt(double(r[0]) * r[0] + double(r[1]) * r[1] + double(r[2]) * r[2]) / std::abs(double(m[15]));
+    return std::sqrt(double(r[0]) * r[0] + double(r[1]) * r[1] + double(r[2]) * r[2]) /
+           std::abs(double(m[15]));
 }
 
 uint64_t samplesAlong(uint32_t nodes) {
@@ -105,7 +106,8 @@ std::vector<float> tapDisks(const ShaderState& state) {
     return disks;
 }
 
-uint32_t tapDiskOf(const std::vector<float>& disks, const ShaderState& state, const ShaderMaterial& material) {
+uint32_t tapDiskOf(const std::vector<float>& disks, const ShaderState& state,
+                   const ShaderMaterial& material) {
     if (!hasDisk(state, material)) return PEL_TAP_DISKS;
     const auto found = std::ranges::find(disks, material.params.thicknessFilterRadius);
     return found == disks.end() ? PEL_TAP_DISKS : uint32_t(found - disks.begin());

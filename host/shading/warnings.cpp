@@ -68,7 +68,8 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
         tables != state.materials.end())
         for (size_t i = 0; i < given.lights.size(); ++i) {
             const ShaderLight& light = given.lights[i];
-            const bool unshadowed = light.images[PEL_LIGHT_SHADOW_MAP] && !light.images[PEL_LIGHT_WIDE_SHADOW] &&
+            const bool unshadowed = light.images[PEL_LIGHT_SHADOW_MAP] &&
+                                    !light.images[PEL_LIGHT_WIDE_SHADOW] &&
                                     light.params.shadowFilterTexels == 0;
             // A map that serves thickness alone is no mistake, unless other materials get a shadow from it.
             const bool useful =
@@ -80,7 +81,8 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
         }
     for (const auto& [id, material] : state.materials) {
         const PelMaterial& m = material.params;
-        if (!isBlackColor(m.deepScatterColor) && !state.lights.empty() && !thickness && !(map && m.thicknessTaps))
+        if (!isBlackColor(m.deepScatterColor) && !state.lights.empty() && !thickness &&
+            !(map && m.thicknessTaps))
             warn("material ", id,
                  " has a deepScatterColor without effect: there is neither a thickness image nor a light "
                  "with a "

@@ -8,7 +8,8 @@ namespace pel::system {
 void* openLibrary(const std::string& name, std::string& why);
 // nullptr if it has no such symbol.
 void* symbolIn(void* library, const char* name);
-// The folder of the library or program that contains this address, with a separator at its end; "" if unknown.
+// The folder of the library or program that contains this address, with a separator at its end; "" if
+// unknown.
 std::string folderOf(const void* address);
 
 }  // namespace pel::system

@@ -11,16 +11,16 @@ std::vector<std::string> environment();
 void setVariable(const char* name, const char* value);  // nullptr removes it
 // The processor's instruction set extensions, as the system lists them; "" if unknown.
 std::string instructionSet();
-// A new folder for this process only in `parent`, whose name begins with `prefix`; "" if none can be made. Such
-// folders of this user's processes that were killed are removed first (not on Windows).
+// A new folder for this process only in `parent`, whose name begins with `prefix`; "" if none can be made.
+// Such folders of this user's processes that were killed are removed first (not on Windows).
 std::string makeTemporaryFolder(const std::string& parent, const std::string& prefix);
 
 // The file of this program; "" if the system does not say.
 std::string programFile();
 // Whether standard error is a terminal.
 bool errorsAreSeen();
-// Opens the standard streams that are closed, so that no file takes their place; false if that fails. From now on
-// a limit on file sizes is an error, as a full disk is.
+// Opens the standard streams that are closed, so that no file takes their place; false if that fails. From
+// now on a limit on file sizes is an error, as a full disk is.
 bool prepareStreams();
 
 // Another program that runs beside this one, with these variables ("NAME=VALUE") added to the environment and

@@ -67,7 +67,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void c
     float difference2[PEL_PYRAMID_LEVELS];
     for (uint k = 0; k + 1 < frame->levels; ++k)
         difference2[k] = maxDifference2(frame, pyramid, tileX, tileY, (int)k);
-    difference2[frame->levels - 1] = difference2[frame->levels - 2];  // the coarsest level has no coarser blocks
+    // the coarsest level has no coarser blocks
+    difference2[frame->levels - 1] = difference2[frame->levels - 2];
     uint levels = 0;
     bool near = false;
     float greatest = 0.0f;

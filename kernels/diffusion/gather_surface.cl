@@ -103,7 +103,8 @@ static inline float across(__global const PelGatherFrame* frame, float3 p, float
     return sqrt(dot(step, step));
 }
 
-static inline void measurePixel(__global const PelGatherFrame* frame, __global float* points, uint x, uint y) {
+static inline void measurePixel(__global const PelGatherFrame* frame, __global float* points, uint x,
+                                uint y) {
     const size_t here = (size_t)y * frame->width + x;
     const float3 p = pointOf(points, here);
     const uint id = as_uint(gathered(points, here, PEL_GATHER_LIGHT).w);
@@ -131,7 +132,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void g
     __global uint* restrict counters) {
     const uint tile = get_global_id(0);
     if (tile >= frame->tilesX * frame->tilesY) return;
-    const uint left = tile % frame->tilesX * PEL_DIFFUSION_TILE, top = tile / frame->tilesX * PEL_DIFFUSION_TILE;
+    const uint left = tile % frame->tilesX * PEL_DIFFUSION_TILE,
+               top = tile / frame->tilesX * PEL_DIFFUSION_TILE;
     bool gathers = false, covered = false, lit = false;
     for (uint y = top; y < min(top + PEL_DIFFUSION_TILE, frame->height); ++y)
         for (uint x = left; x < min(left + PEL_DIFFUSION_TILE, frame->width); ++x) {

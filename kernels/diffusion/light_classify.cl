@@ -110,8 +110,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     uint texels = 0;
 #if PEL_HIDDEN
     const uint word = tiles[tile];
-    const float change =
-                    changeByLight(frame, pyramid, tileX, tileY, tables, nodes, maps, mapCount, lights, &texels),
+    const float change = changeByLight(frame, pyramid, tileX, tileY, tables, nodes, maps, mapCount, lights,
+                                       &texels),
                 least = frame->everyTile ? 0.0f : LEFT_ALONE * frame->tolerance;
     const bool reached = change > least;
     if (reached)

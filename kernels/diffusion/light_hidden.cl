@@ -36,7 +36,8 @@ static inline float missingOf(__global const float* sums, uint stride) {
 
 // Whether occluded light of up to `most` counts: because accumulated weight is missing, or because it is
 // most of the light in some channel.
-static inline bool lightCounts(__global const float* sums, __global const float* block, uint stride, float most) {
+static inline bool lightCounts(__global const float* sums, __global const float* block, uint stride,
+                               float most) {
     if (missingOf(sums, stride) > PEL_MIN_MISSING) return true;
     float least = FLT_MAX;
     for (uint c = 0; c < 3; ++c)

@@ -137,7 +137,8 @@ static inline void fetchDepths(__global const PelLightMap* map, __global const u
     const uint x = imageTexel((int)column, map->step, map->width);
     for (int k = 0; k < 2; ++k) {
         const uint y = imageTexel((int)row + k, map->step, map->height);
-        PEL_PREFETCH(first + (size_t)(map->firstRow + y) * map->map.rowStride + (size_t)x * map->map.pixelStride);
+        PEL_PREFETCH(first + (size_t)(map->firstRow + y) * map->map.rowStride +
+                     (size_t)x * map->map.pixelStride);
     }
 }
 
@@ -164,7 +165,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
 #endif
     // A pixel without a step to a neighbour has no patch. Most of the background is skipped here.
     const Vec3w sideways = shorterOffset(p, before, after);
-    const maskw steps = mine & finite3(p) & ((sideways.x != 0.0f) | (sideways.y != 0.0f) | (sideways.z != 0.0f));
+    const maskw steps =
+        mine & finite3(p) & ((sideways.x != 0.0f) | (sideways.y != 0.0f) | (sideways.z != 0.0f));
     if (!anyw(steps)) return;
     const Vec3w above = loadPositions(frame, position, x, y > 0 ? y - 1 : min(y + 1, frame->height - 1)),
                 below = loadPositions(frame, position, x, y + 1 < frame->height ? y + 1 : max(y, 1u) - 1);

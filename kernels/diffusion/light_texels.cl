@@ -68,7 +68,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     __global const uchar* first = firstTexel(texels, &map->map);
     const intw column = lanesw() + (int)x;
     const uintw id = idsOfTexels(seen + map->seen + (size_t)y * level->width + x);
-    maskw there = (column < (int)level->width) & (PEL_HIDDEN ? id == (uintw)(0) : id != (uintw)(PEL_SEEN_OTHER));
+    maskw there =
+        (column < (int)level->width) & (PEL_HIDDEN ? id == (uintw)(0) : id != (uintw)(PEL_SEEN_OTHER));
     floatw depth = 0.0f;
     if (anyw(there)) {
         depth = texelDepths(map, first, (int)x, (int)y);
@@ -104,9 +105,12 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
         there &= finite3(p) & finitew(across) & finitew(strength);
         const Vec3w previous =
                         pointOfTexel(map, columns - 1.0f, rows, texelDepths(map, first, (int)x - 1, (int)y)),
-                    next = pointOfTexel(map, columns + 1.0f, rows, texelDepths(map, first, (int)x + 1, (int)y)),
-                    over = pointOfTexel(map, columns, rows - 1.0f, texelDepths(map, first, (int)x, (int)y - 1)),
-                    below = pointOfTexel(map, columns, rows + 1.0f, texelDepths(map, first, (int)x, (int)y + 1));
+                    next =
+                        pointOfTexel(map, columns + 1.0f, rows, texelDepths(map, first, (int)x + 1, (int)y)),
+                    over =
+                        pointOfTexel(map, columns, rows - 1.0f, texelDepths(map, first, (int)x, (int)y - 1)),
+                    below =
+                        pointOfTexel(map, columns, rows + 1.0f, texelDepths(map, first, (int)x, (int)y + 1));
 #if PEL_HIDDEN
         // Between two patches, and where light grazes, texels of camera-visible surface remain unmarked.
         // They come and go while the light moves, so they are dropped.

@@ -93,7 +93,8 @@ static inline maskw differences(const Images* in, const Point* here, int x, int 
 }
 
 // Of pixels of one material, `on`.
-static inline floatw curvatureOf(const Images* in, const Point* here, uint x, uint y, float window, maskw on) {
+static inline floatw curvatureOf(const Images* in, const Point* here, uint x, uint y, float window,
+                                 maskw on) {
     const float step =
         sqrt(minLane(fmin(stepTo(in, here, (int)x + 1, (int)y), stepTo(in, here, (int)x, (int)y + 1)), on));
     const int pixels = (int)clamp(window / step + 0.5f, 1.0f, (float)MAX_PIXELS);

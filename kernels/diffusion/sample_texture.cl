@@ -57,7 +57,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void sam
                     ++taken;
                 } else if (s->copies) {
                     storeColor(PEL_FORMAT_OUT, to,
-                               loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &s->irradiance, x, y)), 1);
+                               loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &s->irradiance, x, y)),
+                               1);
                 }
             }
         pixels += taken, tiles += taken > 0;

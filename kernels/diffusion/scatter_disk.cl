@@ -71,12 +71,14 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
             const uint material = frame->materialOf[id];
             const Span to = imageSpan(out, &frame->out, x, y);
             if (material && points[at + PEL_GATHER_PIXEL + 2] > 0.0f) {
-                const float4 s = gatherDisk(frame, points, &materials[material - 1], taps, nodes, x, y, &taken);
+                const float4 s =
+                    gatherDisk(frame, points, &materials[material - 1], taps, nodes, x, y, &taken);
                 storeColor(PEL_FORMAT_OUT, to, vec3(s.x, s.y, s.z), 1);
                 ++pixels;
             } else if (!frame->inPlace) {
                 storeColor(PEL_FORMAT_OUT, to,
-                           loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y)), 1);
+                           loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y)),
+                           1);
             }
         }
     }

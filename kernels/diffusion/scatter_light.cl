@@ -107,7 +107,8 @@ static inline float3 meanLight(float3 light, float3 weight, float3 e) {
 // difference is small.
 static inline float asOfPlane(float weight, float plane) {
     if (!(weight > 0.1f * plane)) return 1.0f;
-    const float off = weight / plane - 1.0f, trust = clamp(2.0f - fabs(off) * (1.0f / NEARLY_PLANE), 0.0f, 1.0f);
+    const float off = weight / plane - 1.0f,
+                trust = clamp(2.0f - fabs(off) * (1.0f / NEARLY_PLANE), 0.0f, 1.0f);
     return (1.0f + off * (1.0f - trust)) / (1.0f + off);
 }
 

@@ -25,8 +25,8 @@ static inline floatw lightOf(floatw light, floatw weight, floatw centre, floatw 
     const floatw filled = fmin(hiddenWeight, fills);
     // Where occluded light is most of the light, all of it counts: visible light cannot have been counted
     // in its place.
-    const floatw most =
-        satw(PEL_HIDDEN_SLOPE * (hiddenLight / fmax(hiddenLight + shown, (floatw)(FLT_MIN)) - PEL_HIDDEN_FROM));
+    const floatw most = satw(PEL_HIDDEN_SLOPE *
+                             (hiddenLight / fmax(hiddenLight + shown, (floatw)(FLT_MIN)) - PEL_HIDDEN_FROM));
     const floatw part = filled / fmax(hiddenWeight, (floatw)(FLT_MIN));
     return max0w(shown * (1.0f - filled) + hiddenLight * part + hiddenFar * (most * (1.0f - part)));
 #else
@@ -149,7 +149,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
         for (uint item = get_local_id(0); item < items; item += PEL_DIFFUSION_GROUP) {
             const uint x = tile % frame->tilesX * PEL_DIFFUSION_TILE +
                            item % (PEL_DIFFUSION_TILE / PEL_WIDTH) * PEL_WIDTH;
-            const uint y = tile / frame->tilesX * PEL_DIFFUSION_TILE + item / (PEL_DIFFUSION_TILE / PEL_WIDTH);
+            const uint y =
+                tile / frame->tilesX * PEL_DIFFUSION_TILE + item / (PEL_DIFFUSION_TILE / PEL_WIDTH);
             if (x >= frame->width || y >= frame->height) continue;
             const uint start = vectorStart(x, frame->width);  // of the images' vectors
             const intw column = lanesw() + (int)x, imageColumn = lanesw() + (int)start;

@@ -59,7 +59,8 @@ static inline uint addPixel(const Line* line, __global const PelGatherTap* tap, 
     return 1;
 }
 
-static inline float4 filterLine(const Line* line, __global const PelGatherTap* taps, float radius, uint* taken) {
+static inline float4 filterLine(const Line* line, __global const PelGatherTap* taps, float radius,
+                                uint* taken) {
     LineSums sums;
     sums.light = sums.weight = (float4)(0.0f);
     const float perPixel = radius / line->size;
@@ -79,8 +80,9 @@ static inline float4 filterLine(const Line* line, __global const PelGatherTap* t
 // Scattered along the row (`down` 0) or the column of a pixel that has a material.
 static inline float4 filterPixel(__global const PelGatherFrame* frame, __global const float* points,
                                  __global const float* light, uint lightStride,
-                                 __global const PelGatherMaterial* material, __global const PelGatherTap* taps,
-                                 __global const float* nodes, uint x, uint y, bool down, uint* taken) {
+                                 __global const PelGatherMaterial* material,
+                                 __global const PelGatherTap* taps, __global const float* nodes, uint x,
+                                 uint y, bool down, uint* taken) {
     Line line;
     line.frame = frame, line.points = points, line.light = light, line.lightStride = lightStride;
     line.material = material, line.nodes = nodes;
@@ -149,7 +151,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void f
                 ++pixels;
             } else if (!frame->inPlace) {
                 storeColor(PEL_FORMAT_OUT, to,
-                           loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y)), 1);
+                           loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y)),
+                           1);
             }
         }
     }

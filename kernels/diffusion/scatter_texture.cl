@@ -49,7 +49,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void tex
 // `step`: texels from one sample to the next along the filter; `place` of `count`: index of the texel along
 // it.
 static inline float4 blurTexel(__global const float4* stretch, __global const float4* light, size_t at,
-                               long step, int place, int count, bool down, float variance, float blurredBefore) {
+                               long step, int place, int count, bool down, float variance,
+                               float blurredBefore) {
     const float4 own = stretch[at], here = light[at];
     const float size = down ? own.y : own.x;
     if (!(here.w > 0.0f) || !(size > 0.0f)) return here;
@@ -89,8 +90,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void tex
     const float4 weight = (float4)(blur->weight[0], blur->weight[1], blur->weight[2], 1.0f);
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
         if (!tiles[tile]) continue;
-        const uint left = tile % frame->tilesX * PEL_TEXTURE_TILE, top = tile / frame->tilesX * PEL_TEXTURE_TILE;
-        for (uint item = get_local_id(0); item < PEL_TEXTURE_TILE * PEL_TEXTURE_TILE; item += PEL_TEXTURE_GROUP) {
+        const uint left = tile % frame->tilesX * PEL_TEXTURE_TILE,
+                   top = tile / frame->tilesX * PEL_TEXTURE_TILE;
+        for (uint item = get_local_id(0); item < PEL_TEXTURE_TILE * PEL_TEXTURE_TILE;
+             item += PEL_TEXTURE_GROUP) {
             const uint x = left + item % PEL_TEXTURE_TILE, y = top + item / PEL_TEXTURE_TILE;
             if (x >= frame->width || y >= frame->height) continue;
             const size_t at = (size_t)y * frame->width + x;
@@ -119,7 +122,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void tex
         for (int j = -PAD; j <= PAD; ++j)
             for (int i = -PAD; i <= PAD; ++i) {
                 const int u = (int)x + i, v = (int)y + j, distance = i * i + j * j;
-                if (u < 0 || v < 0 || u >= (int)frame->width || v >= (int)frame->height || distance >= nearest)
+                if (u < 0 || v < 0 || u >= (int)frame->width || v >= (int)frame->height ||
+                    distance >= nearest)
                     continue;
                 const size_t there = (size_t)v * frame->width + u;
                 if (!(light[there].w > 0.0f)) continue;

@@ -9,8 +9,8 @@
 // for every profile and contain no 1/r. Along an edge whose line passes p at distance D, t = D sinh u makes
 // both integrands smooth at every scale.
 //
-// Inputs: a tree of triangles, a table of M, points (length). Output: RGB per point; 0 for points with NaN or Inf.
-// One work-item: PEL_WIDTH consecutive points, which walk the tree together.
+// Inputs: a tree of triangles, a table of M, points (length). Output: RGB per point; 0 for points with NaN or
+// Inf. One work-item: PEL_WIDTH consecutive points, which walk the tree together.
 
 #include "lib/vector.clh"
 #include "shared/mesh.h"
@@ -100,11 +100,13 @@ static inline Vec3w surfaceTriangle(SurfaceSum sum, __global const float4* table
     const Vec3w toPoint = sub3(x, all3(corner[0]));
     floatw h = dot3(toPoint, all3(n));
     // Points of the surface are off it by rounding only, which 1/r would amplify.
-    const float extent = fmax(fmax(fabs(corner[0].x), fabs(corner[0].y)), fmax(fabs(corner[0].z), length(ab)));
+    const float extent =
+        fmax(fmax(fabs(corner[0].x), fabs(corner[0].y)), fmax(fabs(corner[0].z), length(ab)));
     h = selectw(h, (floatw)(0.0f), fabs(h) < (floatw)(5e-7f * extent));
     const Vec3w p = sub3(toPoint, scale3(all3(n), h)), atHeight = surfaceEnclosed(sum, table, fabs(h));
     // E = light[0] + b beta + c gamma at p, and its gradient along the plane, per channel.
-    const float3 towardsB = cross(ac, n) / twice, towardsC = cross(n, ab) / twice;  // gradients of beta and gamma
+    // gradients of beta and gamma
+    const float3 towardsB = cross(ac, n) / twice, towardsC = cross(n, ab) / twice;
     const floatw beta = dot3(p, all3(towardsB)), gamma = dot3(p, all3(towardsC));
     const float3 b = light[1] - light[0], c = light[2] - light[0];
     Vec3w there = add3(all3(light[0]), add3(scale3(all3(b), beta), scale3(all3(c), gamma)));
@@ -238,9 +240,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void surface_int
             if (sum.cut[c] > 0.0f) near |= (fabs(sqrt(r2) - sum.cut[c]) < (floatw)(node->radius));
         if (!anyw(near)) {
             const Vec3w R = surfaceEnded(sum, table, r2);
-            surfaceAdd(
-                &total, &lost,
-                mul3(R, vec3((floatw)(node->weight[0]), (floatw)(node->weight[1]), (floatw)(node->weight[2]))));
+            surfaceAdd(&total, &lost,
+                       mul3(R, vec3((floatw)(node->weight[0]), (floatw)(node->weight[1]),
+                                    (floatw)(node->weight[2]))));
             i = node->skip;
         } else if (node->triangle != PEL_SURFACE_NONE) {
             const float small = SURFACE_SMALL * node->radius;

@@ -17,7 +17,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void tex
     if (triangle >= frame->triangles) return;
     const UvTriangle t = uvTriangle(frame, indices, uvs, triangle);
     if (!(fabs(t.twice) > 0.0f)) return;
-    const float2 low = fmin(t.a, fmin(t.a + t.ab, t.a + t.ac)), high = fmax(t.a, fmax(t.a + t.ab, t.a + t.ac));
+    const float2 low = fmin(t.a, fmin(t.a + t.ab, t.a + t.ac)),
+                 high = fmax(t.a, fmax(t.a + t.ab, t.a + t.ac));
     const int x0 = max((int)floor(low.x), 0), x1 = min((int)ceil(high.x), (int)frame->width - 1);
     const int y0 = max((int)floor(low.y), 0), y1 = min((int)ceil(high.y), (int)frame->height - 1);
     for (int y = y0; y <= y1; ++y)
@@ -72,7 +73,8 @@ __constant int2 beside[8] = {(int2)(-1, 0),  (int2)(1, 0),  (int2)(0, -1), (int2
                              (int2)(-1, -1), (int2)(1, -1), (int2)(-1, 1), (int2)(1, 1)};
 
 // The triangle on the texel, or on a neighbour; 0: none.
-static inline uint nearestOwner(__global const PelTextureFrame* frame, __global const uint* owners, int x, int y) {
+static inline uint nearestOwner(__global const PelTextureFrame* frame, __global const uint* owners, int x,
+                                int y) {
     uint owner = owners[(size_t)y * frame->width + x];
     for (int k = 0; k < 8 && !owner; ++k) {
         const int u = x + beside[k].x, v = y + beside[k].y;

@@ -22,7 +22,8 @@ static inline uintw ownIds(__global const PelShadeFrame* frame, __global uchar* 
                            uint first) {
     const intw column = lanesw() + (int)first;
     const uintw id = loadIds(frame, material, first, y);
-    return selectw((uintw)(0), id, (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id));
+    return selectw((uintw)(0), id,
+                   (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id));
 }
 
 // tags: the id if normal and position are finite, its negative if not, 0 without a material. For every pixel,
@@ -131,13 +132,15 @@ static inline Vec3w blurAlong(const Field* f, int x, int y, floatw id, floatw ra
                 const floatw tag = loadw(at, f->tags);
                 on = withinImage(f, x, y, offset, on) & (fabs(tag) == id);
                 if (!anyw(on)) break;
-                const Vec3w q = loadPlanes(f->positions, f->plane, at), n = loadPlanes(f->normals, f->plane, at);
+                const Vec3w q = loadPlanes(f->positions, f->plane, at),
+                            n = loadPlanes(f->normals, f->plane, at);
                 const floatw gap2 = distance2(q, before), d2 = distance2(q, p) * perRadius2;
                 const maskw near = (gap2 <= (float)(PEL_BLUR_GAP * PEL_BLUR_GAP) * longest2) & (d2 < 1.0f);
                 const maskw valid = on & (tag > 0.0f), take = valid & near;
                 const floatw rest = 1.0f - d2, weight = rest * rest;
-                sum = select3(
-                    sum, vec3(fma(n.x, weight, sum.x), fma(n.y, weight, sum.y), fma(n.z, weight, sum.z)), take);
+                sum = select3(sum,
+                              vec3(fma(n.x, weight, sum.x), fma(n.y, weight, sum.y), fma(n.z, weight, sum.z)),
+                              take);
                 total = selectw(total, total + weight, take);
                 // Lanes whose walk has ended need no values; those that skip a tap keep theirs.
                 const maskw skipped = on & notw(valid);

@@ -79,8 +79,9 @@ static inline uint onlyId(__global const PelShadeFrame* frame, __global uchar* m
 
 // 0: no pixel of a material; otherwise 1 + the last variant that has all features that its materials need
 // (later ones are cheaper).
-static inline uint classOfTile(__global const PelShadeFrame* frame, __global const PelShadeMaterial* materials,
-                               __global uchar* material, uint tile, uint variants) {
+static inline uint classOfTile(__global const PelShadeFrame* frame,
+                               __global const PelShadeMaterial* materials, __global uchar* material,
+                               uint tile, uint variants) {
     const uint x0 = tile % frame->tilesX * PEL_TILE_WIDTH, y0 = tile / frame->tilesX * PEL_TILE_HEIGHT;
     const uint x1 = min(x0 + PEL_TILE_WIDTH, frame->width), y1 = min(y0 + PEL_TILE_HEIGHT, frame->height);
     uint found = PEL_FEATURES & PEL_BIT_NO_SKIPPING, able = (1u << variants) - 1u, known = ~0u;
@@ -93,8 +94,8 @@ static inline uint classOfTile(__global const PelShadeFrame* frame, __global con
         for (uint x = x0; x < x1; x += PEL_WIDTH) {
             if (found && able == 1u) return 1u;
             const uint first = vectorStart(x, frame->width);
-            const uintw id =
-                loadId(PEL_FORMAT_MATERIAL, imageSpan(material, &frame->images[PEL_IMAGE_MATERIAL], first, y));
+            const uintw id = loadId(PEL_FORMAT_MATERIAL,
+                                    imageSpan(material, &frame->images[PEL_IMAGE_MATERIAL], first, y));
             if (!anyw(id != known)) continue;  // nearly always
             const maskw has = hasMaterial(frame, id);
             // its variants are known now; in mixed vectors only those of this id

@@ -117,11 +117,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_SCREEN_GROUP, 1, 1))) void scre
                     down = loadPixel(&in, x, min(y + 1, frame->height - 1));
         const intw column = lanesw() + (int)x;
         const maskw yes = (maskw)(-1);
-        value = frame->scale * screenCurvature(here.point, neighbour(left, here, column > 0),
-                                               neighbour(right, here, column < (int)frame->width - 1),
-                                               neighbour(up, here, y > 0 ? yes : (maskw)(0)),
-                                               neighbour(down, here, y + 1 < frame->height ? yes : (maskw)(0)),
-                                               frame->edge);
+        value = frame->scale *
+                screenCurvature(here.point, neighbour(left, here, column > 0),
+                                neighbour(right, here, column < (int)frame->width - 1),
+                                neighbour(up, here, y > 0 ? yes : (maskw)(0)),
+                                neighbour(down, here, y + 1 < frame->height ? yes : (maskw)(0)), frame->edge);
         value = selectw((floatw)(0.0f), value, finitew(value));
     }
     storeFloat(out, value);

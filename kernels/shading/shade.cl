@@ -54,8 +54,9 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
         if (material->albedoAfter == 1.0f)
             diffuse = irradiance;
         else  // a part of the albedo is in it
-            before = mul3(irradiance, albedoAfter(PEL_FORMAT_ALBEDO ? p->albedo : loadUniform3(material->albedo),
-                                                  material->albedoAfter));
+            before =
+                mul3(irradiance, albedoAfter(PEL_FORMAT_ALBEDO ? p->albedo : loadUniform3(material->albedo),
+                                             material->albedoAfter));
         if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = diffuse;
     } else if (HAS(PEL_BIT_AMBIENT)) {
         diffuse = ambientOfPixels(scene, vload3(0, material->normalBlend), p);
@@ -90,7 +91,8 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
         __global const PelShadeLight* light = &scene->lights[i];
         const floatw w = loadWideShadow(scene, light, x, y);
         p->valid &= finitew(w);
-        addLight(scene, material, light, p, w, outside & p->valid, scattered, &diffuse, &specular, parts, counts);
+        addLight(scene, material, light, p, w, outside & p->valid, scattered, &diffuse, &specular, parts,
+                 counts);
         if (isEye) addToEye(scene, material, eye, light, p, w, active & p->valid, &inEye, counts);
     }
     const Vec3w albedo = PEL_FORMAT_ALBEDO ? p->albedo : loadUniform3(material->albedo);
@@ -127,8 +129,8 @@ static inline void shadePixels(const Scene* scene, uint x, uint y, uintw id, mas
             const maskw mask = left & (id == current);
             Parts some;
             Vec3w someSpecular;
-            const Vec3w color =
-                shadeMaterial(scene, &scene->materials[current], &p, x, y, mask, &some, &someSpecular, counts);
+            const Vec3w color = shadeMaterial(scene, &scene->materials[current], &p, x, y, mask, &some,
+                                              &someSpecular, counts);
             result = select3(result, color, mask);
             if (PEL_FORMAT_OUT_DIFFUSE) parts.diffuse = select3(parts.diffuse, some.diffuse, mask);
             if (PEL_FORMAT_OUT_DEEP_SCATTER)
@@ -174,7 +176,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
     const uint end = (uint)((ulong)tiles * (group + 1) / groups);
     for (uint i = (uint)((ulong)tiles * group / groups); i < end; ++i) {
         const uint tile = listed ? list[listStart + i] : frame->firstTile + i;
-        const uint tileX = tile % frame->tilesX * PEL_TILE_WIDTH, tileY = tile / frame->tilesX * PEL_TILE_HEIGHT;
+        const uint tileX = tile % frame->tilesX * PEL_TILE_WIDTH,
+                   tileY = tile / frame->tilesX * PEL_TILE_HEIGHT;
         const uint next = listed && i + 1 < end ? list[listStart + i + 1] : tile + 1;
         scene.aheadColumns = (int)(next % frame->tilesX * PEL_TILE_WIDTH - tileX);
         scene.aheadRows = (int)(next / frame->tilesX * PEL_TILE_HEIGHT - tileY);

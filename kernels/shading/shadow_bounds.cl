@@ -9,7 +9,8 @@
 #include "lib/shading/shadow_bounds.clh"
 
 // The texels of a row of two blocks; after its end the last texel again.
-static inline float16 boundsTexels(__global const uchar* row, __global const PelShadeImage* map, uint column) {
+static inline float16 boundsTexels(__global const uchar* row, __global const PelShadeImage* map,
+                                   uint column) {
     if (column + 2 * PEL_BOUNDS_BLOCK <= map->width) {
         __global const float* at = (__global const float*)row;
         if (PEL_FORMAT_SHADOW_MAP == PEL_FMT_R32F) return vload16(0, at + column);

@@ -16,7 +16,8 @@ static inline bool anyTile(__global const PelShadeFrame* frame, __global const u
     return tiles > 0;
 }
 
-static inline __global const PelTapCells* cellsOf(__global const PelShadeLight* light, uint cascade, uint disk) {
+static inline __global const PelTapCells* cellsOf(__global const PelShadeLight* light, uint cascade,
+                                                  uint disk) {
     return light->cascades ? &light->cascade[cascade].cells[disk] : &light->cells[disk];
 }
 
@@ -79,7 +80,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_CELLS_GROUP, 1, 1))) void tap_s
     const float stepX = (float)image->width / (PEL_SAMPLES_PER_CELL * cells->perUv[0]),
                 stepY = (float)image->height / (PEL_SAMPLES_PER_CELL * cells->perUv[1]);
     // Samples begin a radius before the nodes, which begin a radius before the map.
-    const floatw x = fma(convert_floatw(lanesw() + (int)i) - 2.0f * perRadius, (floatw)(stepX), (floatw)(-0.5f));
+    const floatw x =
+        fma(convert_floatw(lanesw() + (int)i) - 2.0f * perRadius, (floatw)(stepX), (floatw)(-0.5f));
     const float y = fma((float)j - 2.0f * perRadius, stepY, -0.5f);
     const floatw value =
         shadowMapDepth(PEL_FORMAT_SHADOW_MAP, firstTexel(mapBuffer, image), image, x, (floatw)(y));

@@ -42,7 +42,8 @@ static inline Receiver receiverInMap(__global const PelWideShadow* light, Vec3w 
     __global const float* m = light->worldToShadow;
     r.w = matrixRow(m, 3, p);
     const floatw inverse = 1.0f / r.w;
-    r.u = matrixRow(m, 0, p) * inverse, r.v = matrixRow(m, 1, p) * inverse, r.z = matrixRow(m, 2, p) * inverse;
+    r.u = matrixRow(m, 0, p) * inverse, r.v = matrixRow(m, 1, p) * inverse,
+    r.z = matrixRow(m, 2, p) * inverse;
     // Towards the light, of length 1 along the map's axis.
     Vec3w toLight = scale3(loadUniform3(light->forward), (floatw)(-1.0f));
     r.zPerLength = light->zPerLength, r.extentU = light->extent[0], r.extentV = light->extent[1];
@@ -181,7 +182,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                                  wideShadow->bleeding};
     const uint maps = (PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) ? max(wideShadow->cascades, 1u) : 1;
     const BetweenImages images = {frame, material, position, depth};
-    const uint apart = pixels == PEL_PIXELS_SECOND ? 2 : 1, end = apart == 2 ? PEL_TILE_WIDTH : PEL_TILE_PIXELS;
+    const uint apart = pixels == PEL_PIXELS_SECOND ? 2 : 1,
+               end = apart == 2 ? PEL_TILE_WIDTH : PEL_TILE_PIXELS;
     uint filtered = 0, texels = 0;  // pixels whose shadow was filtered, and whose filter read the map
     for (uint i = run.begin; i < run.end; ++i) {
         const uint2 origin = tileOrigin(frame, list, i);

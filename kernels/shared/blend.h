@@ -4,10 +4,11 @@
 #include "shared/diffusion.h"
 
 typedef struct PelBlendMaterial {
-    float albedo[3];      // without an albedo image
-    float before, after;  // powers of albedo that irradiance is multiplied by before it is scattered, and after
-    float through[3];     // share of the light on the other side
-    PelUint32 weighs;     // 1: the weights per pixel are still to be applied
+    float albedo[3];  // without an albedo image
+    // powers of albedo that irradiance is multiplied by before it is scattered, and after
+    float before, after;
+    float through[3];  // share of the light on the other side
+    PelUint32 weighs;  // 1: the weights per pixel are still to be applied
 } PelBlendMaterial;
 
 typedef struct PelBlendFrame {

@@ -58,6 +58,7 @@ typedef struct PelGatherFrame {
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelGatherTap) == 48 && sizeof(PelGatherMaterial) == sizeof(PelProfileTable) + 32);
-static_assert(sizeof(PelGatherFrame) == 4 * (8 + 6 + 16 + PEL_DIFFUSION_IDS / 32 + PEL_DIFFUSION_IDS) + 5 * 32);
+static_assert(sizeof(PelGatherFrame) ==
+              4 * (8 + 6 + 16 + PEL_DIFFUSION_IDS / 32 + PEL_DIFFUSION_IDS) + 5 * 32);
 #endif
 #endif

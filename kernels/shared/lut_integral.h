@@ -87,8 +87,8 @@ typedef struct TableWeight {
 // What an interval of the mesh does with the density on one side of the shaded point.
 typedef struct TableSide {
     float distance;  // of the node at the interval's smaller angle, in radii
-    // 1: the moment is computed from the density at both ends, which are so near to one another that differences
-    // of sums cancel in float. 2: the total is too, and the weights are for the angle instead.
+    // 1: the moment is computed from the density at both ends, which are so near to one another that
+    // differences of sums cancel in float. 2: the total is too, and the weights are for the angle instead.
     float antipodal;
     TableWeight toE;    // sin of the angle from that node on
     TableWeight toF;    // its cos

@@ -1,4 +1,5 @@
-// Constants of the mean curvature per pixel, with the same layout on host and device (docs/mathematics.md, section 12).
+// Constants of the mean curvature per pixel, with the same layout on host and device (docs/mathematics.md,
+// section 12).
 #ifndef PEL_SHARED_MEAN_CURVATURE
 #define PEL_SHARED_MEAN_CURVATURE
 #include "shared/shade.h"

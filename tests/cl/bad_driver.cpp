@@ -15,5 +15,6 @@ extern "C" __attribute__((visibility("default"))) cl_kernel clCreateKernel(cl_pr
         while (std::strcmp(ending, "hang") == 0) ::pause();
         std::abort();
     }
-    return reinterpret_cast<decltype(clCreateKernel)*>(dlsym(RTLD_NEXT, "clCreateKernel"))(program, name, code);
+    return reinterpret_cast<decltype(clCreateKernel)*>(dlsym(RTLD_NEXT, "clCreateKernel"))(program, name,
+                                                                                           code);
 }

@@ -204,7 +204,8 @@ COUNT_REFERENCES(programs, Program, cl_program)
 COUNT_REFERENCES(kernels, Kernel, cl_kernel)
 COUNT_REFERENCES(events, Event, cl_event)
 
-cl_context clCreateContext(const cl_context_properties* properties, cl_uint count, const cl_device_id* devices,
+cl_context clCreateContext(const cl_context_properties* properties, cl_uint count,
+                           const cl_device_id* devices,
                            void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*), void* user,
                            cl_int* code) {
     return made(contexts, REAL(clCreateContext)(properties, count, devices, notify, user, code));
@@ -264,10 +265,12 @@ cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocki
     return copied(REAL(clEnqueueReadBuffer)(queue, buffer, blocking, offset, bytes, to, waits, list, event),
                   event, bytes);
 }
-cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset, size_t bytes,
-                            const void* from, cl_uint waits, const cl_event* list, cl_event* event) {
-    return copied(REAL(clEnqueueWriteBuffer)(queue, buffer, blocking, offset, bytes, from, waits, list, event),
-                  event, bytes);
+cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,
+                            size_t bytes, const void* from, cl_uint waits, const cl_event* list,
+                            cl_event* event) {
+    return copied(
+        REAL(clEnqueueWriteBuffer)(queue, buffer, blocking, offset, bytes, from, waits, list, event), event,
+        bytes);
 }
 cl_int clEnqueueCopyBuffer(cl_command_queue queue, cl_mem from, cl_mem to, size_t fromOffset, size_t toOffset,
                            size_t bytes, cl_uint waits, const cl_event* list, cl_event* event) {
@@ -275,7 +278,8 @@ cl_int clEnqueueCopyBuffer(cl_command_queue queue, cl_mem from, cl_mem to, size_
                   event, bytes);
 }
 cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem buffer, const void* pattern, size_t patternBytes,
-                           size_t offset, size_t bytes, cl_uint waits, const cl_event* list, cl_event* event) {
+                           size_t offset, size_t bytes, cl_uint waits, const cl_event* list,
+                           cl_event* event) {
     ::bytesFilled += bytes;
     return withEvent(
         REAL(clEnqueueFillBuffer)(queue, buffer, pattern, patternBytes, offset, bytes, waits, list, event),
@@ -301,10 +305,12 @@ cl_int clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem buffer, void* mapp
                                const cl_event* list, cl_event* event) {
     return withEvent(REAL(clEnqueueUnmapMemObject)(queue, buffer, mapped, waits, list, event), event);
 }
-cl_int clEnqueueMarkerWithWaitList(cl_command_queue queue, cl_uint waits, const cl_event* list, cl_event* event) {
+cl_int clEnqueueMarkerWithWaitList(cl_command_queue queue, cl_uint waits, const cl_event* list,
+                                   cl_event* event) {
     return withEvent(REAL(clEnqueueMarkerWithWaitList)(queue, waits, list, event), event);
 }
-cl_int clEnqueueBarrierWithWaitList(cl_command_queue queue, cl_uint waits, const cl_event* list, cl_event* event) {
+cl_int clEnqueueBarrierWithWaitList(cl_command_queue queue, cl_uint waits, const cl_event* list,
+                                    cl_event* event) {
     return withEvent(REAL(clEnqueueBarrierWithWaitList)(queue, waits, list, event), event);
 }
 

@@ -9,10 +9,12 @@ namespace spy {
 struct [[gnu::visibility("default")]] Counts {
     // References that the library holds now.
     int64_t contexts, queues, memory, programs, kernels, events;
-    int64_t memoryBytes;  // of buffers that live now; parts of buffers and the host's own memory are not counted
+    // of buffers that live now; parts of buffers and the host's own memory are not counted
+    int64_t memoryBytes;
     // Since the program began.
     uint64_t buffersMade;  // clCreateBuffer that succeeded
-    uint64_t bytesCopied;  // by CL_MEM_COPY_HOST_PTR and the enqueued reads, writes and copies between buffers
+    // by CL_MEM_COPY_HOST_PTR and the enqueued reads, writes and copies between buffers
+    uint64_t bytesCopied;
     uint64_t transfers;    // how many of those
     uint64_t launches;     // clEnqueueNDRangeKernel that succeeded
     uint64_t bytesFilled;  // by clEnqueueFillBuffer

@@ -51,7 +51,8 @@ TEST(KernelRules, NoFunctionChangesAStructureThatItTakesByValue) {
         const std::string text = withoutComments(entry.path());
         for (std::sregex_iterator f(text.begin(), text.end(), function), end; f != end; ++f) {
             const std::string parameters = (*f)[2], code = body(text, size_t(f->position() + f->length()));
-            for (std::sregex_iterator p(parameters.begin(), parameters.end(), structure); p != end; ++p, ++checked)
+            for (std::sregex_iterator p(parameters.begin(), parameters.end(), structure); p != end;
+                 ++p, ++checked)
                 EXPECT_EQ(change(code, (*p)[1]), "")
                     << entry.path() << ": " << (*f)[1] << " changes " << (*p)[1] << "; let it work on a copy";
         }

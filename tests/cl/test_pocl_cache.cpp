@@ -222,7 +222,8 @@ TEST_F(PoclCache, AFullDiskIsAnError) {
     fs::create_directory(path("full"));
     const auto mounted = [&](const char* options) {
         return [this, options] {
-            if (::unshare(CLONE_NEWNS) != 0 || ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
+            if (::unshare(CLONE_NEWNS) != 0 ||
+                ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
                 ::mount("tmpfs", path("full").c_str(), "tmpfs", 0, options) != 0)
                 ::_exit(99);
         };

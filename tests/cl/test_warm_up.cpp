@@ -114,8 +114,8 @@ TEST(WarmUp, TablesAndCurvatureFindEverythingBuilt) {
     const Device own("");
     Telling telling;
     pellucid::check(pelDeviceSetProgress(own.get(), Telling::tell, &telling));
-    const uint32_t built =
-        pellucid::warmUpPrograms(own, PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABULATED_LUTS | PEL_PROGRAMS_CURVATURE);
+    const uint32_t built = pellucid::warmUpPrograms(
+        own, PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABULATED_LUTS | PEL_PROGRAMS_CURVATURE);
     EXPECT_GE(built, 10u);
     EXPECT_TRUE(std::is_sorted(telling.fractions.begin(), telling.fractions.end()));
     pellucid::check(pelDeviceSetProgress(own.get(), nullptr, nullptr));

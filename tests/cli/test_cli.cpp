@@ -94,7 +94,8 @@ TEST_F(Cli, ViewStartsThePython) {
     for (const std::string command : {"view", "gallery"}) {
         const Result handed = run({command, "--port", "8351", "head.obj", "--no-browser"});
         EXPECT_EQ(handed.exitCode, 0) << handed.err;
-        EXPECT_NE(handed.out.find(command == "view" ? "pellucid.view\n" : "pellucid.view.gallery\n"), std::string::npos)
+        EXPECT_NE(handed.out.find(command == "view" ? "pellucid.view\n" : "pellucid.view.gallery\n"),
+                  std::string::npos)
             << handed.out;
         EXPECT_NE(handed.out.find("--port\n8351\nhead.obj\n--no-browser\n"), std::string::npos) << handed.out;
     }

@@ -135,7 +135,8 @@ TEST_F(BenchCommand, VerdictsSurviveNoise) {
         {"an error of rounding", report(10, 0.01, 1e-8), report(10, 0.01, 5e-8), "same", 0},
         {"an error that became NaN", report(10, 0.01, 1e-6), report(10, 0.01, NAN), "less accurate", 1},
         {"no time", report(10, 0.01, 1e-6), report(NAN, 0.01, 1e-6), "not compared", 0},
-        {"another operation", report(10, 0.01, 1e-6), report(10, 0.01, 1e-6, 1e10, "table-ring"), "only new", 0},
+        {"another operation", report(10, 0.01, 1e-6), report(10, 0.01, 1e-6, 1e10, "table-ring"), "only new",
+         0},
     };
     for (const Row& row : rows) {
         const auto result = pellucid::bench::compareReports(Json::parse(row.before), Json::parse(row.after));
@@ -228,5 +229,6 @@ TEST_F(BenchCommand, SaysWhatIsWrong) {
     expectRefused({"bench", "compare", path("none.json"), path("none.json")}, 3, "none.json: cannot be read");
     write("a.json", "{}");
     expectRefused({"bench", "compare", path("a.json"), path("a.json")}, 3, "not a report");
-    expectRefused({"bench", "compare", write("b.json", "{\"devices\":[{}]}"), path("b.json")}, 3, "not whole");
+    expectRefused({"bench", "compare", write("b.json", "{\"devices\":[{}]}"), path("b.json")}, 3,
+                  "not whole");
 }

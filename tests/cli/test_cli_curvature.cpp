@@ -31,7 +31,8 @@ TEST_F(CliCurvature, CurvatureOfASphereLikeMesh) {
     ASSERT_EQ(ply.exitCode, 0) << ply.err;
     EXPECT_EQ(io::loadMesh(path("c.ply")).positions, io::loadMesh(mesh).positions);
     EXPECT_TRUE(contains(ply.out, "curvature_max: "));
-    ASSERT_EQ(run({"curvature", mesh, "-o", path("s.npy"), "--estimator", "edge", "--scale", "4"}).exitCode, 0);
+    ASSERT_EQ(run({"curvature", mesh, "-o", path("s.npy"), "--estimator", "edge", "--scale", "4"}).exitCode,
+              0);
     for (float v : npy::read<float>(path("s.npy")).data)
         EXPECT_NEAR(v, 2.0f, 2.0f * tolerance::edgeCurvature);
 }

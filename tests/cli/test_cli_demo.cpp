@@ -68,13 +68,15 @@ TEST_F(Demo, PicturesAreThoseThatShadeMakesOfItsGBuffer) {
         for (const auto& [key, value] : stage.items()) {
             ASSERT_EQ(value.is_string(), key == "stage") << stage;
             if (key == "stage") continue;
-            EXPECT_TRUE(key.ends_with("_ms") || key == "bytes" || stage.contains(key.substr(0, key.find("_per"))))
+            EXPECT_TRUE(key.ends_with("_ms") || key == "bytes" ||
+                        stage.contains(key.substr(0, key.find("_per"))))
                 << key;
             if (key.ends_with("_per_second")) EXPECT_LT(value.get<double>(), 1e11) << stage;
         }
     // The scenes of which bench/roofline counts instructions can be made of the demo's, and can be read.
     ASSERT_EQ(
-        std::system(("python3 '" PELLUCID_SOURCE_DIR "/bench/roofline' --scenes '" + path("demo") + "'").c_str()),
+        std::system(
+            ("python3 '" PELLUCID_SOURCE_DIR "/bench/roofline' --scenes '" + path("demo") + "'").c_str()),
         0);
     for (const std::string scene : {"surface", "taps", "wide", "blur"}) {
         const io::SceneFile read = io::readScene(path("demo/" + scene + ".toml"));

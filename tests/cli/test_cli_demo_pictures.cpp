@@ -1,5 +1,5 @@
-// The demo's pictures are those in tests/cli/pictures. After a change that is meant to be visible, look at the
-// new pictures at full size and keep them: PELLUCID_KEEP_PICTURES=1 test_cli_demo_pictures.
+// The demo's pictures are those in tests/cli/pictures. After a change that is meant to be visible, look at
+// the new pictures at full size and keep them: PELLUCID_KEEP_PICTURES=1 test_cli_demo_pictures.
 #include <cstdlib>
 
 #include "cli_run.h"

@@ -64,7 +64,8 @@ TEST_F(CliEye, TablesAreWrittenAndReadBack) {
     desc.width = 32, desc.height = 16, desc.depth = 8, desc.chamberDepth = 3.4f, desc.irisRadius = 5.5f;
     EXPECT_EQ(lut.read<float>(PEL_LUT_FLOAT), Lut(Device(""), desc).read<float>(PEL_LUT_FLOAT));
     ASSERT_EQ(
-        run({"lut", "eye", "-o", path("h.exr"), "--size", "8x8x4", "--encoding", "half", "--profile", "skin"}).exitCode,
+        run({"lut", "eye", "-o", path("h.exr"), "--size", "8x8x4", "--encoding", "half", "--profile", "skin"})
+            .exitCode,
         0);
     EXPECT_EQ(std::string(io::readLut(Device(""), path("h.exr")).info().profile), "skin");
     EXPECT_EQ(run({"lut", "eye", "-o", path("e.ktx2"), "--size", "8x8x4"}).exitCode, 0);

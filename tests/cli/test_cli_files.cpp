@@ -76,7 +76,8 @@ TEST_F(Files, AFullDiskIsAnErrorOfEveryCommand) {
             disk.empty();
             std::filesystem::create_directory(disk.path("tables"));
             disk.fill(left);
-            const bool small = command[0] == "curvature" && command[3].starts_with(disk.path("o.")) && left > 0;
+            const bool small =
+                command[0] == "curvature" && command[3].starts_with(disk.path("o.")) && left > 0;
             const bool text = command[1] == "fit" && left > 0;
             const Result result = run(command);
             if (small || text) continue;  // a page holds it
@@ -112,7 +113,8 @@ TEST_F(Files, StandardOutputThatIsFullOrClosed) {
     for (const char* arguments : {"profile list", "profile list --json", "profile show skin", "devices",
                                   "devices --json", "--help", "--version", "lut --help"})
         for (const char* to : {">/dev/full", ">&-"}) {
-            EXPECT_EQ(redirected(arguments, std::string(to) + " 2>'" + path("said") + "'"), 3) << arguments << to;
+            EXPECT_EQ(redirected(arguments, std::string(to) + " 2>'" + path("said") + "'"), 3)
+                << arguments << to;
             EXPECT_TRUE(contains(read(path("said")), "standard output cannot be written")) << arguments << to;
         }
     // A file does not become standard output because that was closed.
@@ -135,7 +137,8 @@ TEST_F(Files, PipesAndDevicesAreNoFiles) {
         expectRefused({"curvature", path(name + ".off"), "-o", path("o.npy")}, 3, what);
         expectRefused({"profile", "show", path(name + ".toml")}, 3, what);
         expectRefused({"batch", path(name + ".toml"), "-o", path("o")}, 3, what);
-        expectRefused({"shade", path("g.exr"), "--scene", path(name + ".toml"), "-o", path("o.exr")}, 3, what);
+        expectRefused({"shade", path("g.exr"), "--scene", path(name + ".toml"), "-o", path("o.exr")}, 3,
+                      what);
         expectRefused({"warm-up", path(name + ".toml")}, 3, what);
         expectRefused({"bench", "compare", path(name + ".json"), path(name + ".json")}, 3, what);
     }
@@ -164,8 +167,9 @@ TEST_F(Files, NamesThatAreNoUtf8) {
 TEST_F(Files, WhatStandsInATextIsNeitherAKeyNorABracket) {
     std::string text = std::string(40, '[') + std::string(40, '{');
     for (int i = 0; i < 40; ++i) text += ".a";
-    for (const std::string& source : {'"' + text + " # \\\" " + text + '"', "'" + text + " \\'",
-                                      "\"\"\"" + text + "\" \"\"" + text + "\"\"\"", "'''\n" + text + "''''"}) {
+    for (const std::string& source :
+         {'"' + text + " # \\\" " + text + '"', "'" + text + " \\'",
+          "\"\"\"" + text + "\" \"\"" + text + "\"\"\"", "'''\n" + text + "''''"}) {
         const std::string file =
             write("t.toml", "name = \"t\"\nkind = \"gaussians\"\nunit = \"mm\"\nsource = " + source +
                                 "\n[[gaussian]] # " + text + "\nvariance = 1\nweight = [1, 1, 1]\n");
@@ -201,8 +205,8 @@ TEST_F(Files, KeysWithoutEndAndBracketsWithoutEnd) {
 TEST_F(Files, ManifestsThatExpandWithoutLimit) {
     std::string radii = "1";
     for (int i = 2; i <= 1000; ++i) radii += ", " + std::to_string(i);
-    const std::string grid =
-        "[[grid]]\ndiffusion_radius = [" + radii + "]\nsize = [" + radii + "]\nform = [\"arc\", \"sphere\"]\n";
+    const std::string grid = "[[grid]]\ndiffusion_radius = [" + radii + "]\nsize = [" + radii +
+                             "]\nform = [\"arc\", \"sphere\"]\n";
     const Result result = run({"batch", write("m.toml", grid + "[[lut]]\nsize = 8\n"), "-o", path("t")});
     EXPECT_EQ(result.exitCode, 3);
     EXPECT_TRUE(

@@ -50,7 +50,8 @@ TEST_F(CliLut, LutFilesHoldTheLibrarysTexels) {
         const io::Image image = io::readImage(path(name));
         ASSERT_EQ(image.channels.size(), 4u);
         for (size_t i = 0; i < bytes.data.size(); ++i) {
-            ASSERT_EQ(std::lround(255 * image.channels[i % 4].pixels[i / 4]), bytes.data[i]) << name << ' ' << i;
+            ASSERT_EQ(std::lround(255 * image.channels[i % 4].pixels[i / 4]), bytes.data[i])
+                << name << ' ' << i;
         }
     }
     EXPECT_EQ(run({"lut", "curvature", "--preset", "faceworks", "--size", "24x10", "--radius-min", "0.5",
@@ -105,7 +106,8 @@ TEST_F(CliLut, TablesAreAMaterialsUnlessAPresetSaysOtherwise) {
     const nlohmann::json shown =
         run({"lut", "shadow", "--profile", "marble", "-o", path("p.exr"), "--json"}).json();
     const PelProfileInfo marble = Profile::named("marble").info();
-    EXPECT_NEAR(shown["width_min"].get<float>(), 1.3f * *std::max_element(marble.width, marble.width + 3), 1e-3);
+    EXPECT_NEAR(shown["width_min"].get<float>(), 1.3f * *std::max_element(marble.width, marble.width + 3),
+                1e-3);
     EXPECT_EQ(shown["closed_ends"], true);
     EXPECT_EQ(run({"lut", "curvature", "-o", path("p.exr"), "--json"}).json()["form"], "sphere");
     expectRefused({"lut", "shadow", "--preset", "unity", "-o", path("p.exr")}, 2, "faceworks");

@@ -179,7 +179,8 @@ TEST_F(CliReference, WalkWritesHalvesForCompare) {
         if (gbuffer_.channel("Id.X").pixels[i] == 0) continue;
         const double cosine = gbuffer_.channel("P.X").pixels[i] / radius;
         const double expected = 0.5 / 0.8 * walked.radiance[size_t(std::min(19.0, 10 * (cosine + 1)))];
-        square += (first - expected) * (second - expected), difference += std::pow(first - second, 2), ++count;
+        square += (first - expected) * (second - expected), difference += std::pow(first - second, 2),
+            ++count;
         EXPECT_NEAR(out.channel("MeanCurvature").pixels[i], 1 / radius, testsAreSmall() ? 0.05 : 0.002);
         EXPECT_NEAR(out.channel("Thickness").pixels[i], 2 * radius, testsAreSmall() ? 1 : 0.1);
     }
@@ -260,10 +261,11 @@ TEST_F(CliReference, WrongUseIsRefused) {
     expectRefused(
         {"reference", path("ball.off"), "--scene", path("s.toml"), "-o", path("o.npy"), "--part", "skin"}, 3,
         "has no parts");
-    expectRefused(
-        {"reference", path("ball.off"), "--scene", path("s.toml"), "-o", path("o.npy"), "--profile", "nobody"},
-        3, "nobody");
-    expectRefused({"reference", path("ball.off"), "--scene", path("s.toml"), "-o", path("o.jpg")}, 2, "o.jpg");
+    expectRefused({"reference", path("ball.off"), "--scene", path("s.toml"), "-o", path("o.npy"), "--profile",
+                   "nobody"},
+                  3, "nobody");
+    expectRefused({"reference", path("ball.off"), "--scene", path("s.toml"), "-o", path("o.jpg")}, 2,
+                  "o.jpg");
 }
 
 TEST_F(CliReference, Compare) {

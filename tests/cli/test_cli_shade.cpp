@@ -183,7 +183,8 @@ TEST_F(Shade, BadFilesAreRefused) {
     expectRefused(expecting("form = \"arc\""), 3, "form is sphere; arc is asked for");
     expectRefused(expecting("radius_min = 0.5"), 3, "radius_min is 1; 0.5 is asked for");
     expectRefused(expecting("diffusion_radius = 3"), 3, "diffusion_radius is 2.7; 3 is asked for");
-    expectRefused({"shade", path("g.exr"), "--scene", path("s.toml"), "-o", path("no/o.exr")}, 2, "no folder");
+    expectRefused({"shade", path("g.exr"), "--scene", path("s.toml"), "-o", path("no/o.exr")}, 2,
+                  "no folder");
     expectRefused({"shade", path("g.exr"), "--scene", path("s.toml"), "-o", path("o.gif")}, 2, ".exr");
     expectRefused({"shade", path("g.exr"), "-o", path("o.exr")}, 2, "--scene");
 }
@@ -310,8 +311,8 @@ TEST_F(Shade, AWarmUpOfALargeFrameThatScattersLeavesNothingToCompile) {
     ASSERT_EQ(shaded.exitCode, 0) << shaded.err;
     EXPECT_EQ(compiled(), before);
     if (contains(built.json().at("device").get<std::string>(), "pthread")) {
-        EXPECT_GT(
-            std::ranges::count_if(before, [](const std::string& k) { return k.ends_with("light_texels.so"); }),
-            0);
+        EXPECT_GT(std::ranges::count_if(before,
+                                        [](const std::string& k) { return k.ends_with("light_texels.so"); }),
+                  0);
     }
 }

@@ -12,13 +12,14 @@ TEST_F(Shade, TablesOfMaterialsAndProfileFiles) {
           "name = \"own\"\nsource = \"a test\"\nkind = \"table\"\nunit = \"mm\"\n[[sample]]\ndistance = 0\n"
           "value = [3, 2, 1]\n[[sample]]\ndistance = 4\nvalue = [0.1, 0.1, 0]\n");
     io::Image curved = gbuffer_;
-    curved.addInterleaved(std::vector<std::string>{"View.C.X"}, std::vector<float>(size_t(width * height), 0.3f));
+    curved.addInterleaved(std::vector<std::string>{"View.C.X"},
+                          std::vector<float>(size_t(width * height), 0.3f));
     io::writeExr(path("c.exr"), curved);
     scene_.channels[PEL_SLOT_CURVATURE] = {"C.X"};
     scene_.materials[0].curvatureLut = "t";
-    ASSERT_EQ(
-        run({"lut", "curvature", "--profile", path("own.toml"), "--size", "64x16", "-o", path("t.exr")}).exitCode,
-        0);
+    ASSERT_EQ(run({"lut", "curvature", "--profile", path("own.toml"), "--size", "64x16", "-o", path("t.exr")})
+                  .exitCode,
+              0);
     const auto shaded = [&](const std::string& profile, const std::string& file) {
         io::SceneLut lut;
         lut.name = "t";
@@ -102,7 +103,8 @@ TEST_F(Shade, CurvatureFromThePictureItself) {
 TEST_F(Shade, PartsOfThePictureAddUpToIt) {
     // A wall 3 thick, given per pixel; light from the front and from behind.
     io::Image thick = gbuffer_;
-    thick.addInterleaved(std::vector<std::string>{"Wall.V"}, std::vector<float>(size_t(width * height), 3.0f));
+    thick.addInterleaved(std::vector<std::string>{"Wall.V"},
+                         std::vector<float>(size_t(width * height), 3.0f));
     std::vector<float> positions;
     for (int i = 0; i < width * height; ++i)
         positions.insert(positions.end(), {float(i % width), float(i / width), 0.0f});

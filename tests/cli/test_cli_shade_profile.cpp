@@ -108,7 +108,8 @@ TEST_F(ShadeProfile, DepthThatGivesNoLikelySizeIsSaid) {
     m[14] = -(far - near) / (far * near), m[15] = 1 / near;  // 1 / distance
     const auto with = [&](float value, float unit) {
         io::Image gbuffer = gbuffer_;
-        gbuffer.addInterleaved(std::vector<std::string>{"D.Z"}, std::vector<float>(gbuffer.pixelCount(), value));
+        gbuffer.addInterleaved(std::vector<std::string>{"D.Z"},
+                               std::vector<float>(gbuffer.pixelCount(), value));
         io::writeExr(path("g.exr"), gbuffer);
         scene_.options.millimetresPerUnit = unit;
         io::writeScene(path("s.toml"), scene_);

@@ -12,7 +12,8 @@ struct Option {
 };
 
 // Options of a subcommand, as `pellucid describe` gives them, and of those below it.
-void collect(const nlohmann::json& app, const std::vector<std::string>& command, std::vector<Option>& options) {
+void collect(const nlohmann::json& app, const std::vector<std::string>& command,
+             std::vector<Option>& options) {
     for (const auto& option : app.at("options")) {
         const std::string value = option.at("value"),
                           name = option.at("names").empty() ? "" : option["names"].back();
@@ -94,7 +95,8 @@ TEST_F(CliValues, AnUnknownExtensionIsWrongUseEverywhere) {
              {"reference", path("m.ply"), "--scene", scene, "-o", bad}}) {
         const Result result = run(arguments);
         EXPECT_EQ(result.exitCode, 2) << arguments[0] << " " << arguments[1] << ": " << result.err;
-        EXPECT_TRUE(contains(result.err, "a.foo: has the unknown extension '.foo'; known here: ")) << result.err;
+        EXPECT_TRUE(contains(result.err, "a.foo: has the unknown extension '.foo'; known here: "))
+            << result.err;
     }
 }
 

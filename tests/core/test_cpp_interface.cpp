@@ -16,7 +16,8 @@ namespace {
 
 // A structure that refers to a temporary's handle must not come out of it.
 static_assert(std::is_same_v<decltype(imageDesc(std::declval<Buffer>(), PEL_FORMAT_R32F, 1, 1)), OwnedImage>);
-static_assert(std::is_same_v<decltype(imageDesc(std::declval<Buffer&>(), PEL_FORMAT_R32F, 1, 1)), PelImageDesc>);
+static_assert(
+    std::is_same_v<decltype(imageDesc(std::declval<Buffer&>(), PEL_FORMAT_R32F, 1, 1)), PelImageDesc>);
 static_assert(std::is_same_v<decltype(vertexView(std::declval<Buffer>(), 1)), OwnedVertices>);
 static_assert(std::is_same_v<decltype(material(std::declval<Profile>(), {})), OwnedMaterial>);
 static_assert(!std::is_constructible_v<PelImageDesc, OwnedImage> &&
@@ -130,7 +131,8 @@ TEST(CppInterface, EveryMessageNamesItsImage) {
     mesh.numVertices = 3, mesh.indices = triangle, mesh.numIndices = 3;
     const MeshTopology topology(device(), mesh);
     expectError(invalid, {"positions", "PelBuffer"}, [&] {
-        topology.curvature(pelCurvatureParamsDefaults(), PelVertexView{nullptr, 0, 0, 3}, vertexView(buffer, 3));
+        topology.curvature(pelCurvatureParamsDefaults(), PelVertexView{nullptr, 0, 0, 3},
+                           vertexView(buffer, 3));
     });
 }
 

@@ -229,7 +229,8 @@ TEST(Events, WaitingForAFailedEventIsAnError) {
 TEST(Errors, CallbackGetsTheMessage) {
     std::string heard;
     pelSetErrorCallback(
-        [](void* user, PelError, const char* message) { *static_cast<std::string*>(user) = message; }, &heard);
+        [](void* user, PelError, const char* message) { *static_cast<std::string*>(user) = message; },
+        &heard);
     pelDeviceGetInfo(nullptr, nullptr);
     pelSetErrorCallback(nullptr, nullptr);
     EXPECT_EQ(heard, pelGetErrorMessage());

@@ -131,7 +131,8 @@ TEST_P(EachKind, InventedOnesAreRefused) {
     for (int i = 0; i < 1000; ++i) invented.push_back(uintptr_t(random()));
     for (int i = 0; i < 1000; ++i)
         invented.push_back(value ^ (uintptr_t(random()) >> random() % 60 << random() % 60));
-    std::erase_if(invented, [](uintptr_t v) { return v == 0 || handles::isLive(reinterpret_cast<Handle>(v)); });
+    std::erase_if(invented,
+                  [](uintptr_t v) { return v == 0 || handles::isLive(reinterpret_cast<Handle>(v)); });
     ASSERT_GT(invented.size(), 2000u);
     Heard heard;
     for (const uintptr_t v : invented) {

@@ -52,7 +52,8 @@ TEST(HeldMemory, OfAShaderByMethod) {
         const Profile skin = Profile::skin();
         shader.setMaterial(1, whiteMaterial(skin, PelScattering(scattering)));
         shader.set(std::vector{lamp.light});
-        shader.set(0, PEL_LIGHT_SHADOW_MAP, pellucid::imageDesc(map, PEL_FORMAT_R32F, lamp.width, lamp.height));
+        shader.set(0, PEL_LIGHT_SHADOW_MAP,
+                   pellucid::imageDesc(map, PEL_FORMAT_R32F, lamp.width, lamp.height));
         shader.commit().execute();
         const uint64_t said = shader.stats().scratchBytes, held = freed([&] { shader = Shader(); });
         if (scattering != PEL_SCATTERING_PREINTEGRATED) {
@@ -93,7 +94,8 @@ TEST(HeldMemory, OfScatteringAloneByMethod) {
 TEST(HeldMemory, OfALiveMesh) {
     using namespace fixture;
     const Mesh mesh =
-        pairOf(tessellate(reference::torusSurface(3, 1), 128, 64, reference::Tessellation::irregular).mesh).mesh;
+        pairOf(tessellate(reference::torusSurface(3, 1), 128, 64, reference::Tessellation::irregular).mesh)
+            .mesh;
     const uint32_t n = mesh.vertices();
     const MeshTopology topology(fixture::device(), topologyDesc(mesh));
     const Buffer positions(fixture::device(), mesh.positions), result(fixture::device(), n * sizeof(float));

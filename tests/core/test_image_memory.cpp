@@ -38,7 +38,9 @@ struct Pass {
     }
     PelError shade(const PelImageDesc& normals, const PelImageDesc& albedo, const PelImageDesc& radiance) {
         try {
-            shader.set(PEL_SLOT_NORMAL_SHADING, normals).set(PEL_SLOT_ALBEDO, albedo).set(PEL_SLOT_RADIANCE, radiance);
+            shader.set(PEL_SLOT_NORMAL_SHADING, normals)
+                .set(PEL_SLOT_ALBEDO, albedo)
+                .set(PEL_SLOT_RADIANCE, radiance);
             shader.commit().execute();
         } catch (const Error& e) {
             return e.code();
@@ -146,10 +148,10 @@ TEST(ImageMemory, PlanesOfPaddedRows) {
         for (uint32_t c = 0; c < 3; ++c) planes[at(i, c)] = albedoAt(i, c);
     const Buffer albedo(device(), planes), radiance(device(), std::vector<float>(planes.size(), -7));
     Pass pass;
-    ASSERT_EQ(
-        pass.shade(image(normals, PEL_FORMAT_RGB32F, 0), image(albedo, PEL_FORMAT_PLANAR_RGB32F, 0, rowStride),
-                   image(radiance, PEL_FORMAT_PLANAR_RGB32F, 0, rowStride)),
-        PEL_SUCCESS)
+    ASSERT_EQ(pass.shade(image(normals, PEL_FORMAT_RGB32F, 0),
+                         image(albedo, PEL_FORMAT_PLANAR_RGB32F, 0, rowStride),
+                         image(radiance, PEL_FORMAT_PLANAR_RGB32F, 0, rowStride)),
+              PEL_SUCCESS)
         << pelGetErrorMessage();
     std::vector<float> right(planes.size(), -7);
     for (uint32_t i = 0; i < pixels; ++i)
@@ -159,12 +161,12 @@ TEST(ImageMemory, PlanesOfPaddedRows) {
     // One byte less is too small: the last plane ends with the last pixel of its last row.
     const uint64_t needed = 2 * plane + (height - 1) * rowStride + width * sizeof(float);
     const Buffer enough(device(), needed), less(device(), needed - 4);
-    EXPECT_EQ(
-        pass.shade(image(normals, PEL_FORMAT_RGB32F, 0), image(albedo, PEL_FORMAT_PLANAR_RGB32F, 0, rowStride),
-                   image(enough, PEL_FORMAT_PLANAR_RGB32F, 0, rowStride)),
-        PEL_SUCCESS);
-    EXPECT_EQ(
-        pass.shade(image(normals, PEL_FORMAT_RGB32F, 0), image(albedo, PEL_FORMAT_PLANAR_RGB32F, 0, rowStride),
-                   image(less, PEL_FORMAT_PLANAR_RGB32F, 0, rowStride)),
-        PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(pass.shade(image(normals, PEL_FORMAT_RGB32F, 0),
+                         image(albedo, PEL_FORMAT_PLANAR_RGB32F, 0, rowStride),
+                         image(enough, PEL_FORMAT_PLANAR_RGB32F, 0, rowStride)),
+              PEL_SUCCESS);
+    EXPECT_EQ(pass.shade(image(normals, PEL_FORMAT_RGB32F, 0),
+                         image(albedo, PEL_FORMAT_PLANAR_RGB32F, 0, rowStride),
+                         image(less, PEL_FORMAT_PLANAR_RGB32F, 0, rowStride)),
+              PEL_ERROR_INVALID_ARGUMENT);
 }

@@ -28,8 +28,9 @@ std::atomic<bool> callbacks{true};  // the driver says when a buffer ends
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags,
-                                                                        size_t bytes, void* host, cl_int* code) {
+extern "C" __attribute__((visibility("default"))) cl_mem clCreateBuffer(cl_context context,
+                                                                        cl_mem_flags flags, size_t bytes,
+                                                                        void* host, cl_int* code) {
     if (untilFailure > 0 && --untilFailure == 0) {
         if (code) *code = CL_MEM_OBJECT_ALLOCATION_FAILURE;
         return nullptr;
@@ -47,7 +48,8 @@ extern "C" __attribute__((visibility("default"))) cl_int clSetMemObjectDestructo
 
 namespace {
 
-// Reports a failure to the parent by the exit code, which expectations of Google Test in a child would not do.
+// Reports a failure to the parent by the exit code, which expectations of Google Test in a child would not
+// do.
 #define CHILD_EXPECT(condition)                                                                            \
     do {                                                                                                   \
         if (!(condition)) {                                                                                \
@@ -145,7 +147,8 @@ TEST(Memory, TablesAndTopologiesRunOutOfIt) {
         const rlimit none{addressSpace() + (8 << 20), addressSpace() + (8 << 20)};
         CHILD_EXPECT(::setrlimit(RLIMIT_AS, &none) == 0);
         PelMeshTopology topology = nullptr;
-        CHILD_EXPECT(pelMeshTopologyCreate(device.get(), &mesh, &topology, nullptr) == PEL_ERROR_OUT_OF_MEMORY);
+        CHILD_EXPECT(pelMeshTopologyCreate(device.get(), &mesh, &topology, nullptr) ==
+                     PEL_ERROR_OUT_OF_MEMORY);
     });
 }
 

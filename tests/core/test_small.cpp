@@ -19,7 +19,8 @@ const Device& device() {
 
 struct SmallMesh {
     fixture::Pair both = fixture::pairOf(
-        reference::tessellate(reference::torusSurface(30, 10), 11, 7, reference::Tessellation::irregular).mesh);
+        reference::tessellate(reference::torusSurface(30, 10), 11, 7, reference::Tessellation::irregular)
+            .mesh);
     const reference::Mesh& truth = both.exact;
     uint32_t vertices = both.mesh.vertices();
     MeshTopology topology{device(), fixture::topologyDesc(both.mesh)};
@@ -111,7 +112,8 @@ TEST(Small, ShadowAndSpecularTables) {
     for (int i = 0; i < 15; ++i) {
         const reference::Rgb truth = reference::shadowTexel(spec, *skin, i % 5, i / 5);
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(texels[size_t(3 * i + c)], truth[c], 1e-5);
-        EXPECT_NEAR(lobes[size_t(3 * i)], reference::beckmannEncoded((i % 5 + 0.5) / 5, (i / 5 + 0.5) / 3), 1e-5);
+        EXPECT_NEAR(lobes[size_t(3 * i)], reference::beckmannEncoded((i % 5 + 0.5) / 5, (i / 5 + 0.5) / 3),
+                    1e-5);
     }
 }
 
@@ -131,7 +133,8 @@ TEST(Small, Shading) {
 
 TEST(Small, PassesOverPixels) {
     const auto tables = shade_test::makeTables(device(), 12, 7);
-    const shade_test::MapLight from = shade_test::mapLight(61, true, false, {0.5, 0.2, 0.9}, {4, 2, 5}, 40, 61);
+    const shade_test::MapLight from =
+        shade_test::mapLight(61, true, false, {0.5, 0.2, 0.9}, {4, 2, 5}, 40, 61);
     shade_test::Frame f = shade_test::reliefFrame(1, 19, 9, 0.4f);
     f.lights = {from.light};
     shade_test::showWideShadow(f);
@@ -140,7 +143,8 @@ TEST(Small, PassesOverPixels) {
     for (size_t i = 0; i < f.pixels(); ++i) {
         if (f.slots[PEL_SLOT_MATERIAL].at(i) == 0) continue;
         const reference::WideFilterParams params{f.materials[1].shadowFilterWidth, l.shadowBias,
-                                                 l.shadowSoftness, l.shadowConeSlope, int(l.shadowFilterTexels)};
+                                                 l.shadowSoftness, l.shadowConeSlope,
+                                                 int(l.shadowFilterTexels)};
         EXPECT_NEAR(shadow[3 * i],
                     reference::wideShadow(from.map, from.view, f.slots[PEL_SLOT_POSITION].vec(i),
                                           f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i), params),

@@ -49,7 +49,8 @@ inline void setRow(float* matrix, int row, Vec3 v, double constant) {
 }
 
 // A parallel map `extent` mm wide, 20 deep, from 10 before the ball.
-inline std::vector<float> parallelMap(float* matrix, Vec3 toLight, double extent, uint32_t side, bool reversed) {
+inline std::vector<float> parallelMap(float* matrix, Vec3 toLight, double extent, uint32_t side,
+                                      bool reversed) {
     const Vec3 right = normalized(cross(Vec3{0, 1, 0}, toLight)), up = cross(toLight, right);
     setRow(matrix, 0, right / extent, 0.5);
     setRow(matrix, 1, -1 / extent * up, 0.5);
@@ -76,7 +77,8 @@ inline LitBall makeBall(Form form, Vec3 toLight, uint32_t side) {
     ball.position = 8 * toLight;
     for (int k = 0; k < 3; ++k) l.position[k] = float(ball.position[k]);
     const Vec3 right = normalized(cross(Vec3{0, 1, 0}, toLight)), up = cross(toLight, right);
-    const double near = 1, far = 40, a = far / (far - near), b = -near * far / (far - near);  // z = a + b / distance
+    // z = a + b / distance
+    const double near = 1, far = 40, a = far / (far - near), b = -near * far / (far - near);
     if (form == Form::perspective || form == Form::spot || form == Form::cube || form == Form::radial) {
         ball.point = true;
         l.type = form == Form::spot ? PEL_LIGHT_SPOT : PEL_LIGHT_POINT;
@@ -122,7 +124,8 @@ inline LitBall makeBall(Form form, Vec3 toLight, uint32_t side) {
                     const Vec3 faces[] = {{1, -v, -u}, {-1, -v, u}, {u, 1, v},
                                           {u, -1, -v}, {u, -v, 1},  {-u, -v, -1}};
                     const Vec3 d = faces[face];
-                    const double distance = hitBall(ball.position, normalized(d)), along = distance / length(d);
+                    const double distance = hitBall(ball.position, normalized(d)),
+                                 along = distance / length(d);
                     if (distance < 20)
                         ball.maps[0][(face * side + y) * side + x] =
                             float(form == Form::cube ? a + b / along : distance / 20);

@@ -96,7 +96,8 @@ inline Body head(const std::string& path, const std::string& name, int levels) {
 }
 
 // The part of a body round one of its vertices, `size` mm a side.
-inline Body closeUp(Body body, const std::string& name, const std::function<double(Vec3)>& foremost, double size) {
+inline Body closeUp(Body body, const std::string& name, const std::function<double(Vec3)>& foremost,
+                    double size) {
     Vec3 best{};
     for (size_t v = 0; 3 * v < body.mesh.positions.size(); ++v) {
         const float* p = &body.mesh.positions[3 * v];

@@ -178,7 +178,8 @@ class Stage {
     sample::Bounds shown_;
 };
 
-inline LitScene make(const Device& device, const Body& body, const SceneRequest& request, const Profile& profile) {
+inline LitScene make(const Device& device, const Body& body, const SceneRequest& request,
+                     const Profile& profile) {
     const Stage stage(device, body, request.unit);
     LitScene s = stage.look(request, profile);
     stage.addTruth(device, s, profile, request.profileScale);
@@ -254,8 +255,9 @@ inline std::vector<float> shade(const Device& device, const LitScene& s, const P
     shader.set(options);
     const auto w = uint32_t(s.width), h = uint32_t(s.height);
     const Buffer positions(device, s.positions), normals(device, s.normals),
-        curvature(device, s.gbuffer.curvature.data), ids(device, s.gbuffer.material), map(device, s.map.depth),
-        irradiance(device, s.irradiance), radiance(device, s.positions.size() * sizeof(float));
+        curvature(device, s.gbuffer.curvature.data), ids(device, s.gbuffer.material),
+        map(device, s.map.depth), irradiance(device, s.irradiance),
+        radiance(device, s.positions.size() * sizeof(float));
     shader.set(PEL_SLOT_POSITION, imageDesc(positions, PEL_FORMAT_RGB32F, w, h));
     shader.set(PEL_SLOT_NORMAL_SHADING, imageDesc(normals, PEL_FORMAT_RGB32F, w, h));
     shader.set(PEL_SLOT_NORMAL_GEOMETRIC, imageDesc(normals, PEL_FORMAT_RGB32F, w, h));
@@ -292,7 +294,8 @@ inline std::vector<float> shadePreintegrated(const Device& device, const LitScen
 }
 
 // Irradiance as it is: no scattering, and shadows traced by ray.
-inline std::vector<float> shadeLambert(const Device&, const LitScene& s, const Profile&, double, double* seconds) {
+inline std::vector<float> shadeLambert(const Device&, const LitScene& s, const Profile&, double,
+                                       double* seconds) {
     if (seconds) *seconds = 0;
     return s.irradiance;
 }

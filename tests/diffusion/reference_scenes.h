@@ -75,7 +75,8 @@ inline std::vector<float> readHalves(const std::string& path, size_t count) {
         uint16_t h;
         std::memcpy(&h, from + 2 * i, 2);
         const int exponent = h >> 10 & 31, mantissa = h & 1023;
-        const double v = exponent ? std::ldexp(1 + mantissa / 1024.0, exponent - 15) : std::ldexp(mantissa, -24);
+        const double v =
+            exponent ? std::ldexp(1 + mantissa / 1024.0, exponent - 15) : std::ldexp(mantissa, -24);
         values[i] = float(h >> 15 ? -v : v);
     }
     return values;
@@ -86,7 +87,8 @@ inline ReferenceScene head1536(const std::string& references, const std::string&
     ReferenceScene r;
     r.side = 1536, r.samples = 3;
     const std::string position[] = {"Position.X", "Position.Y", "Position.Z"},
-                      normal[] = {"NS.X", "NS.Y", "NS.Z"}, surface[] = {"Surface.R", "Surface.G", "Surface.B"},
+                      normal[] = {"NS.X", "NS.Y", "NS.Z"},
+                      surface[] = {"Surface.R", "Surface.G", "Surface.B"},
                       light[] = {"Irradiance.Y", "Irradiance.Y", "Irradiance.Y"};
     r.positions = image.interleaved(position);
     r.normals = image.interleaved(normal);
@@ -190,7 +192,8 @@ inline Shown shade(const Device& device, const ReferenceScene& r, PelScattering 
 
 // Root mean square per channel over pixels of the reference that are wholly covered, in 1e-4 of radiance.
 // `unlit`: of those without light.
-inline std::array<double, 3> error(const ReferenceScene& r, const std::vector<float>& result, bool unlit = false) {
+inline std::array<double, 3> error(const ReferenceScene& r, const std::vector<float>& result,
+                                   bool unlit = false) {
     std::array<double, 3> sum{};
     size_t count = 0;
     const size_t k = r.samples, coarse = r.side / k;

@@ -54,7 +54,8 @@ inline Picture plane(uint32_t width, uint32_t height, double size,
     Picture p(width, height);
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < width; ++x)
-            p.set(p.at(x, y), {(x + 0.5) * size, (y + 0.5) * size, 0}, light((x + 0.5) * size, (y + 0.5) * size));
+            p.set(p.at(x, y), {(x + 0.5) * size, (y + 0.5) * size, 0},
+                  light((x + 0.5) * size, (y + 0.5) * size));
     return p;
 }
 
@@ -92,7 +93,8 @@ inline Result run(const Picture& p, const std::vector<Material>& materials, bool
     const auto rgb = [&](const Buffer& b) {
         return pellucid::imageDesc(b, PEL_FORMAT_RGB32F, p.width, p.height);
     };
-    const PelImageDesc positions = rgb(x), ids = pellucid::imageDesc(i, PEL_FORMAT_R8_UINT, p.width, p.height);
+    const PelImageDesc positions = rgb(x),
+                       ids = pellucid::imageDesc(i, PEL_FORMAT_R8_UINT, p.width, p.height);
     scatter.execute(p.params, rgb(e), &positions, nullptr, &ids, rgb(inPlace ? e : out));
     return {(inPlace ? e : out).readAll<float>(), scatter.stats()};
 }

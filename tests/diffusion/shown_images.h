@@ -24,7 +24,8 @@ struct ShownImages {
     }
     void set(PelImageSlot slot, const std::vector<uint8_t>& ids) { set(slot, ids, PEL_FORMAT_R8_UINT); }
     // A map of a light, by default the first one.
-    void setMap(PelLightSlot slot, const std::vector<float>& values, uint32_t w, uint32_t h, uint32_t light = 0) {
+    void setMap(PelLightSlot slot, const std::vector<float>& values, uint32_t w, uint32_t h,
+                uint32_t light = 0) {
         shader.set(
             light, slot,
             pellucid::imageDesc(pellucid::Buffer(device, values),

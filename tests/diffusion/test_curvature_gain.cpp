@@ -47,7 +47,8 @@ Gains gainsOf(const Surface& surface, uint32_t side, double size, PelScattering 
     std::vector<uint8_t> ids;
     for (uint32_t row = 0; row < side; ++row)
         for (uint32_t column = 0; column < side; ++column) {
-            const double x = (column + 0.5 - 0.5 * side) * size, y = (0.5 * side - row - 0.5) * size, h = 1e-4;
+            const double x = (column + 0.5 - 0.5 * side) * size, y = (0.5 * side - row - 0.5) * size,
+                         h = 1e-4;
             const double dx = (surface.height(x + h, y) - surface.height(x - h, y)) / (2 * h),
                          dy = (surface.height(x, y + h) - surface.height(x, y - h)) / (2 * h),
                          length = std::sqrt(1 + dx * dx + dy * dy);
@@ -106,7 +107,8 @@ std::array<double, 3> errorOfWalk(const ReferenceScene& r, const std::vector<flo
     return sum;
 }
 
-void print(const char* scene, int method, const std::array<double, 3>& own, const std::array<double, 3>& lambert) {
+void print(const char* scene, int method, const std::array<double, 3>& own,
+           const std::array<double, 3>& lambert) {
     std::printf("%-12s method %d  1e-4: %5.0f %5.0f %5.0f   Lambert %5.0f %5.0f %5.0f\n", scene, method,
                 own[0], own[1], own[2], lambert[0], lambert[1], lambert[2]);
 }
@@ -138,7 +140,8 @@ TEST(CurvatureGain, FollowsItsStrengthAndIsNothingOnPlanes) {
                                  without = gainsOf(surfaces[0], 24, 0.3, method, 0).light;
         const size_t middle = 12 * 24 + 12;
         for (size_t c = 0; c < 3; ++c)
-            EXPECT_NEAR(half[3 * middle + c] / none[3 * middle + c], gainAt(0.05, int(c), 0.5), tolerance::gain)
+            EXPECT_NEAR(half[3 * middle + c] / none[3 * middle + c], gainAt(0.05, int(c), 0.5),
+                        tolerance::gain)
                 << int(method);
         for (size_t i = 0; i < plane.size(); ++i) ASSERT_NEAR(plane[i], without[i], 1e-5) << int(method);
     }
@@ -156,8 +159,8 @@ TEST(CurvatureGain, NeedsNeitherAllNeighboursNorTheWholeFrame) {
     }
 }
 
-// A groove of two planes, of which the left one is lit, seen from above: where the medium is known, less light crosses the
-// air in it. Over a ridge the light takes its way through the body.
+// A groove of two planes, of which the left one is lit, seen from above: where the medium is known, less
+// light crosses the air in it. Over a ridge the light takes its way through the body.
 TEST(CurvatureGain, LightDoesNotCrossAir) {
     const uint32_t side = 64;
     const double size = 0.15;

@@ -105,7 +105,8 @@ TEST(LightOracle, EveryFormOfMapIsTheSumOverItsTexels) {
     for (Form form : forms)
         for (const Case& c : cases()) {
             const bool cube = form == Form::cube || form == Form::radial;  // a face is 90 degrees wide
-            const LitBall ball = makeBall(form, normalized(Vec3{0.7, 0.2, -0.5}), cube ? 2 * mapSide : mapSide);
+            const LitBall ball =
+                makeBall(form, normalized(Vec3{0.7, 0.2, -0.5}), cube ? 2 * mapSide : mapSide);
             const Picture p = pictureOf(ball, side);
             const auto truth = reference::scatterFromLights(p.exact(), {exactLight(ball)}, *c.exact);
             const Lit lit = shaded(p, std::vector{ball}, c.profile, {PEL_SCATTERING_LIGHT, 0, 0});

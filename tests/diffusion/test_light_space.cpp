@@ -63,8 +63,9 @@ TEST(LightSpace, ThroughABallIsTheSurfaceIntegralForEveryFormOfMap) {
                 square += std::pow(lit.light[3 * dark[k]] - truth[k].x, 2), whole += truth[k].x * truth[k].x;
             }
             EXPECT_GT(std::sqrt(whole / double(dark.size())), 0.03);
-            EXPECT_LT(std::sqrt(square / whole), method == PEL_SCATTERING_LIGHT ? tolerance::lightThroughBall
-                                                                                : tolerance::hiddenThroughBall)
+            EXPECT_LT(std::sqrt(square / whole), method == PEL_SCATTERING_LIGHT
+                                                     ? tolerance::lightThroughBall
+                                                     : tolerance::hiddenThroughBall)
                 << "form " << int(form) << ", method " << int(method);
         }
     }
@@ -149,7 +150,8 @@ TEST(LightSpace, SameInputSameBits) {
     const LitBall ball = makeBall(Form::parallel, normalized(Vec3{0.6, 0.2, -0.5}), 128);
     const Picture p = pictureOf(ball, 48);
     for (PelScattering method : {PEL_SCATTERING_LIGHT, PEL_SCATTERING_AUTO})
-        EXPECT_EQ(shaded(p, ball, method, Profile::skin()).light, shaded(p, ball, method, Profile::skin()).light);
+        EXPECT_EQ(shaded(p, ball, method, Profile::skin()).light,
+                  shaded(p, ball, method, Profile::skin()).light);
 }
 
 // Parts of the lights' pyramids that hold nothing are not written.
@@ -186,7 +188,8 @@ TEST(LightSpace, MoreMapsThanThereIsRoomForAreSummedOnTheScreen) {
     std::vector<LitBall> lights;
     for (int cubes = 0; cubes <= 4; ++cubes) {
         const Lit lit = shaded(pictureOf(lights, 16), lights, Profile::skin(), {PEL_SCATTERING_LIGHT});
-        EXPECT_EQ(lit.warnings.find("do not hold all light") != std::string::npos, cubes == 0) << lit.warnings;
+        EXPECT_EQ(lit.warnings.find("do not hold all light") != std::string::npos, cubes == 0)
+            << lit.warnings;
         lights.push_back(makeBall(Form::cube, toLight, 8));
     }
     lights.back() = makeBall(Form::parallel, toLight, 16);

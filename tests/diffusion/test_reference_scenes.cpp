@@ -68,23 +68,27 @@ TEST(ReferenceScenes, Head) {
     for (const auto& [scene, r] : {std::pair{"head", &usual}, {"head, radius x 4", &wide}}) {
         const bool first = r == &usual;
         const Errors lambert = error(*r, r->irradiance), traced = {1e4, 1e4, 1e4};
-        const std::vector<Errors> e = compare(
-            scene, *r,
-            {{"auto and map", byAuto, 0, true, true, valuesOf(first ? tolerance::lightHead : tolerance::lightFour)},
-             {"auto", byAuto, 0, true, false,
-              first ? Errors{tolerance::headOnScreenRed, tolerance::headOnScreenGreen, tolerance::headOnScreenBlue}
-                    : traced},
-             {"light", byLight, 0, true, true,
-              valuesOf(first ? tolerance::lightHeadOfLight : tolerance::lightFourOfLight)},
-             {"auto, shadows of the map",
-              byAuto,
-              0,
-              false,
-              true,
-              {lambert[0], lambert[1], std::max(lambert[2], double(tolerance::headByMapBlue))}},
-             {"separable, 25 taps", separable, 25, true, false, first ? Errors{43, 16, 10} : Errors{227, 92, 54}},
-             {"disk, 32 taps", byScreen, 32, true, false, first ? Errors{41, 14.5, 9.5} : Errors{142, 78, 58}},
-             {"disk, 256 taps", byScreen, 256, true, false, first ? traced : Errors{130, 75, 56}}});
+        const std::vector<Errors> e =
+            compare(scene, *r,
+                    {{"auto and map", byAuto, 0, true, true,
+                      valuesOf(first ? tolerance::lightHead : tolerance::lightFour)},
+                     {"auto", byAuto, 0, true, false,
+                      first ? Errors{tolerance::headOnScreenRed, tolerance::headOnScreenGreen,
+                                     tolerance::headOnScreenBlue}
+                            : traced},
+                     {"light", byLight, 0, true, true,
+                      valuesOf(first ? tolerance::lightHeadOfLight : tolerance::lightFourOfLight)},
+                     {"auto, shadows of the map",
+                      byAuto,
+                      0,
+                      false,
+                      true,
+                      {lambert[0], lambert[1], std::max(lambert[2], double(tolerance::headByMapBlue))}},
+                     {"separable, 25 taps", separable, 25, true, false,
+                      first ? Errors{43, 16, 10} : Errors{227, 92, 54}},
+                     {"disk, 32 taps", byScreen, 32, true, false,
+                      first ? Errors{41, 14.5, 9.5} : Errors{142, 78, 58}},
+                     {"disk, 256 taps", byScreen, 256, true, false, first ? traced : Errors{130, 75, 56}}});
         EXPECT_LT(e[0][0], 0.95 * e[1][0]) << scene << ": much is seen by the light only";
     }
     const Shown shown = shade(Device(""), usual, byAuto, true, false);

@@ -55,7 +55,8 @@ TEST(Scatter, EqualsTheSumOverEveryPixel) {
     const float meanFreePath[] = {1.2f, 0.6f, 0.3f}, albedo[] = {0.8f, 0.8f, 0.8f};
     const std::pair<Profile, reference::ProfilePtr> profiles[] = {
         {Profile::skin(), reference::skinProfile()},
-        {Profile::burley(meanFreePath, albedo), reference::burleyProfile({1.2f, 0.6f, 0.3f}, {0.8f, 0.8f, 0.8f})}};
+        {Profile::burley(meanFreePath, albedo),
+         reference::burleyProfile({1.2f, 0.6f, 0.3f}, {0.8f, 0.8f, 0.8f})}};
     for (const auto& [profile, exact] : profiles) {
         const auto expected = reference::scatterOnScreen(p.exact(), *exact);
         const Result result = run(p, profile);
@@ -201,7 +202,8 @@ TEST(Scatter, NoNumberSpreadsNoFurtherThanItself) {
         for (int c = 0; c < 3; ++c) {
             if (i == bad && c == 1) continue;
             const bool kept = i == bad || i == worse;
-            ASSERT_NEAR(result.scattered[3 * i + c], kept ? p.irradiance[3 * i + c] : clean.scattered[3 * i + c],
+            ASSERT_NEAR(result.scattered[3 * i + c],
+                        kept ? p.irradiance[3 * i + c] : clean.scattered[3 * i + c],
                         tolerance::scatterOneMissing)
                 << i << " " << c;
         }
@@ -280,7 +282,8 @@ TEST(Scatter, DepthIsAsGoodAsPositions) {
     const float near = 20, far = 60, a = far / (near - far), b = near * far / (near - far);
     for (uint32_t y = 0; y < side; ++y)
         for (uint32_t x = 0; x < side; ++x) {
-            const Vec3 d = normalized(Vec3{((x + 0.5) / side * 2 - 1) / 3, (1 - (y + 0.5) / side * 2) / 3, -1});
+            const Vec3 d =
+                normalized(Vec3{((x + 0.5) / side * 2 - 1) / 3, (1 - (y + 0.5) / side * 2) / 3, -1});
             const double along = dot(d, Vec3{0, 0, 40}), rest = along * along - 1600 + 100;
             if (rest <= 0) continue;
             const Vec3 world = Vec3{0, 0, 40} + (-along - std::sqrt(rest)) * d;
@@ -338,11 +341,13 @@ TEST(Scatter, SaysWhatIsWrong) {
         EXPECT_EQ(call(), PEL_ERROR_INVALID_ARGUMENT);
         return std::string(pelGetErrorMessage());
     };
-    const auto execute = [&](const PelImageDesc* positions, const PelImageDesc* depth, const PelImageDesc* out) {
+    const auto execute = [&](const PelImageDesc* positions, const PelImageDesc* depth,
+                             const PelImageDesc* out) {
         return pelScatterExecute(scatter.get(), nullptr, &image, positions, depth, nullptr, out, nullptr);
     };
-    EXPECT_NE(message([&] { return execute(nullptr, nullptr, &image); }).find("either `positions` or `depth`"),
-              std::string::npos);
+    EXPECT_NE(
+        message([&] { return execute(nullptr, nullptr, &image); }).find("either `positions` or `depth`"),
+        std::string::npos);
     EXPECT_NE(message([&] { return execute(&other, nullptr, &image); }).find("4 x 4"), std::string::npos);
     EXPECT_NE(message([&] { return execute(&image, nullptr, &image); }).find("overlaps"), std::string::npos);
     const Buffer places(device(), p.positions);
@@ -364,9 +369,11 @@ TEST(Scatter, SaysWhatIsWrong) {
               std::string::npos);
     const Profile skin = Profile::skin();
     for (float scale : {-1.0f, infinity, notANumber, 1e20f})
-        EXPECT_NE(
-            message([&] { return pelScatterSetMaterial(scatter.get(), 1, skin.get(), scale); }).find("profile"),
-            std::string::npos);
-    EXPECT_NE(message([&] { return pelScatterSetMaterial(scatter.get(), 256, skin.get(), 1); }).find("1 to 255"),
-              std::string::npos);
+        EXPECT_NE(message([&] {
+                      return pelScatterSetMaterial(scatter.get(), 1, skin.get(), scale);
+                  }).find("profile"),
+                  std::string::npos);
+    EXPECT_NE(
+        message([&] { return pelScatterSetMaterial(scatter.get(), 256, skin.get(), 1); }).find("1 to 255"),
+        std::string::npos);
 }

@@ -129,7 +129,8 @@ TEST(ScatterBadInput, NoNumberSpreadsNoFurtherThanTheProfile) {
                 double distance2 = 0;
                 for (size_t c = 0; c < 3; ++c)
                     distance2 += std::pow(double(p.positions[3 * i + c]) - p.positions[3 * bad + c], 2);
-                const bool beyond = std::sqrt(distance2) > 2.2 * reach;  // a block reaches further than its middle
+                // a block reaches further than its middle
+                const bool beyond = std::sqrt(distance2) > 2.2 * reach;
                 far += beyond;
                 for (size_t c = 0; c < 3; ++c) {
                     ASSERT_TRUE(std::isfinite(after.light[3 * i + c])) << where << " " << i;

@@ -160,7 +160,8 @@ TEST(ScatterBlend, AloneAddsAndMultiplies) {
         const PelImageDesc positions = rgb(x);
         PelScatterParams params = pelScatterParamsDefaults();
         params.accumulate = 1;
-        EXPECT_THROW(scatter.execute(params, rgb(e), &positions, nullptr, nullptr, rgb(out)), pellucid::Error);
+        EXPECT_THROW(scatter.execute(params, rgb(e), &positions, nullptr, nullptr, rgb(out)),
+                     pellucid::Error);
         scatter.set(PEL_SLOT_ALBEDO, rgb(a));
         scatter.set(PEL_SLOT_IRRADIANCE_BACK, rgb(b));
         scatter.execute(params, rgb(e), &positions, nullptr, nullptr, rgb(out));

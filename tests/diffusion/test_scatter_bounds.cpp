@@ -21,7 +21,8 @@ Picture lips(uint32_t side, double size, double radius, double elevation, double
             const double a = (x + 0.5 - 0.5 * side) * size, b = (0.5 * side - y - 0.5) * size,
                          u = std::cos(turn) * a - std::sin(turn) * b,
                          v = std::sin(turn) * a + std::cos(turn) * b;
-            const double middle = v > 0 ? radius : -radius, rest = radius * radius - (v - middle) * (v - middle);
+            const double middle = v > 0 ? radius : -radius,
+                         rest = radius * radius - (v - middle) * (v - middle);
             if (rest <= 0) continue;
             const double z = std::sqrt(rest);
             const Vec3 n{0, (v - middle) / radius, z / radius};
@@ -72,7 +73,8 @@ TEST(ScatterBounds, NeitherBrighterThanItsLightNorBlueInADarkGap) {
                 const Wrong wrong = wrongOf(lips(side, size, radius, elevation, turn), radius);
                 dark += wrong.dark;
                 EXPECT_LE(wrong.brighter, 1e-4) << size << " mm, " << turn << ", " << elevation;
-                EXPECT_LE(wrong.bluer, tolerance::scatterBluer) << size << " mm, " << turn << ", " << elevation;
+                EXPECT_LE(wrong.bluer, tolerance::scatterBluer)
+                    << size << " mm, " << turn << ", " << elevation;
             }
     EXPECT_GT(dark, 0u);
 }

@@ -70,7 +70,8 @@ TEST(ScatterCost, MuchOfAFrontLitHeadTakesNoTap) {
     const int side = sized(512, 48);
     const sample::GBuffer g =
         renderGBuffer(scene, frameHead(scene.bounds(), head.pose, {}, 1), side, side, plain);
-    const sample::ShadowMap map = renderShadowMap(scene, sample::DirectionalLight{toLight}, sized(2048, 64), 1);
+    const sample::ShadowMap map =
+        renderShadowMap(scene, sample::DirectionalLight{toLight}, sized(2048, 64), 1);
     PelLight light = pelLightDefaults();
     const double direction[] = {toLight.x, toLight.y, toLight.z};
     std::copy_n(direction, 3, light.toLight);
@@ -177,7 +178,8 @@ TEST(ScatterCost, PreintegratedBuildsNoProgramOfOtherMethods) {
         const uint64_t before = programs();
         const Shown tables = shown(p, PEL_SCATTERING_PREINTEGRATED, fresh, {light});
         EXPECT_EQ(programs(), before);
-        EXPECT_EQ(tables.stats.scatterTaps + tables.stats.pixelsScattered + tables.stats.pixelsIrradiance, 0u);
+        EXPECT_EQ(tables.stats.scatterTaps + tables.stats.pixelsScattered + tables.stats.pixelsIrradiance,
+                  0u);
         const uint64_t own = tables.stats.scratchBytes;
         EXPECT_GT(shown(p, PEL_SCATTERING_AUTO, fresh, {light}).stats.scratchBytes, own + 40 * p.pixels());
         if (spy::programsWith("__kernel") > 0) {  // else all came from the disk

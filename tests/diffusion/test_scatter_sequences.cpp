@@ -106,9 +106,9 @@ TEST(ScatterSequences, EachPictureEqualsThatOfANewObject) {
         for (const Step& step : steps()) {
             Scatter fresh(device());
             const std::vector<float> expected = scatter(fresh, step, controls);
-            expectSame(
-                scatter(kept, step, controls), expected,
-                "method " + std::to_string(int(method)) + ", " + std::to_string(taps) + " taps: " + step.name);
+            expectSame(scatter(kept, step, controls), expected,
+                       "method " + std::to_string(int(method)) + ", " + std::to_string(taps) +
+                           " taps: " + step.name);
             EXPECT_NE(expected, step.picture.irradiance) << step.name;
         }
     }

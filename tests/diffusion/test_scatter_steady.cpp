@@ -33,7 +33,8 @@ constexpr double lightsFrom[] = {0, 70, 150};  // azimuth, degrees: in front, at
 
 // Scattered irradiance of a picture without its shadow map.
 std::vector<float> scatteredOf(const LitScene& s, const Profile& profile, bool everywhere,
-                               double target = pelScatterParamsDefaults().targetError, uint64_t* taps = nullptr) {
+                               double target = pelScatterParamsDefaults().targetError,
+                               uint64_t* taps = nullptr) {
     scatter_scene::Picture p(uint32_t(s.width), uint32_t(s.height));
     p.positions = s.positions, p.irradiance = s.irradiance, p.ids = s.covered;
     p.params.everywhere = everywhere;
@@ -152,7 +153,8 @@ struct Steps {
 
 // 60 frames in steps of a tenth of a pixel of the camera, or of 0.2 degrees of the light. `light`: fills in
 // Frame.light, if given.
-Steps stepsOf(const Stage& stage, double azimuth, bool cameraMoves, const std::function<void(Frame&)>& light) {
+Steps stepsOf(const Stage& stage, double azimuth, bool cameraMoves,
+              const std::function<void(Frame&)>& light) {
     const Device device("");
     const Profile skin = Profile::skin();
     Steps steps;

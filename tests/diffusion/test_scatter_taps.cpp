@@ -40,7 +40,8 @@ Taken scatterBy(const Picture& p, const Profile& profile, float scale, const Pel
     const auto rgb = [&](const Buffer& b) {
         return pellucid::imageDesc(b, PEL_FORMAT_RGB32F, p.width, p.height);
     };
-    const PelImageDesc positions = rgb(x), ids = pellucid::imageDesc(i, PEL_FORMAT_R8_UINT, p.width, p.height);
+    const PelImageDesc positions = rgb(x),
+                       ids = pellucid::imageDesc(i, PEL_FORMAT_R8_UINT, p.width, p.height);
     if (!weights.empty())
         scatter.set(PEL_SLOT_SCATTER_WEIGHT,
                     pellucid::imageDesc(w, weights.size() == p.pixels() ? PEL_FORMAT_R32F : PEL_FORMAT_RG32F,
@@ -216,7 +217,8 @@ TEST(ScatterTaps, FramesTurnTheTapsAndAverageOut) {
     for (uint32_t frame = 0; frame < 16; ++frame) {
         p.params.frameIndex = frame;
         const auto first = scatterBy(p, Profile::skin(), 1, controls(disk, 16)).scattered;
-        ASSERT_EQ(first, scatterBy(p, Profile::skin(), 1, controls(disk, 16)).scattered);  // same input, same bits
+        // same input, same bits
+        ASSERT_EQ(first, scatterBy(p, Profile::skin(), 1, controls(disk, 16)).scattered);
         for (size_t i = 0; i < mean.size(); ++i) mean[i] += first[i] / 16;
         one = difference(first, whole).rms;
     }

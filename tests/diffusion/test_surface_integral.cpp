@@ -112,7 +112,8 @@ std::vector<float> pointsOn(const Mesh& mesh, int count) {
 }
 
 void expectBruteForce(const PelSurfaceIntegralDesc& desc, const Mesh& mesh, const std::vector<float>& points,
-                      const reference::Profile& profile, reference::Rgb cut, double within, const char* what) {
+                      const reference::Profile& profile, reference::Rgb cut, double within,
+                      const char* what) {
     const std::vector<float> found = integrate(desc, points);
     const std::vector<LitTriangle> triangles = mesh.triangles();
     for (size_t i = 0; i < points.size() / 3; ++i) {
@@ -161,7 +162,8 @@ TEST(SurfaceIntegral, EqualsBruteForceForEveryProfile) {
 
 TEST(SurfaceIntegral, UnitRadiusCutAndPlaceOfTheLight) {
     const Profile burley = Profile::burley(path, albedo);
-    const auto truth = reference::burleyProfile({path[0], path[1], path[2]}, {albedo[0], albedo[1], albedo[2]});
+    const auto truth =
+        reference::burleyProfile({path[0], path[1], path[2]}, {albedo[0], albedo[1], albedo[2]});
     for (PelIrradianceAt at : {PEL_IRRADIANCE_VERTEX, PEL_IRRADIANCE_TRIANGLE, PEL_IRRADIANCE_CORNER}) {
         const Mesh mesh = sheet(4, 0.2f, at);
         const std::vector<float> points = pointsOn(mesh, sized(6, 2));
@@ -200,13 +202,15 @@ TEST(SurfaceIntegral, SphereHasTheClosedForm) {
     for (int i = 0; i <= rings; ++i)
         for (int j = 0; j < 2 * rings; ++j) {
             const double theta = std::numbers::pi * i / rings, phi = std::numbers::pi * j / rings;
-            for (double v : {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)})
+            for (double v :
+                 {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)})
                 mesh.positions.push_back(float(radius * v));
             for (int c = 0; c < 3; ++c) mesh.irradiance.push_back(float(std::max(0.0, std::cos(theta))));
         }
     for (int i = 0; i < rings; ++i)
         for (int j = 0; j < 2 * rings; ++j) {
-            const uint32_t a = uint32_t(i * 2 * rings + j), b = uint32_t(i * 2 * rings + (j + 1) % (2 * rings));
+            const uint32_t a = uint32_t(i * 2 * rings + j),
+                           b = uint32_t(i * 2 * rings + (j + 1) % (2 * rings));
             for (uint32_t v : {a, a + 2 * rings, b, b, a + 2 * rings, b + 2 * rings})
                 mesh.indices.push_back(v);
         }
@@ -318,7 +322,8 @@ TEST(SurfaceIntegral, BadInputIsRefusedByName) {
     desc.points = vertexView(buffer, 2);
     desc.result = vertexView(buffer, 1);
     EXPECT_EQ(pelSurfaceIntegral(device().get(), &desc, nullptr), PEL_ERROR_INVALID_ARGUMENT);
-    EXPECT_NE(std::string(pelGetErrorMessage()).find("`result` has 1 vertices, `points` has 2"), std::string::npos)
+    EXPECT_NE(std::string(pelGetErrorMessage()).find("`result` has 1 vertices, `points` has 2"),
+              std::string::npos)
         << pelGetErrorMessage();
 }
 

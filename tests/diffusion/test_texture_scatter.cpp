@@ -361,7 +361,8 @@ TEST(TextureScatter, ShadersSampleIt) {
     };
     for (size_t k = 0; k < ids.size(); ++k)
         for (int c = 0; c < 3; ++c)
-            ASSERT_NEAR(result[3 * k + c], 0.5 * (ids[k] == 1 ? bilinear(uvs[2 * k], uvs[2 * k + 1], c) : 9), 1e-4)
+            ASSERT_NEAR(result[3 * k + c], 0.5 * (ids[k] == 1 ? bilinear(uvs[2 * k], uvs[2 * k + 1], c) : 9),
+                        1e-4)
                 << k;
     const PelShaderStats stats = shader.stats();
     EXPECT_EQ(stats.tilesByScattering[PEL_SCATTERING_TEXTURE], 2u);

@@ -1,5 +1,5 @@
-// What the pages say about the tree must be so: the README quotes the minimal example, links lead somewhere, files that are named
-// exist. What they say about the command is in test_cli_docs.cpp.
+// What the pages say about the tree must be so: the README quotes the minimal example, links lead somewhere,
+// files that are named exist. What they say about the command is in test_cli_docs.cpp.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -30,7 +30,8 @@ TEST(Docs, LinksLeadSomewhere) {
     EXPECT_GT(links, 50);
 }
 
-// In code spans: paths whose first folder is one of the tree's, and sources by their name alone. `x.*` stands for any ending.
+// In code spans: paths whose first folder is one of the tree's, and sources by their name alone. `x.*` stands
+// for any ending.
 TEST(Docs, NamedFilesExist) {
     std::multimap<std::string, std::filesystem::path> byName;
     for (const auto& folder : pages::folders)
@@ -42,14 +43,16 @@ TEST(Docs, NamedFilesExist) {
         const std::filesystem::path name = std::filesystem::path(path).filename();
         if (!anyEnding && name.empty()) return std::filesystem::is_directory(pages::root / path);
         for (const auto& [file, whole] : byName) {
-            const std::string known = anyEnding ? (whole.parent_path() / whole.stem()).string() : whole.string();
+            const std::string known =
+                anyEnding ? (whole.parent_path() / whole.stem()).string() : whole.string();
             if (known.ends_with("/" + path)) return true;
         }
         return std::filesystem::exists(pages::root / path);
     };
     const std::regex span("`([^`\n]+)`"), source(R"([\w/-]+\.(cpp|c|h|hpp|cl|clh|py|md)\b)"),
         path(R"([\w.-]+/[\w./-]*(\.\*)?)");
-    const std::set<std::string> hosts = {"device.cl", "buffer.cl", "event.cl"};  // attributes of Python objects
+    // attributes of Python objects
+    const std::set<std::string> hosts = {"device.cl", "buffer.cl", "event.cl"};
     int files = 0;
     for (const auto& page : pages::all()) {
         if (page.filename() == "CHANGELOG.md") continue;  // history may name files that are gone
@@ -73,6 +76,7 @@ TEST(Docs, FiguresAreShownAndSmall) {
     for (const auto& page : pages::all()) text += pages::contents(page);
     for (const auto& entry : std::filesystem::directory_iterator(pages::root / "docs/figures")) {
         EXPECT_LT(entry.file_size(), 300u << 10) << entry.path();
-        EXPECT_NE(text.find("figures/" + entry.path().filename().string()), std::string::npos) << entry.path();
+        EXPECT_NE(text.find("figures/" + entry.path().filename().string()), std::string::npos)
+            << entry.path();
     }
 }

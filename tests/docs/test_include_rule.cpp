@@ -120,8 +120,8 @@ TEST(IncludeRule, EveryIncludeGoesOneWay) {
     EXPECT_GT(checked, 10u);
 }
 
-// What differs between systems is in folders of their names; all else is the same code everywhere. bench/measure and the native module
-// of Python are for POSIX systems (docs/guide/install.md).
+// What differs between systems is in folders of their names; all else is the same code everywhere.
+// bench/measure and the native module of Python are for POSIX systems (docs/guide/install.md).
 TEST(IncludeRule, OneSystemAloneHasFoldersOfItsOwn) {
     const std::regex header(
         R"(^\s*#\s*include\s*<(windows\.h|io\.h|process\.h|unistd\.h|fcntl\.h|dlfcn\.h|elf\.h|pwd\.h|poll\.h|sys/[^>]*)>)");

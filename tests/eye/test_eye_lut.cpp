@@ -71,7 +71,8 @@ TEST(EyeLut, AnIndexOfOneLeavesLightWhereItIs) {
                 const double below = referenceOf(eye).limbusZ() - referenceOf(eye).irisZ();
                 if (std::hypot(x + below * std::tan(angle), y) > 5.6) continue;
                 ++lit;
-                ASSERT_NEAR(texels[3 * ((size_t(z) * 64 + j) * 64 + i)], std::cos(angle), tolerance::eyeLutPlain)
+                ASSERT_NEAR(texels[3 * ((size_t(z) * 64 + j) * 64 + i)], std::cos(angle),
+                            tolerance::eyeLutPlain)
                     << i << ", " << j << ", " << z;
             }
     EXPECT_GT(lit, 30000u);

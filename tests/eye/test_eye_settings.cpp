@@ -90,13 +90,15 @@ TEST_F(EyeSettings, AMaterialComesFirst) {
     EXPECT_NE(errorOf([&] { shader.setIrisTexture(1, texture); }).find("pelShaderSetEye"), std::string::npos);
     shader.setEye(1, pelEyeDefaults());
     shader.setIrisTexture(1, texture).clearIrisTexture(1);
-    EXPECT_NE(
-        errorOf([&] { shader.setIrisTexture(1, imageDesc(texels, PEL_FORMAT_RGB32F, 16, 8)); }).find("square"),
-        std::string::npos);
+    EXPECT_NE(errorOf([&] {
+                  shader.setIrisTexture(1, imageDesc(texels, PEL_FORMAT_RGB32F, 16, 8));
+              }).find("square"),
+              std::string::npos);
     shader.clearEye(1);
     EXPECT_NE(errorOf([&] { shader.setIrisTexture(1, texture); }), "");
-    EXPECT_NE(errorOf([&] { shader.setReflectionCube(imageDesc(texels, PEL_FORMAT_RGB32F, 4, 16)); }).find("six"),
-              std::string::npos);
+    EXPECT_NE(
+        errorOf([&] { shader.setReflectionCube(imageDesc(texels, PEL_FORMAT_RGB32F, 4, 16)); }).find("six"),
+        std::string::npos);
 }
 
 TEST_F(EyeSettings, SixtyFourAreTheMost) {

@@ -166,7 +166,8 @@ TEST(EyeTiles, NanInImagesOfEyesStaysInItsPixels) {
     const auto withEye = [](Shader& s) { s.setEye(2, pelEyeDefaults()); };
     const size_t pixels = frame.pixels();
     // At least one pixel and at most `limit` change.
-    const auto sameBeyond = [&](const std::vector<float>& is, const std::vector<float>& should, size_t limit) {
+    const auto sameBeyond = [&](const std::vector<float>& is, const std::vector<float>& should,
+                                size_t limit) {
         expectFinite(is);
         size_t changed = 0;
         for (size_t k = 0; k < pixels; ++k) changed += is[3 * k] != should[3 * k];
@@ -235,7 +236,8 @@ TEST(EyeTiles, NothingBleedsBetweenEyeAndLid) {
             s.set(PEL_SLOT_IRRADIANCE, frame.image(irradiance));
         });
     };
-    for (const PelScattering method : {PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_SCREEN, PEL_SCATTERING_AUTO}) {
+    for (const PelScattering method :
+         {PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_SCREEN, PEL_SCATTERING_AUTO}) {
         SCOPED_TRACE(method);
         const std::vector<float> dark = shade(method, 0, 1), bright = shade(method, 9, 1),
                                  off = shade(method, 9, 0);

@@ -184,8 +184,8 @@ int main(int argc, char** argv) {
     const rlimit memory{rlim_t{6} << 30, rlim_t{6} << 30};
     ::setrlimit(RLIMIT_AS, &memory);
 #endif
-    auto& place =
-        *new (::mmap(nullptr, sizeof(Place), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) Place();
+    auto& place = *new (
+        ::mmap(nullptr, sizeof(Place), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) Place();
     const double end = now() + o.seconds;
     int faults = 0;
     for (;;) {

@@ -62,7 +62,8 @@ Reader gltfScenes(const Folder& folder) {
         wordsOf(R"("bufferView": "byteOffset": "byteStride": "count": "sparse": "children":[0] "uri":"a")"
                 R"( "componentType":5125 5121 5126 VEC4 null {} [] -1 1e308 9007199254740992 4294967295)"
                 R"( "mode":6 true)"),
-        [json = nlohmann::json::parse(gltf::squareJson(",\"material\":0,\"mode\":5", nodes, more))](Random& random) {
+        [json = nlohmann::json::parse(gltf::squareJson(",\"material\":0,\"mode\":5", nodes, more))](
+            Random& random) {
             static const std::vector<std::string> words = wordsOf(
                 "SCALAR VEC2 VEC3 VEC4 MAT4 orthographic perspective spot point directional POSITION a.bin "
                 "data:;base64,AAAA image/png");

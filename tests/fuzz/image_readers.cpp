@@ -92,7 +92,8 @@ std::string picture(const Folder& folder, const std::string& extension, int chan
 }
 
 void addImages(std::vector<Reader>& all, const Folder& folder) {
-    std::vector<std::string> exrs = {parts(folder), picture(folder, "exr", 4, "zip", 8, OIIO::TypeDesc::HALF)};
+    std::vector<std::string> exrs = {parts(folder),
+                                     picture(folder, "exr", 4, "zip", 8, OIIO::TypeDesc::HALF)};
     for (const char* how : {"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"}) {
         exrs.push_back(picture(folder, "exr", 3, how, 0, OIIO::TypeDesc::HALF));
         exrs.push_back(picture(folder, "exr", 1, how, 0, OIIO::TypeDesc::FLOAT));

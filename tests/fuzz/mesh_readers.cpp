@@ -81,11 +81,12 @@ void addMeshes(std::vector<Reader>& all, const Folder& folder) {
     std::string big = "ply\nformat binary_big_endian" + head;
     for (int v = 0; v < 3; ++v) big += std::string(12, '\0') + "\x01" + std::string("\0\7", 2);
     big += std::string("\3\0\0\0\0\0\0\0\1\0\0\0\2", 13) + std::string(8, '\0') + std::string(4, '\1');
-    all.push_back(mesh("ply",
-                       {bytesOf(folder / "m.ply"),
-                        "ply\nformat ascii" + head + "0 0 0 1 7\n1 0 0 0\n0 1 0 2 7 7\n3 0 1 2 1.5\n9\n", big},
-                       {"element", "property", "list", "uchar", "double", "int", "vertex", "face",
-                        "vertex_indices", "binary_big_endian", "4294967295", "-1", "s", "t", "nx"}));
+    all.push_back(
+        mesh("ply",
+             {bytesOf(folder / "m.ply"),
+              "ply\nformat ascii" + head + "0 0 0 1 7\n1 0 0 0\n0 1 0 2 7 7\n3 0 1 2 1.5\n9\n", big},
+             {"element", "property", "list", "uchar", "double", "int", "vertex", "face", "vertex_indices",
+              "binary_big_endian", "4294967295", "-1", "s", "t", "nx"}));
     std::string binaryStl(80, 'x');
     binaryStl += std::string("\1\0\0\0", 4);
     const float facet[12] = {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0};

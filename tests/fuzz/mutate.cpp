@@ -134,7 +134,8 @@ void mutateJson(Random& r, json& document, const std::vector<std::string>& words
     }
 }
 
-std::string mutant(Random& random, const std::vector<std::string>& files, const std::vector<std::string>& words) {
+std::string mutant(Random& random, const std::vector<std::string>& files,
+                   const std::vector<std::string>& words) {
     std::string bytes = files[random.below(files.size())];
     for (size_t changes = 1 + random.below(random.below(3) ? 3 : 8); changes > 0; --changes)
         once(random, bytes, files, words);

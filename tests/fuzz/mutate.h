@@ -25,7 +25,8 @@ class Random {
 
 // One of `files`, changed in one to eight places: bits, bytes and whole numbers that are often special,
 // pieces left out, doubled, taken from another file, words of the format, and digits.
-std::string mutant(Random& random, const std::vector<std::string>& files, const std::vector<std::string>& words);
+std::string mutant(Random& random, const std::vector<std::string>& files,
+                   const std::vector<std::string>& words);
 
 // Changes one to eight values of a JSON document, which stays well-formed: numbers become special ones,
 // elements and members are repeated, erased or replaced by others of the document, texts by one of `words`.

@@ -3,12 +3,12 @@
 #include <nlohmann/json.hpp>
 
 #include "batch/batch_manifest.h"
-#include "measure/compare.h"
 #include "fuzz/reader_parts.h"
 #include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/lut/profile_file.h"
 #include "io/scene/scene_file.h"
+#include "measure/compare.h"
 
 namespace fuzz {
 namespace {
@@ -90,18 +90,19 @@ std::vector<Reader> readers() {
              {"[[lut]]", "[[grid]]", "size", "profile", "encoding", "16384", "specular"}));
     all.push_back(topology(device));
     all.push_back(gltfScenes(folder));
-    all.push_back({"report",
-                   {R"({"host":{"pellucid":"0","date":"","cpu":"c"},"devices":[{"name":"a","platform":"p",)"
-                    R"("copy_bytes_per_second":1e10,"operations_per_second":1e11,"operations":[{"name":"o",)"
-                    R"("group":"tables","items":100,"samples":9,"median_ms":1.5,"mad_ms":0.1,"error_max":1e-6},)"
-                    R"({"name":"q","group":"tables","items":1,"failed":"x"}]}]})"},
-                   [](const std::string& t) {
-                       const auto report = bench::parseReport(t);
-                       if (report.is_discarded()) return;
-                       bench::describeComparison(bench::compareReports(report, report));
-                   },
-                   {},
-                   {"null", "{}", "[]", "1e999", "-0", "\"\"", "\\u0000", ","}});
+    all.push_back(
+        {"report",
+         {R"({"host":{"pellucid":"0","date":"","cpu":"c"},"devices":[{"name":"a","platform":"p",)"
+          R"("copy_bytes_per_second":1e10,"operations_per_second":1e11,"operations":[{"name":"o",)"
+          R"("group":"tables","items":100,"samples":9,"median_ms":1.5,"mad_ms":0.1,"error_max":1e-6},)"
+          R"({"name":"q","group":"tables","items":1,"failed":"x"}]}]})"},
+         [](const std::string& t) {
+             const auto report = bench::parseReport(t);
+             if (report.is_discarded()) return;
+             bench::describeComparison(bench::compareReports(report, report));
+         },
+         {},
+         {"null", "{}", "[]", "1e999", "-0", "\"\"", "\\u0000", ","}});
     return all;
 }
 

@@ -136,7 +136,8 @@ TEST_F(AtomicFileTest, FailuresOfTheDiskAreErrors) {
 TEST_F(AtomicFileTest, TemporaryNamesAreRandomAndNoLinkIsFollowed) {
     const AtomicFile one(path("o.exr"));
     const std::string first = temporary();
-    EXPECT_TRUE(std::regex_match(first, std::regex(R"(.*/\.o\.[0-9a-f]{8}-[0-9a-f]{16}\.tmp\.exr)"))) << first;
+    EXPECT_TRUE(std::regex_match(first, std::regex(R"(.*/\.o\.[0-9a-f]{8}-[0-9a-f]{16}\.tmp\.exr)")))
+        << first;
     std::filesystem::rename(first, path("away"));
     const AtomicFile two(path("o.exr"));
     EXPECT_NE(temporary(), first);
@@ -200,9 +201,10 @@ TEST_F(AtomicFileTest, AbandonedFilesAreRemovedAndLiveOnesAreNot) {
     EXPECT_EQ(removeAbandonedFiles(folder_.string()), 1u);
     // Files of other programs.
     const std::string tag = std::filesystem::path(left).filename().string().substr(3, 8);
-    for (const std::string& name : {std::string(".tmp"), "." + tag + "-0123456789abcdef.tmpx",
-                                    ".o." + tag + "-0123456789abcde.tmp", ".o." + tag + "-0123456789abcdeg.tmp",
-                                    "o." + tag + "-0123456789abcdef.tmp.exr", std::string(".o.tmp.exr")})
+    for (const std::string& name :
+         {std::string(".tmp"), "." + tag + "-0123456789abcdef.tmpx", ".o." + tag + "-0123456789abcde.tmp",
+          ".o." + tag + "-0123456789abcdeg.tmp", "o." + tag + "-0123456789abcdef.tmp.exr",
+          std::string(".o.tmp.exr")})
         age(write(name, "x"), 1e6);
     std::filesystem::create_symlink("/etc/passwd", path(".o." + tag + "-0123456789abcdef.tmp.exr"));
     EXPECT_EQ(removeAbandonedFiles(folder_.string()), 0u);

@@ -187,8 +187,9 @@ TEST_F(Bc6hFile, OpenImageIoReadsTheSame) {
     EXPECT_EQ(error.rms, io::differenceOf(texels, expected).rms);
     EXPECT_EQ(io::differenceOf(texels, texels).rms, 0);
     // 1 of 4 values is off by 1/2.
-    EXPECT_EQ(io::differenceOf(Halves{0x3c00, 0x3c00, 0x3c00, 0x3c00}, Halves{0x3c00, 0x3800, 0x3c00, 0x3c00}).rms,
-              0.25);
+    EXPECT_EQ(
+        io::differenceOf(Halves{0x3c00, 0x3c00, 0x3c00, 0x3c00}, Halves{0x3c00, 0x3800, 0x3c00, 0x3c00}).rms,
+        0.25);
     const std::vector<float> found = foreignTexels(path("t.dds"), 34, 27);
     if (found.empty()) GTEST_SKIP() << "this OpenImageIO reads no BC6H: " << OIIO::geterror();
     expectSame(found, expected);

@@ -19,7 +19,8 @@ constexpr int width = 37, height = 70;  // more than two chunks of ZIP, more tha
 class ExrLines : public FolderTest {
   protected:
     // Channels of three types, the picture in a part of the display window or beyond it.
-    std::string written(const std::string& compression, int x = 0, int y = 0, int w = width, int h = height) const {
+    std::string written(const std::string& compression, int x = 0, int y = 0, int w = width,
+                        int h = height) const {
         const std::string file = path(compression + ".exr");
         OIIO::ImageSpec spec(w, h, 5, OIIO::TypeDesc::FLOAT);
         spec.x = x, spec.y = y;

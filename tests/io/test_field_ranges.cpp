@@ -67,15 +67,18 @@ bool accepts(const std::function<void()>& body) {
 int fields = 0;
 
 template <class T>
-void expectSame(const std::string& name, const pel::FieldRange& range, const std::function<bool(float)>& library,
+void expectSame(const std::string& name, const pel::FieldRange& range,
+                const std::function<bool(float)>& library,
                 const std::function<std::string(const std::string&)>& scene) {
     ++fields;
     for (const float value : tried<T>(range)) {
-        const bool right = range.holds(value) && !(name == "thicknessTaps" && (int(value) & (int(value) - 1)));
+        const bool right =
+            range.holds(value) && !(name == "thicknessTaps" && (int(value) & (int(value) - 1)));
         EXPECT_EQ(library(value), right) << name << " = " << value << ": the library";
         const std::string text = scene(snake(name) + " = " + said<T>(value) + "\n");
-        EXPECT_EQ(accepts([&] { io::parseScene("scene.toml", text); }), right) << name << " = " << value << "\n"
-                                                                               << text;
+        EXPECT_EQ(accepts([&] { io::parseScene("scene.toml", text); }), right)
+            << name << " = " << value << "\n"
+            << text;
     }
 }
 

@@ -85,7 +85,8 @@ const std::vector<Writer>& writers() {
             desc.width = desc.height = side;
             return desc;
         }());
-        for (const char* name : {"lut.exr", "lut.npy", "lut.png", "lut.bmp", "lut.tga", "lut.dds", "lut.ktx2"})
+        for (const char* name :
+             {"lut.exr", "lut.npy", "lut.png", "lut.bmp", "lut.tga", "lut.dds", "lut.ktx2"})
             w.push_back({name, [lut](const std::string& p) { writeLut(p, *lut); }});
         for (const char* name : {"bc6h.dds", "bc6h.ktx2"})
             w.push_back({name, [lut](const std::string& p) { writeLutBc6h(p, *lut); }});

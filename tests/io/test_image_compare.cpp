@@ -171,8 +171,8 @@ TEST(Subsets, HollowsAndThinParts) {
     const std::vector<uint8_t> covered{1, 1, 1, 0, 1};
     const auto subsets =
         io::subsetsOf({5, 1, positions, normals, light, {}, covered, 1, curvature, thickness, path});
-    EXPECT_EQ(subsets,
-              (std::vector<uint8_t>{io::SUBSET_HOLLOWS, io::SUBSET_THIN, io::SUBSET_REST, 0, io::SUBSET_REST}));
+    EXPECT_EQ(subsets, (std::vector<uint8_t>{io::SUBSET_HOLLOWS, io::SUBSET_THIN, io::SUBSET_REST, 0,
+                                             io::SUBSET_REST}));
 }
 
 using NpyRead = FolderTest;

@@ -153,7 +153,8 @@ TEST_F(ImageFile, IntegersOfExrKeepTheirValues) {
     spec.channelnames = {"Material.I"};
     auto out = OIIO::ImageOutput::create(path("i.exr"));
     const uint32_t ids[2] = {3, 70000};
-    ASSERT_TRUE(out->open(path("i.exr"), spec) && out->write_image(OIIO::TypeDesc::UINT32, ids) && out->close());
+    ASSERT_TRUE(out->open(path("i.exr"), spec) && out->write_image(OIIO::TypeDesc::UINT32, ids) &&
+                out->close());
     EXPECT_EQ(readImage(path("i.exr")).channel("I").pixels, (std::vector<float>{3, 70000}));
 }
 

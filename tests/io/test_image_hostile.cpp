@@ -39,7 +39,8 @@ struct Exr {
         const auto box = [](const int(&b)[4]) {
             return word(uint32_t(b[0])) + word(uint32_t(b[1])) + word(uint32_t(b[2])) + word(uint32_t(b[3]));
         };
-        file += attribute("dataWindow", "box2i", box(data)) + attribute("displayWindow", "box2i", box(display));
+        file +=
+            attribute("dataWindow", "box2i", box(data)) + attribute("displayWindow", "box2i", box(display));
         file += attribute("lineOrder", "lineOrder", std::string(1, '\0'));
         const float one = 1;
         uint32_t bits;
@@ -205,8 +206,9 @@ TEST_F(HostileImage, SizesInOtherHeadersToo) {
     EXPECT_TRUE(contains(refusal("a.tga", with(written("tga"), 12, std::string("\0\x10\0\x10", 4))),
                          "too short for its pixels"))
         << "4096 x 4096";
-    EXPECT_TRUE(contains(refusal("a.bmp", with(written("bmp"), 18, std::string("\x60\xea\0\0\x60\xea\0\0", 8))),
-                         "60000 x 60000 pixels"));
+    EXPECT_TRUE(
+        contains(refusal("a.bmp", with(written("bmp"), 18, std::string("\x60\xea\0\0\x60\xea\0\0", 8))),
+                 "60000 x 60000 pixels"));
     std::string jpeg = written("jpg");
     const size_t frame = jpeg.find("\xff\xc0");
     ASSERT_NE(frame, std::string::npos);

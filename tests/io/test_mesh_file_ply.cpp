@@ -92,8 +92,9 @@ TEST_F(MeshFilePly, BadPlyFilesSayWhere) {
         contains(loadError("e.ply", replaced(header, "end_header", "end") + body), "no line 'end_header'"));
     EXPECT_TRUE(
         contains(loadError("l.ply", header + "0 0 0\n1 0 0\n0 1 0\n4 0 1 2\n"), "l.ply:13: the list"));
-    EXPECT_EQ(loadError("o.ply", replaced(header, "element vertex", "obj_info element 7\nelement vertex") + body),
-              "");
+    EXPECT_EQ(
+        loadError("o.ply", replaced(header, "element vertex", "obj_info element 7\nelement vertex") + body),
+        "");
     MeshData mesh = loadMesh(write("a.off", offTetrahedron));
     mesh.positions[4] = NAN;
     writePly(path("b.ply"), mesh, std::vector<float>(4, 0.0f), 0, 1);
@@ -174,8 +175,9 @@ TEST_F(MeshFilePly, LengthsOfListsAreChecked) {
         for (const char* type : {"char", "short", "int"})
             EXPECT_TRUE(contains(loadError("negative.ply", file(type, values(type, {-1}) + many)),
                                  "negative length"));
-        EXPECT_TRUE(contains(loadError("far.ply", file("short", values("short", {3}) + values("int", {0, 1, 3}))),
-                             "refers to vertex 3"));
+        EXPECT_TRUE(
+            contains(loadError("far.ply", file("short", values("short", {3}) + values("int", {0, 1, 3}))),
+                     "refers to vertex 3"));
         EXPECT_TRUE(contains(loadError("float.ply", file("float", std::string(4, '\0'))),
                              "float.ply:8: the lengths of a list are whole"));
     }

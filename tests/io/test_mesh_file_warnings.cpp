@@ -21,8 +21,9 @@ class MeshWarnings : public FolderTest {
 
 std::string ply(const std::string& vertices, size_t count, const std::string& faces, size_t faceCount) {
     return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(count) +
-           "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(faceCount) +
-           "\nproperty list uchar int vertex_indices\nend_header\n" + vertices + faces;
+           "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+           std::to_string(faceCount) + "\nproperty list uchar int vertex_indices\nend_header\n" + vertices +
+           faces;
 }
 
 const std::string three = "0 0 0\n1 0 0\n0 1 0\n", four = three + "0 0 1\n";
@@ -34,9 +35,10 @@ TEST_F(MeshWarnings, GoodFilesOfEveryFormatHaveNone) {
     const struct {
         std::string vertices, faces, objFaces;
         size_t vertexCount, faceCount, triangles;
-    } meshes[] = {{three, "3 0 1 2\n", "f 1 2 3\n", 3, 1, 1},
-                  {four, "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n", "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n", 4, 4, 4},
-                  {square, "4 0 1 2 3\n", "f 1 2 3 4\n", 4, 1, 2}};
+    } meshes[] = {
+        {three, "3 0 1 2\n", "f 1 2 3\n", 3, 1, 1},
+        {four, "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n", "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n", 4, 4, 4},
+        {square, "4 0 1 2 3\n", "f 1 2 3 4\n", 4, 1, 2}};
     for (const auto& m : meshes) {
         expectSilent("a.off",
                      "OFF\n" + std::to_string(m.vertexCount) + " " + std::to_string(m.faceCount) + " 0\n" +

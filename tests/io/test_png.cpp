@@ -72,8 +72,9 @@ TEST_F(Png, WritesTheSamePixels) {
             expectSame(bytes);
             const Image image = decoded(pngPictures, bytes);
             for (size_t i = 0; i < pixels.size(); ++i)
-                ASSERT_EQ(std::lround(image.channels[i % size_t(channels)].pixels[i / size_t(channels)] * 255),
-                          pixels[i]);
+                ASSERT_EQ(
+                    std::lround(image.channels[i % size_t(channels)].pixels[i / size_t(channels)] * 255),
+                    pixels[i]);
         }
 }
 

@@ -84,7 +84,8 @@ TEST(LutApi, LengthsThatAreLeftOutAreTheProfiles) {
         const PelProfileInfo lengths = profile.info();
         PelCurvatureLutDesc c = pelCurvatureLutDescDefaults();
         PelShadowLutDesc s = pelShadowLutDescDefaults();
-        EXPECT_EQ(c.diffusionRadius + c.radiusMin + c.radiusMax + s.diffusionRadius + s.widthMin + s.widthMax, 0);
+        EXPECT_EQ(c.diffusionRadius + c.radiusMin + c.radiusMax + s.diffusionRadius + s.widthMin + s.widthMax,
+                  0);
         c.profile = s.profile = profile.get();
         for (float stretch : {1.0f, 0.1f}) {
             if (stretch != 1) c.diffusionRadius = s.diffusionRadius = stretch * lengths.radius;
@@ -95,7 +96,8 @@ TEST(LutApi, LengthsThatAreLeftOutAreTheProfiles) {
             EXPECT_FLOAT_EQ(madeC.diffusionRadius, scale);
             EXPECT_FLOAT_EQ(madeC.radiusMin, 0.25f * scale);
             EXPECT_FLOAT_EQ(madeC.radiusMax, 1000 * scale);
-            EXPECT_FLOAT_EQ(madeS.widthMin, 1.3f * stretch * *std::max_element(lengths.width, lengths.width + 3));
+            EXPECT_FLOAT_EQ(madeS.widthMin,
+                            1.3f * stretch * *std::max_element(lengths.width, lengths.width + 3));
             EXPECT_FLOAT_EQ(madeS.widthMax, 1000 * madeS.widthMin);
             EXPECT_EQ(madeS.closedEnds, 1u);
         }
@@ -152,7 +154,8 @@ TEST(LutApi, InfoSizesAndRanges) {
     std::vector<float> texels(20 * 10 * 3);
     EXPECT_EQ(pelLutRead(lut.get(), PEL_LUT_FLOAT, texels.data(), 20 * 10 * 12 - 1, nullptr),
               PEL_ERROR_INVALID_ARGUMENT);
-    EXPECT_EQ(pelLutRead(lut.get(), PEL_LUT_FLOAT, nullptr, 20 * 10 * 12, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(pelLutRead(lut.get(), PEL_LUT_FLOAT, nullptr, 20 * 10 * 12, nullptr),
+              PEL_ERROR_INVALID_ARGUMENT);
 }
 
 TEST(LutApi, HalfIsTheNearestHalf) {
@@ -165,7 +168,8 @@ TEST(LutApi, HalfIsTheNearestHalf) {
     ASSERT_EQ(halves.size(), texels.size());
     for (size_t i = 0; i < texels.size(); ++i) {
         const double error = std::abs(double(fromHalf(halves[i])) - texels[i]);
-        const double below = std::abs(double(fromHalf(uint16_t(std::max(1, int(halves[i])) - 1))) - texels[i]);
+        const double below =
+            std::abs(double(fromHalf(uint16_t(std::max(1, int(halves[i])) - 1))) - texels[i]);
         const double above = std::abs(double(fromHalf(halves[i] + 1)) - texels[i]);
         EXPECT_LE(error, std::min(below, above)) << i << ": " << texels[i];
     }

@@ -1,5 +1,5 @@
-// Texels of curvature and shadow tables against the oracle's adaptive quadrature: every form, kind of profile,
-// axis, size and range.
+// Texels of curvature and shadow tables against the oracle's adaptive quadrature: every form, kind of
+// profile, axis, size and range.
 #include "lut_cases.h"
 #include "test_size.h"
 
@@ -44,7 +44,8 @@ void compareCurvature(const Device& device, const ProfileCase& profile, const Pe
     });
 }
 
-void compareShadow(const Device& device, const ProfileCase& profile, const PelShadowLutDesc& usual, int samples) {
+void compareShadow(const Device& device, const ProfileCase& profile, const PelShadowLutDesc& usual,
+                   int samples) {
     const PelShadowLutDesc desc = sizedTable(usual);
     const Lut lut(device, desc);
     const PelShadowLutDesc made = lut.info().shadow;

@@ -147,7 +147,8 @@ TEST(LutProperties, LargestTables) {
                       y = i < 9 ? edges[i / 3] : int(random() % side);
             const reference::Rgb truth = reference::curvatureTexel(spec, *skin, x, y);
             for (int c = 0; c < 3; ++c)
-                ASSERT_NEAR(D[(size_t(y) * side + size_t(x)) * 3 + size_t(c)], truth[c], tolerance::lutTexelGaussians)
+                ASSERT_NEAR(D[(size_t(y) * side + size_t(x)) * 3 + size_t(c)], truth[c],
+                            tolerance::lutTexelGaussians)
                     << "form " << int(form) << " texel " << x << ", " << y;
         }
     }
@@ -203,7 +204,8 @@ TEST(LutProperties, WeightsAndVariancesAtTheEdgesOfFloat) {
         // A term whose weight is negligible, however wide it is; but it sets the profile's radius, and
         // with it where an arc is cut.
         if (form != PEL_FORM_ARC) {
-            const Profile three = Profile::gaussians({{1, {1, 1, 1}}, {4, {1, 3, 1}}, {9, {tiny, tiny, tiny}}});
+            const Profile three =
+                Profile::gaussians({{1, {1, 1, 1}}, {4, {1, 3, 1}}, {9, {tiny, tiny, tiny}}});
             const auto beside = texels(three, form, 1, 50, 0);
             for (size_t i = 0; i < beside.size(); ++i)
                 EXPECT_NEAR(beside[i], expected[i], tolerance::lutTexelGaussians) << int(form) << ' ' << i;

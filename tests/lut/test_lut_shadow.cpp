@@ -96,7 +96,8 @@ TEST(ShadowLut, NoTexelIsBelowZero) {
     for (const PelShadowLutDesc& desc : descs) {
         const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
         const auto [least, most] = std::minmax_element(texels.begin(), texels.end());
-        EXPECT_GE(*least, 0) << desc.widthMin << " to " << desc.widthMax << ", sharpening " << desc.sharpening;
+        EXPECT_GE(*least, 0) << desc.widthMin << " to " << desc.widthMax << ", sharpening "
+                             << desc.sharpening;
         EXPECT_LE(*most, 1 + std::numeric_limits<float>::epsilon());
     }
 }

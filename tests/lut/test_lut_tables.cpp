@@ -34,7 +34,8 @@ TEST(LutTables, MoreDistancesOnTheSameLinesChangeNothing) {
         const auto texels = [&, form = form](const Profile& profile) {
             return curvatureTexels(device, profile, form, 33, sized(560u, 1u));
         };
-        const auto one = texels(Profile::table(corners, R)), other = texels(Profile::table(distances, values));
+        const auto one = texels(Profile::table(corners, R)),
+                   other = texels(Profile::table(distances, values));
         for (size_t i = 0; i < one.size(); ++i)
             ASSERT_NEAR(one[i], other[i], tolerance::lutTexelOther)
                 << "form " << int(form) << " texel " << i / 3;

@@ -80,14 +80,16 @@ double sphereSeries(double u, double kappa) {
 TEST(ReferenceLut, RingOfOneGaussianIsABesselSeries) {
     for (double r : {0.05, 0.3, 1.0, 3.0, 30.0, 300.0})  // in sigmas
         for (double u : someU)
-            EXPECT_NEAR(curvatureD(Form::ring, *oneGaussian(1), u, r).x, ringSeries(u, r * r), tolerance::oracleClosedForm)
+            EXPECT_NEAR(curvatureD(Form::ring, *oneGaussian(1), u, r).x, ringSeries(u, r * r),
+                        tolerance::oracleClosedForm)
                 << "u " << u << " r " << r;
 }
 
 TEST(ReferenceLut, SphereOfOneGaussianIsABesselLegendreSeries) {
     for (double r : {0.05, 0.3, 1.0, 3.0, 30.0, 300.0})
         for (double u : someU)
-            EXPECT_NEAR(curvatureD(Form::sphere, *oneGaussian(1), u, r).x, sphereSeries(u, r * r), tolerance::oracleClosedForm)
+            EXPECT_NEAR(curvatureD(Form::sphere, *oneGaussian(1), u, r).x, sphereSeries(u, r * r),
+                        tolerance::oracleClosedForm)
                 << "u " << u << " r " << r;
 }
 
@@ -152,7 +154,8 @@ TEST(ReferenceLut, EveryFormAndProfileEqualsBoostQuadrature) {
     const std::pair<const char*, ProfilePtr> profiles[] = {
         {"skin", skinProfile()},
         {"dipole", dipoleProfile({0.032, 0.17, 0.48}, {0.74, 0.88, 1.01}, 1.3)},
-        {"table", tableProfile({0, 0.5, 1, 2, 4}, {{9, 8, 7}, {4, 3, 2}, {1, .5, .2}, {.2, .05, .01}, {0, 0, 0}})},
+        {"table",
+         tableProfile({0, 0.5, 1, 2, 4}, {{9, 8, 7}, {4, 3, 2}, {1, .5, .2}, {.2, .05, .01}, {0, 0, 0}})},
         {"burley", burleyProfile({3.67, 1.37, 0.68}, {0.9, 0.6, 0.4})}};
     for (const auto& [name, profile] : profiles)
         for (Form form : allForms) {
@@ -190,8 +193,8 @@ TEST(ReferenceLut, PennerRingIsThePublishedOne) {
                 const double x = -pi + (i + 0.5) * 2 * pi / steps, d = 2 * r * std::sin(x / 2);
                 double weight = 0;
                 for (int g = 0; g < 6; ++g)
-                    weight +=
-                        red[g] / (sigma[g] * std::sqrt(2 * pi)) * std::exp(-d * d / (2 * sigma[g] * sigma[g]));
+                    weight += red[g] / (sigma[g] * std::sqrt(2 * pi)) *
+                              std::exp(-d * d / (2 * sigma[g] * sigma[g]));
                 sum += weight * std::max(0.0, std::cos(theta + x));
                 weights += weight;
             }

@@ -21,7 +21,8 @@ double closedForm(double sigma, double s0, double s1, double cut) {
     const double v = sigma * sigma;
     auto density = [&](double s) { return std::exp(-s * s / (2 * v)) / std::sqrt(2 * pi * v); };
     auto share = [&](double a, double b) {
-        return 0.5 * (std::erf(b / (sigma * std::numbers::sqrt2)) - std::erf(a / (sigma * std::numbers::sqrt2)));
+        return 0.5 *
+               (std::erf(b / (sigma * std::numbers::sqrt2)) - std::erf(a / (sigma * std::numbers::sqrt2)));
     };
     const double a = std::clamp(s0, -cut, cut), b = std::clamp(s1, -cut, cut);
     double moment[4] = {share(a, b), -v * (density(b) - density(a))};
@@ -44,7 +45,8 @@ TEST(ReferenceShadowLut, OneGaussianHasAClosedForm) {
             for (double w : {0.0, 0.01, 0.2, 0.5, 0.77, 1.0}) {
                 const double p = (std::sqrt(w) - std::sqrt(1 - w)) / 2 + 0.5;
                 const double s0 = (-(1 - k) / 2 / k - p) / q, s1 = ((1 - (1 - k) / 2) / k - p) / q;
-                EXPECT_NEAR(shadowT(*profile, w, q, k).x, closedForm(sigma, s0, s1, cut), tolerance::oracleClosedForm)
+                EXPECT_NEAR(shadowT(*profile, w, q, k).x, closedForm(sigma, s0, s1, cut),
+                            tolerance::oracleClosedForm)
                     << "k " << k << " q " << q << " w " << w;
             }
 }
@@ -150,7 +152,8 @@ TEST(ReferenceEncoding, FaceWorksTablesAreOneStepFromExactAtMost) {
     int texels = 0, differentCurvature = 0, differentShadow = 0;
     for (int y = 0; y < 512; y += 73)
         for (int x = 0; x < 512; x += 7, ++texels) {
-            const Rgb d = curvatureTexel(curvatureSpec, *skin, x, y), t = shadowTexel(shadowSpec, *skin, x, y);
+            const Rgb d = curvatureTexel(curvatureSpec, *skin, x, y),
+                      t = shadowTexel(shadowSpec, *skin, x, y);
             const Rgba8 ours = roundedSteps(faceworksCurvatureSteps(d, curvatureSpec.u(x)));
             const Rgba8 oursShadow = roundedSteps(faceworksShadowSteps(t, x, 512));
             const uint8_t* theirs = curvature.data.data() + (y * 512 + x) * 4;
@@ -183,7 +186,8 @@ TEST(ReferenceBeckmann, IsNormalisedOverTheHemisphereAndHasItsLimits) {
     for (int x = 0; x <= 50; ++x)
         for (int y = 0; y <= 50; ++y) EXPECT_TRUE(std::isfinite(beckmannEncoded(x / 50.0, y / 50.0)));
     EXPECT_NEAR(beckmannEncoded(0.9, 0.3),
-                0.5 * std::pow(std::exp(-(1 / 0.81 - 1) / 0.09) / (0.09 * 0.6561), 0.1), tolerance::oracleExact);
+                0.5 * std::pow(std::exp(-(1 / 0.81 - 1) / 0.09) / (0.09 * 0.6561), 0.1),
+                tolerance::oracleExact);
 }
 
 }  // namespace

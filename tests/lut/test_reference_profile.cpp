@@ -20,7 +20,8 @@ ProfilePtr testDipole() {
     return dipoleProfile({0.032, 0.17, 0.48}, {0.74, 0.88, 1.01}, 1.3);
 }
 ProfilePtr testTable() {
-    return tableProfile({0.1, 0.5, 1, 2, 4}, {{9, 8, 7}, {4, 3, 2}, {1, 0.5, 0.2}, {0.2, 0.05, 0.01}, {0, 0, 0}});
+    return tableProfile({0.1, 0.5, 1, 2, 4},
+                        {{9, 8, 7}, {4, 3, 2}, {1, 0.5, 0.2}, {0.2, 0.05, 0.01}, {0, 0, 0}});
 }
 std::vector<std::pair<const char*, ProfilePtr>> allProfiles() {
     return {{"skin", skinProfile()},
@@ -40,7 +41,8 @@ TEST(ReferenceQuadrature, IntegratesPolynomialsToDegree22InOnePanel) {
 TEST(ReferenceQuadrature, HandlesKinksAndSingularEnds) {
     EXPECT_NEAR(integrate<double>([](double x) { return std::abs(x - 0.3); }, {0, 1}), 0.29,
                 tolerance::oracleQuadrature);
-    EXPECT_NEAR(integrate<double>([](double x) { return -std::log(x); }, {0, 1}), 1, tolerance::oracleQuadrature);
+    EXPECT_NEAR(integrate<double>([](double x) { return -std::log(x); }, {0, 1}), 1,
+                tolerance::oracleQuadrature);
     EXPECT_THROW(integrate<double>([](double x) { return 1 / (x - 0.5); }, {0, 1}), std::runtime_error);
 }
 
@@ -81,7 +83,8 @@ TEST(ReferenceProfile, LineSpreadIntegratesToOneAndHasTheRmsWidthOfRadial) {
                 for (double& b : borders) b = std::cbrt(b);
                 return 2 * integrate<double>(
                                [&](double x) {
-                                   return std::pow(x, 3 * power) * profile->lineSpread(x * x * x)[c] * 3 * x * x;
+                                   return std::pow(x, 3 * power) * profile->lineSpread(x * x * x)[c] * 3 * x *
+                                          x;
                                },
                                panelPoints(0, borders.back(), borders), 0, 1e-12);
             };
@@ -123,7 +126,8 @@ TEST(ReferenceProfile, BurleyScaleHasItsPublishedValues) {
     EXPECT_NEAR(burleyScale(BurleyFit::diffuseTransmission, 0.8), 1.1, tolerance::oracleExact);
     EXPECT_NEAR(burleyScale(BurleyFit::diffuseMeanFreePath, 0.33), 3.5, tolerance::oracleExact);
     EXPECT_NEAR(burleyScale(BurleyFit::searchlight, 0.3), 1.55 + 7 * 0.125, tolerance::oracleExact);
-    EXPECT_NEAR(burleyScale(BurleyFit::diffuseMeanFreePath, 0.83), 3.5 + 100 * 0.0625, tolerance::oracleExact);
+    EXPECT_NEAR(burleyScale(BurleyFit::diffuseMeanFreePath, 0.83), 3.5 + 100 * 0.0625,
+                tolerance::oracleExact);
 }
 
 TEST(ReferenceProfile, DipoleAndTableLineSpreadEqualTanhSinh) {
@@ -138,9 +142,9 @@ TEST(ReferenceProfile, DipoleAndTableLineSpreadEqualTanhSinh) {
                 const auto points = panelPoints(0, borders.back(), borders);
                 double sum = 0;
                 for (size_t i = 0; i + 1 < points.size(); ++i)
-                    sum +=
-                        2 * quadrature.integrate([&](double t) { return profile->radial(std::hypot(s, t))[c]; },
-                                                 points[i], points[i + 1]);
+                    sum += 2 * quadrature.integrate(
+                                   [&](double t) { return profile->radial(std::hypot(s, t))[c]; }, points[i],
+                                   points[i + 1]);
                 EXPECT_NEAR(profile->lineSpread(s)[c] / sum, 1, tolerance::oracleLineSpread) << "s " << s;
             }
 }

@@ -81,7 +81,8 @@ TEST(SpecularTable, ReadsWhatTheTableHolds) {
     std::normal_distribution<float> normal;
     std::vector<float> inputs(10 * count);
     const auto vec = [&](size_t i, size_t first) {
-        return Vec3{inputs[first * count + i], inputs[(first + 1) * count + i], inputs[(first + 2) * count + i]};
+        return Vec3{inputs[first * count + i], inputs[(first + 1) * count + i],
+                    inputs[(first + 2) * count + i]};
     };
     for (size_t i = 0; i < count; ++i) {
         for (size_t first : {0, 3, 6}) {
@@ -93,7 +94,8 @@ TEST(SpecularTable, ReadsWhatTheTableHolds) {
     inputs[9 * count + 7] = 0;  // the ends of the table, and beyond them
     inputs[9 * count + 8] = 1.5f;
     inputs[9 * count + 9] = -1;
-    inputs[count + 10] = std::numeric_limits<float>::quiet_NaN();  // must not read elsewhere, nor disturb others
+    // must not read elsewhere, nor disturb others
+    inputs[count + 10] = std::numeric_limits<float>::quiet_NaN();
     for (int lanes : {1, 8, 16}) {
         const auto result = evaluate(device, table, inputs, lanes);
         size_t lit = 0;
@@ -112,7 +114,8 @@ TEST(SpecularTable, ReadsWhatTheTableHolds) {
             EXPECT_NEAR(result[i], expected, tolerance::specularTable * std::max(1.0, expected)) << i;
             // And what the table stands for: 300 x 200 texels of it.
             if (m > 0.25 && m < 0.6) {
-                EXPECT_NEAR(result[i], reference::specular(n, l, v, m, 1), 0.05 * std::max(0.1, expected)) << i;
+                EXPECT_NEAR(result[i], reference::specular(n, l, v, m, 1), 0.05 * std::max(0.1, expected))
+                    << i;
             }
         }
         EXPECT_GT(lit, count / 8);

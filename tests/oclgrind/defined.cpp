@@ -59,7 +59,8 @@ class Defined : public Plugin {
         from ? (void)memmove(to, from, size) : (void)memset(to, 0, size);
         hostLoad = {};
     }
-    void memoryMap(const Memory* memory, size_t address, size_t offset, size_t size, cl_map_flags flags) override {
+    void memoryMap(const Memory* memory, size_t address, size_t offset, size_t size,
+                   cl_map_flags flags) override {
         std::lock_guard lock(mutex_);
         if (!(flags & (CL_MAP_WRITE | CL_MAP_WRITE_INVALIDATE_REGION))) return;
         if (uint8_t* to = bytes(memory, address + offset, size)) memset(to, 0, size);
@@ -67,18 +68,22 @@ class Defined : public Plugin {
     void memoryLoad(const Memory* memory, const WorkItem*, size_t address, size_t size) override {
         loads.push_back({memory, address, size});
     }
-    void memoryStore(const Memory* memory, const WorkItem*, size_t address, size_t size, const uint8_t*) override {
+    void memoryStore(const Memory* memory, const WorkItem*, size_t address, size_t size,
+                     const uint8_t*) override {
         stores.push_back({memory, address, size});
     }
     // Of a whole work-group: asynchronous copies.
-    void memoryStore(const Memory* memory, const WorkGroup*, size_t address, size_t size, const uint8_t*) override {
+    void memoryStore(const Memory* memory, const WorkGroup*, size_t address, size_t size,
+                     const uint8_t*) override {
         std::lock_guard lock(mutex_);
         if (uint8_t* to = bytes(memory, address, size)) memset(to, 0, size);
     }
-    void memoryAtomicLoad(const Memory* memory, const WorkItem*, AtomicOp, size_t address, size_t size) override {
+    void memoryAtomicLoad(const Memory* memory, const WorkItem*, AtomicOp, size_t address,
+                          size_t size) override {
         loads.push_back({memory, address, size});
     }
-    void memoryAtomicStore(const Memory* memory, const WorkItem*, AtomicOp, size_t address, size_t size) override {
+    void memoryAtomicStore(const Memory* memory, const WorkItem*, AtomicOp, size_t address,
+                           size_t size) override {
         stores.push_back({memory, address, size});
     }
     void kernelBegin(const KernelInvocation* invocation) override {
@@ -122,7 +127,8 @@ class Defined : public Plugin {
     using Values = std::unordered_map<const llvm::Value*, Lanes>;  // those with lanes that nothing has set
 
     std::mutex mutex_;
-    std::unordered_map<const Memory*, std::vector<std::vector<uint8_t>>> memories_;  // 1: nothing has set this byte
+    // 1: nothing has set this byte
+    std::unordered_map<const Memory*, std::vector<std::vector<uint8_t>>> memories_;
     std::unordered_map<const WorkItem*, Values> items_;
     std::unordered_set<const llvm::Instruction*> reported_;
     std::unordered_set<std::string> kernels_;
@@ -284,7 +290,8 @@ class Defined : public Plugin {
         Lanes open = unset(0u) | unset(1);
         for (unsigned side = 0; side < 2; ++side) {
             const TypedValue value = operand(side);
-            const int64_t decided = instruction_->getType()->getScalarSizeInBits() == 1 ? deciding & 1 : deciding;
+            const int64_t decided =
+                instruction_->getType()->getScalarSizeInBits() == 1 ? deciding & 1 : deciding;
             for (unsigned i = 0; i < value.num; ++i)
                 if (!bit(unset(side), i) && value.getSInt(i) == decided) open &= ~(Lanes(1) << i);
         }

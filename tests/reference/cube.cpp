@@ -71,7 +71,8 @@ Rgb sampleCube(const CubeMap& cube, Vec3 d) {
     const int i = before(s), j = before(t);
     const auto knot = [&](int x, int y) {
         const bool inside = x > 0 && x <= cube.size && y > 0 && y <= cube.size;
-        return inside ? texel(cube, face, x - 1, y - 1) : onEdge(cube, cubeDirection(face, knots[x], knots[y]));
+        return inside ? texel(cube, face, x - 1, y - 1)
+                      : onEdge(cube, cubeDirection(face, knots[x], knots[y]));
     };
     const double fs = (s - knots[i]) / (knots[i + 1] - knots[i]),
                  ft = (t - knots[j]) / (knots[j + 1] - knots[j]);

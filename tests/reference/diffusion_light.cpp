@@ -17,7 +17,8 @@ constexpr double ownWindow = 2, ownCosine = 0.4;       // width in quarters of a
 constexpr double shownWindow = 1, shownCosine = 0.35;  // width in texels; smallest cosine
 constexpr double leastCosine = 0.1;                    // smallest cosine to the light
 constexpr double stepOverTexel = 2;                    // weight of the squared step between pixels
-// Deviation of the accumulated weight of the pixels from its window; three times as much: pixels do not count.
+// Deviation of the accumulated weight of the pixels from its window; three times as much: pixels do not
+// count.
 constexpr double weightOff = 0.1;
 // Difference that does not matter, relative to light at normal incidence; twice as much matters fully.
 constexpr double agree = 0.02;
@@ -195,7 +196,8 @@ std::vector<LitTexel> litTexels(const MappedLight& light) {
     for (size_t k = 0; k < light.maps.size(); ++k) {
         const LightDepths& map = light.maps[k];
         const auto place = [&](int x, int y, int depthX, int depthY) {
-            const int column = std::clamp(depthX, 0, map.width - 1), row = std::clamp(depthY, 0, map.height - 1);
+            const int column = std::clamp(depthX, 0, map.width - 1),
+                      row = std::clamp(depthY, 0, map.height - 1);
             const double depth = map.depth[size_t(row) * size_t(map.width) + size_t(column)];
             return pointAt(map, light, (x + 0.5) / map.width, (y + 0.5) / map.height, depth);
         };
@@ -279,7 +281,8 @@ std::vector<Rgb> scatterFromLights(const ScatterPicture& p, const std::vector<Ma
                 far = far + lights[k].color * beyond;
                 between = between + lights[k].color * light;
                 for (int c = 0; c < 3; ++c)
-                    asPlane[c] += lights[k].color[c] * light[c] * planeLike(weight[c], within[c] - withinOwn[c]);
+                    asPlane[c] +=
+                        lights[k].color[c] * light[c] * planeLike(weight[c], within[c] - withinOwn[c]);
             }
             // Near: the mean of what pixels show.
             const Rgb self = profile.within(std::sqrt(areas[i] / std::numbers::pi));
@@ -295,9 +298,10 @@ std::vector<Rgb> scatterFromLights(const ScatterPicture& p, const std::vector<Ma
             for (int c = 0; c < 3; ++c) {
                 const double byPixels = within[c] * (weights[c] > 0 ? near[c] / weights[c] : lit[c]),
                              byTexels = withinOwn[c] * lit[c] + asPlane[c];
-                result[i][c] = far[c] + withinOwn[c] * lit[c] + between[c] +
-                               trustInPixels(byPixels, byTexels, weights[c], within[c], steepest, texel, step) *
-                                   (byPixels - byTexels);
+                result[i][c] =
+                    far[c] + withinOwn[c] * lit[c] + between[c] +
+                    trustInPixels(byPixels, byTexels, weights[c], within[c], steepest, texel, step) *
+                        (byPixels - byTexels);
             }
         }
     return result;

@@ -226,11 +226,13 @@ std::vector<Rgb> scatterSeparably(const TapScene& s, const Profile& profile) {
                     const int first = int(std::floor(middle - reachOf + 0.5)),
                               last = int(std::floor(middle + reachOf + 0.5));
                     Rgb share;
-                    const Rgb before = half.value(std::abs(ends[i])), after = half.value(std::abs(ends[i + 1]));
+                    const Rgb before = half.value(std::abs(ends[i])),
+                              after = half.value(std::abs(ends[i + 1]));
                     for (int c = 0; c < 3; ++c)
                         share[c] =
                             0.5 * (std::copysign(after[c], ends[i + 1]) - std::copysign(before[c], ends[i]));
-                    const double beyond = last > first ? (middle + reachOf - (last - 0.5)) / (2 * reachOf) : 0;
+                    const double beyond =
+                        last > first ? (middle + reachOf - (last - 0.5)) / (2 * reachOf) : 0;
                     add(first, 1 - beyond, share, (ends[i] + ends[i + 1]) / 2);
                     if (last > first) add(last, beyond, share, (ends[i] + ends[i + 1]) / 2);
                 }

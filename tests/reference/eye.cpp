@@ -73,8 +73,8 @@ double Eye::irisZ() const {
 }
 double Eye::corneaZ(double r) const {
     const double q = 1 + conic;
-    return apexZ() -
-           (std::abs(q) < 1e-9 ? r * r / (2 * cornea) : (cornea - std::sqrt(cornea * cornea - q * r * r)) / q);
+    return apexZ() - (std::abs(q) < 1e-9 ? r * r / (2 * cornea)
+                                         : (cornea - std::sqrt(cornea * cornea - q * r * r)) / q);
 }
 Vec3 Eye::corneaNormal(double x, double y) const {
     const double w = apexZ() - corneaZ(std::hypot(x, y));
@@ -189,7 +189,8 @@ void carry(const Eye& eye, Vec3 p, Vec3 d, double weight, const Land& land) {
         const double most = std::min(toIris, 4 * eye.limbus);
         double t = 0;
         bool meets = false;
-        if (eye.corneaZ(std::min(std::hypot(p.x + most * d.x, p.y + most * d.y), eye.limbus)) < p.z + most * d.z ||
+        if (eye.corneaZ(std::min(std::hypot(p.x + most * d.x, p.y + most * d.y), eye.limbus)) <
+                p.z + most * d.z ||
             std::hypot(p.x + most * d.x, p.y + most * d.y) > eye.limbus)
             meets = firstRoot([&](double s) { return -aboveCornea(eye, p + s * d); }, 1e-6, most, 400, &t) &&
                     onCornea(eye, p + t * d);
@@ -292,7 +293,8 @@ double ambientOnIris(const Eye& eye, double r, int steps) {
             const double s = std::sqrt((j + 0.5) / steps), phi = 2 * pi * (i + 0.5) / steps;
             const Vec3 d = s * std::cos(phi) * a + s * std::sin(phi) * b + std::sqrt(1 - s * s) * n;
             double t = 0;
-            if (!firstRoot([&](double x) { return -aboveCornea(eye, p + x * d); }, 1e-9, 4 * eye.limbus, 400, &t))
+            if (!firstRoot([&](double x) { return -aboveCornea(eye, p + x * d); }, 1e-9, 4 * eye.limbus, 400,
+                           &t))
                 continue;
             const Vec3 q = p + t * d;
             if (!onCornea(eye, q)) continue;

@@ -18,7 +18,8 @@ struct EyeSquare {
             for (uint32_t x = 0; x < width; ++x) {
                 const double u = (x - 0.5 * width) / side * 2, v = (0.5 * height - y) / side * 2;
                 const bool inside = std::abs(u) < 1 && std::abs(v) < 1;
-                const double px = 8.4 * u, py = 8.4 * v, pz = std::sqrt(std::max(144 - px * px - py * py, 1.0));
+                const double px = 8.4 * u, py = 8.4 * v,
+                             pz = std::sqrt(std::max(144 - px * px - py * py, 1.0));
                 for (const double c : {px, py, inside ? pz : -10.0}) position.push_back(float(c));
                 const double length = std::hypot(px, py, pz);
                 for (const double c : {px, py, pz}) normal.push_back(float(c / length));

@@ -97,7 +97,8 @@ Rgb sphere(const Profile& profile, double u, double r) {
     borders.push_back(2 * r * std::sin(0.5 * rise));         // where the circle first touches the terminator
     borders.push_back(2 * r * std::sin(0.5 * (pi - rise)));  // and where it leaves it
     auto integrand = [&](double d) {
-        const double sinPsi = d / r * std::sqrt(max0(1 - d * d / (4 * r * r))), cosPsi = 1 - d * d / (2 * r * r);
+        const double sinPsi = d / r * std::sqrt(max0(1 - d * d / (4 * r * r))),
+                     cosPsi = 1 - d * d / (2 * r * r);
         const Rgb k = d * profile.radial(d);
         return circleMean(u * cosPsi, sinTheta * sinPsi) * Rgb{k.x / norm.x, k.y / norm.y, k.z / norm.z};
     };

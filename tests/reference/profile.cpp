@@ -84,7 +84,8 @@ class TableProfile : public Profile {
             const double b = distances_[i];
             if (b > s && b > a) {
                 const Rgb slope = i ? (1 / (b - a)) * (values_[i] - values_[i - 1]) : Rgb{};
-                const double from = a > s ? std::sqrt((a - s) * (a + s)) : 0, to = std::sqrt((b - s) * (b + s));
+                const double from = a > s ? std::sqrt((a - s) * (a + s)) : 0,
+                             to = std::sqrt((b - s) * (b + s));
                 auto meanDistance = [&](double t) {
                     return 0.5 * (t * std::hypot(s, t) + (s > 0 ? s * s * std::asinh(t / s) : 0));
                 };

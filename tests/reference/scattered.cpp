@@ -71,7 +71,8 @@ class Delaunay {
             const Node n = nodes_[size_t(open.back())];
             open.pop_back();
             for (int i = 0; i < 3; ++i) {
-                const int outside = n.beside[size_t(i)], a = n.corners[(i + 1) % 3], b = n.corners[(i + 2) % 3];
+                const int outside = n.beside[size_t(i)], a = n.corners[(i + 1) % 3],
+                          b = n.corners[(i + 2) % 3];
                 if (outside >= 0) {
                     Node& o = nodes_[size_t(outside)];
                     if (o.dead) continue;
@@ -173,7 +174,8 @@ FlatMesh poked(const FlatMesh& mesh, double part, int rounds, uint32_t seed) {
                 out.triangles.push_back(t);
                 continue;
             }
-            const Vec2 a = out.points[size_t(t[0])], b = out.points[size_t(t[1])], c = out.points[size_t(t[2])];
+            const Vec2 a = out.points[size_t(t[0])], b = out.points[size_t(t[1])],
+                       c = out.points[size_t(t[2])];
             const int centre = int(out.points.size());
             out.points.push_back({(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3});
             for (int i = 0; i < 3; ++i) next.push_back({t[i], t[(i + 1) % 3], centre});

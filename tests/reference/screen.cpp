@@ -11,7 +11,8 @@ bool finite(Vec3 v) {
 
 bool usable(const ScreenImage& image, int pixel) {
     if (!image.ids.empty() && image.ids[pixel] == 0) return false;
-    return finite(image.normals[pixel]) && finite(image.positions[pixel]) && length(image.normals[pixel]) > 1e-6;
+    return finite(image.normals[pixel]) && finite(image.positions[pixel]) &&
+           length(image.normals[pixel]) > 1e-6;
 }
 
 bool connected(const ScreenImage& image, int here, int there, double edge) {
@@ -36,7 +37,8 @@ std::vector<double> screenCurvature(const ScreenImage& image, double edge) {
                 // missing.
                 int ends[2] = {here, here}, steps = 0;
                 for (int side = 0; side < 2; ++side) {
-                    const int nx = x + (axis == 0 ? 2 * side - 1 : 0), ny = y + (axis == 1 ? 2 * side - 1 : 0);
+                    const int nx = x + (axis == 0 ? 2 * side - 1 : 0),
+                              ny = y + (axis == 1 ? 2 * side - 1 : 0);
                     if (nx < 0 || ny < 0 || nx >= image.width || ny >= image.height) continue;
                     const int there = ny * image.width + nx;
                     if (connected(image, here, there, edge)) ends[side] = there, ++steps;

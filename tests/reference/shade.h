@@ -89,7 +89,8 @@ double deepScatter(double thickness, double radius, Vec3 blurred, Vec3 toLight);
 
 double schlick(double cosine, double f0);
 // rho_s (N.L) max0(P F / |L+V|²), Beckmann's P evaluated directly; 0 where N.L <= 0 or L = -V.
-double specular(Vec3 shading, Vec3 toLight, Vec3 toViewer, double roughness, double intensity, double f0 = 0.028);
+double specular(Vec3 shading, Vec3 toLight, Vec3 toViewer, double roughness, double intensity,
+                double f0 = 0.028);
 
 // The same of two lobes of GGX with Smith's correlated masking, times pi: intensity (N.L) pi BRDF.
 double ggxLobe(Vec3 shading, Vec3 toLight, Vec3 toViewer, double roughness);  // D G / (4 (N.L) (N.V))

@@ -94,7 +94,8 @@ Vec3 sampleRepeated(const NormalLevel& level, double u, double v) {
 }
 
 double footprintLevel(const std::array<double, 4>& g, int width, int height) {
-    return std::log2(std::max(std::hypot(g[0] * width, g[1] * height), std::hypot(g[2] * width, g[3] * height)));
+    return std::log2(
+        std::max(std::hypot(g[0] * width, g[1] * height), std::hypot(g[2] * width, g[3] * height)));
 }
 
 Vec3 trilinear(const std::vector<NormalLevel>& levels, double u, double v, double level) {
@@ -176,7 +177,8 @@ double sharpShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, 
     };
     const auto share = [&](int i, int j) {
         const double plane =
-            z / zPerLength + (dot(normal, view.right) * (i - x) + dot(normal, view.down) * (j - y)) * size * tilt;
+            z / zPerLength +
+            (dot(normal, view.right) * (i - x) + dot(normal, view.down) * (j - y)) * size * tilt;
         const double behind = depth(i, j) - plane;
         return std::isfinite(behind) ? saturate(2 + behind / tolerance) : 1.0;
     };

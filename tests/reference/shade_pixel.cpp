@@ -28,8 +28,9 @@ Shaded shadeLight(const Material& material, const Pixel& pixel, const PixelLight
     const Rgb lit = direct(delta, pixel.shading, pixel.blurred, light.toLight, material.normalBlend);
     out.scattered = material.albedo * light.color * lit * shadowAt(material, pixel, light);
     if (light.hasThickness && magnitude(material.deepScatterColor) > 0)
-        out.deepScatter = deepScatter(light.thickness, material.deepScatterRadius, pixel.blurred, light.toLight) *
-                          (material.deepScatterColor * material.albedo * light.color);
+        out.deepScatter =
+            deepScatter(light.thickness, material.deepScatterRadius, pixel.blurred, light.toLight) *
+            (material.deepScatterColor * material.albedo * light.color);
     if (material.specular > 0) {
         const double shadow = material.shadowLut
                                   ? sharpenedShadow(light.wideShadow, material.shadowLut->sharpening)
@@ -53,8 +54,9 @@ Shaded shadePixel(const Material& material, const Pixel& pixel, const std::vecto
         total.deepScatter = total.deepScatter + one.deepScatter;
         total.specular = total.specular + one.specular;
     }
-    total.ambient = pixel.ambientOcclusion *
-                    (material.albedo * ambientTerm(ambient, pixel.shading, pixel.blurred, material.normalBlend));
+    total.ambient =
+        pixel.ambientOcclusion *
+        (material.albedo * ambientTerm(ambient, pixel.shading, pixel.blurred, material.normalBlend));
     if (pixel.hasThickness && material.deepScatterAmbient > 0) {
         const double t = pixel.thickness / material.deepScatterRadius;
         total.deepScatter = total.deepScatter + material.deepScatterAmbient * std::exp(-t * t / 2) *

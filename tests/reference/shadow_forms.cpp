@@ -75,7 +75,8 @@ double CubeShadowMap::bilinearReach(Vec3 direction) const {
     return radial ? sum / length(direction) : 1 / (sum * along);
 }
 
-double cubeThickness(const CubeShadowMap& map, Vec3 point, const std::vector<Vec2>& taps, double filterRadius) {
+double cubeThickness(const CubeShadowMap& map, Vec3 point, const std::vector<Vec2>& taps,
+                     double filterRadius) {
     const double distance = length(point);
     const Vec3 axis = point / distance;
     const auto [right, down] = tangents(axis);
@@ -116,8 +117,9 @@ double cubeWideShadow(const CubeShadowMap& map, Vec3 point, Vec3 normal, const W
             const double seen = 1 / map.nearestReach(e);
             double shown = 1;
             if (std::isfinite(seen)) {
-                const double plane = receiver + (dot(normal, aside) * distance - p.coneSlope * p.width / 2 * r) *
-                                                    tilt * perLength;
+                const double plane =
+                    receiver +
+                    (dot(normal, aside) * distance - p.coneSlope * p.width / 2 * r) * tilt * perLength;
                 shown = saturate(1 + (seen - plane) / (p.softness * p.width * perLength));
             }
             sum += weight * shown;
@@ -127,7 +129,8 @@ double cubeWideShadow(const CubeShadowMap& map, Vec3 point, Vec3 normal, const W
 }
 
 double uvPerLength(const Matrix4& m, int row) {
-    return std::sqrt(m[row][0] * m[row][0] + m[row][1] * m[row][1] + m[row][2] * m[row][2]) / std::abs(m[3][3]);
+    return std::sqrt(m[row][0] * m[row][0] + m[row][1] * m[row][1] + m[row][2] * m[row][2]) /
+           std::abs(m[3][3]);
 }
 
 int cascadeOf(const std::vector<Matrix4>& maps, Vec3 position, double radius) {
@@ -146,13 +149,15 @@ double momentShadow(const ShadowMap& map, const std::vector<double>& second, con
         total += s.weight;
         if (s.texel < 0 || !std::isfinite(map.depth[s.texel]) || !std::isfinite(second[s.texel])) continue;
         const double z = map.depth[s.texel], before = std::min(0.0, (z - s.receiver) / s.zPerLength);
-        const double variance = before < 0 ? max0(second[s.texel] - z * z) / (s.zPerLength * s.zPerLength) : 0;
+        const double variance =
+            before < 0 ? max0(second[s.texel] - z * z) / (s.zPerLength * s.zPerLength) : 0;
         mean += s.weight * before;
         square += s.weight * (before * before + variance);
     }
     if (!(total > 0)) return 1;
     mean /= total;
-    const double variance = std::max(square / total - mean * mean, moments.minDeviation * moments.minDeviation);
+    const double variance =
+        std::max(square / total - mean * mean, moments.minDeviation * moments.minDeviation);
     return saturate((variance / (variance + mean * mean) - moments.bleeding) / (1 - moments.bleeding));
 }
 

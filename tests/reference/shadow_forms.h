@@ -26,7 +26,8 @@ Vec3 shadowCubeDirection(int face, double column, double row, int size);
 int shadowCubeFace(Vec3 direction);
 
 // point: seen from the light, in the space of the cube, moved inwards already. filterRadius in UV of a face.
-double cubeThickness(const CubeShadowMap& map, Vec3 point, const std::vector<Vec2>& taps, double filterRadius);
+double cubeThickness(const CubeShadowMap& map, Vec3 point, const std::vector<Vec2>& taps,
+                     double filterRadius);
 double cubeWideShadow(const CubeShadowMap& map, Vec3 point, Vec3 normal, const WideFilterParams& params);
 
 // --- cascades ---

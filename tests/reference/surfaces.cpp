@@ -116,8 +116,9 @@ Surface monkeySaddle(double side) {
 Surface gaussianBump(double height, double width, double side) {
     return {[=](double x, double y) {
                 const double w2 = width * width, z = height * std::exp(-(x * x + y * y) / (2 * w2));
-                return graphPoint(x, y, z, {-x * z / w2, -y * z / w2},
-                                  {(x * x / w2 - 1) * z / w2, x * y * z / (w2 * w2), (y * y / w2 - 1) * z / w2});
+                return graphPoint(
+                    x, y, z, {-x * z / w2, -y * z / w2},
+                    {(x * x / w2 - 1) * z / w2, x * y * z / (w2 * w2), (y * y / w2 - 1) * z / w2});
             },
             -side / 2, side / 2, -side / 2, side / 2};
 }

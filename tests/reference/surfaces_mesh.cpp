@@ -32,7 +32,8 @@ AnalyticMesh tessellate(const Surface& surface, int columns, int rows, Tessellat
             const bool border =
                 (!surface.wrapsU && (x == 0 || x == columns)) || (!surface.wrapsV && (y == 0 || y == rows));
             const double dx = jitter(random), dy = jitter(random);
-            const Vec2 uv{(x + (moved && !border ? dx : 0)) / columns, (y + (moved && !border ? dy : 0)) / rows};
+            const Vec2 uv{(x + (moved && !border ? dx : 0)) / columns,
+                          (y + (moved && !border ? dy : 0)) / rows};
             appendVertex(out, surface.at(surface.uBegin + uv.x * (surface.uEnd - surface.uBegin),
                                          surface.vBegin + uv.y * (surface.vEnd - surface.vBegin)));
             out.mesh.uvs.push_back(uv);

@@ -73,7 +73,8 @@ TEST(SampleGBuffer, SpherePositionsNormalsAndCurvature) {
     int covered = 0;
     view.forEachCovered([&](int x, int y) {
         ++covered;
-        const Vec3 p = vectorAt(view.gbuffer.position, x, y), n = vectorAt(view.gbuffer.geometricNormal, x, y);
+        const Vec3 p = vectorAt(view.gbuffer.position, x, y),
+                   n = vectorAt(view.gbuffer.geometricNormal, x, y);
         EXPECT_LE(length(p), sphereRadius + tolerance::samplePosition);
         EXPECT_GE(length(p), sphereRadius - facetSag - tolerance::samplePosition);
         EXPECT_LT(length(n - normalize(p)), tolerance::sampleFacetNormal);
@@ -119,7 +120,8 @@ TEST(SampleGBuffer, PositionsLieOnTheRaysAndDepthsGiveThemBack) {
         const double z = view.gbuffer.deviceDepth.at(0, x, y);
         EXPECT_GT(z, 0);
         EXPECT_LT(z, 1);
-        const Vec3 back = inverse.project({2 * (x + 0.5) / view.width - 1, 1 - 2 * (y + 0.5) / view.height, z});
+        const Vec3 back =
+            inverse.project({2 * (x + 0.5) / view.width - 1, 1 - 2 * (y + 0.5) / view.height, z});
         EXPECT_LT(length(back - p), tolerance::sampleFromDepth);
     });
 }
@@ -161,8 +163,10 @@ TEST(SampleGBuffer, WithoutNormalsTheFaceNormalIsTaken) {
 TEST(SampleGBuffer, ClosedMeshesHaveNoCracks) {
     for (const sample::Mesh& mesh : {sphere(), sample::makeTorus(40, 15, 37, 91)}) {
         const bool torus = mesh.positions.size() != sphere().positions.size();
-        const sample::Camera inside{.eye = {torus ? 40.0 : 0.0, 0, 0}, .target = {40, 5, 0}, .verticalFov = 120};
-        const sample::GBuffer g = sample::renderGBuffer(sample::Scene(mesh.view()), inside, 512, 256, plain());
+        const sample::Camera inside{
+            .eye = {torus ? 40.0 : 0.0, 0, 0}, .target = {40, 5, 0}, .verticalFov = 120};
+        const sample::GBuffer g =
+            sample::renderGBuffer(sample::Scene(mesh.view()), inside, 512, 256, plain());
         EXPECT_EQ(std::count(g.coverage.data.begin(), g.coverage.data.end(), 0.0f), 0);
     }
 }
@@ -189,9 +193,11 @@ TEST(SampleDetail, ShadingDiffersFromGeometricAsAsked) {
     EXPECT_LT(meanSquareSlope(g.blurredNormal), 0.01 * meanSquareSlope(g.shadingNormal));
 
     options.detail.foldSlope = 0.1;
-    const double wide = meanSquareSlope(sample::renderGBuffer(scene, camera, 100, 100, options).blurredNormal);
+    const double wide =
+        meanSquareSlope(sample::renderGBuffer(scene, camera, 100, 100, options).blurredNormal);
     options.diffusionRadius = 1;
-    const double narrow = meanSquareSlope(sample::renderGBuffer(scene, camera, 100, 100, options).blurredNormal);
+    const double narrow =
+        meanSquareSlope(sample::renderGBuffer(scene, camera, 100, 100, options).blurredNormal);
     EXPECT_GT(wide, 0);
     EXPECT_GT(narrow, 1.5 * wide);
 
@@ -264,7 +270,8 @@ TEST(SampleWaves, BlurIsAGaussianInTheTangentPlane) {
         for (int i = -60; i <= 60; ++i)
             for (int j = -60; j <= 60; ++j) {
                 const double a = i / 10.0, b = j / 10.0, weight = std::exp(-0.5 * (a * a + b * b));
-                const Vec3 q = p + along * (a * blurred.sigma * blurred.stretch) + across * (b * blurred.sigma);
+                const Vec3 q =
+                    p + along * (a * blurred.sigma * blurred.stretch) + across * (b * blurred.sigma);
                 Vec3 s;
                 field.slope(q, &sharp, 1, &s);
                 value += weight * field.value(q, sharp);

@@ -54,8 +54,9 @@ void checkMapOfSphere(const sample::ShadowMap& map, Vec3 lightPosition, bool par
             const double along = dot(p - (parallel ? Vec3{} : lightPosition), map.forward);
             EXPECT_NEAR(map.distance(z), along, tolerance::samplePosition);
             const double step = 1e-5;
-            EXPECT_NEAR(map.zPerLength(along) * (map.distance(z + step) - map.distance(z - step)) / (2 * step),
-                        1, tolerance::sampleDerivative);
+            EXPECT_NEAR(
+                map.zPerLength(along) * (map.distance(z + step) - map.distance(z - step)) / (2 * step), 1,
+                tolerance::sampleDerivative);
         }
     EXPECT_GT(hit, 200);
 }
@@ -213,7 +214,8 @@ TEST(SampleWideShadow, StraightEdgeGivesTheRamp) {
         int inRamp = 0;
         for (int i = 0; i < row.width; ++i) {
             const double p = 0.5 + dot({row.position.at(0, i, 0) + lean * height, 0, 0}, edge) / width;
-            EXPECT_NEAR(w.at(0, i, 0), sample::wideFilterEdge(p), tolerance::sampleWideShadow) << "at p = " << p;
+            EXPECT_NEAR(w.at(0, i, 0), sample::wideFilterEdge(p), tolerance::sampleWideShadow)
+                << "at p = " << p;
             if (p < -0.02) {
                 EXPECT_EQ(w.at(0, i, 0), 0);
             }
@@ -304,7 +306,8 @@ TEST(SampleSky, ProjectionOfLowOrdersIsExact) {
 TEST(SampleSky, NineHarmonicsCarryTheSkysIrradiance) {
     const sample::Sky sky;
     const sample::Harmonics harmonics = sample::projectIrradiance(sky);
-    for (const Vec3 d : {Vec3{1, 0, 0}, Vec3{0, -1, 0.2}, Vec3{0, 0.1, 1}, Vec3{0.3, 0.2, -1}, Vec3{-1, 1, 1}}) {
+    for (const Vec3 d :
+         {Vec3{1, 0, 0}, Vec3{0, -1, 0.2}, Vec3{0, 0.1, 1}, Vec3{0.3, 0.2, -1}, Vec3{-1, 1, 1}}) {
         const Vec3 n = normalize(d);
         sample::Rgb sum{};
         const int steps = 200;

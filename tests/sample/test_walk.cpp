@@ -86,7 +86,8 @@ TEST(WalkLight, BallEqualsTheOraclesWalk) {
             // Linear between the middles of the bins.
             const double at = (cosineAt(scene, points[i / 3]) + 1) / 2 * bins - 0.5;
             const int bin = std::clamp(int(std::floor(at)), 0, bins - 2);
-            return expected.radiance[bin] + (at - bin) * (expected.radiance[bin + 1] - expected.radiance[bin]);
+            return expected.radiance[bin] +
+                   (at - bin) * (expected.radiance[bin + 1] - expected.radiance[bin]);
         });
         if (testsAreSmall()) continue;
         EXPECT_LT(e.mean, ballError * ballError + 3 * e.uncertainty) << radius;
@@ -114,7 +115,8 @@ TEST(WalkLight, LargePlaneReflectsWhatTheMediumWasMadeFor) {
         for (size_t c = 0; c < 3; ++c) {
             double sum = 0;
             for (size_t i = c; i < light.first.size(); i += 3) sum += light.first[i] + light.second[i];
-            EXPECT_NEAR(sum / double(2 * middle.size()), reflectance[c], testsAreSmall() ? 0.1 : reflectanceError)
+            EXPECT_NEAR(sum / double(2 * middle.size()), reflectance[c],
+                        testsAreSmall() ? 0.1 : reflectanceError)
                 << "channel " << c << ", index " << m.refractiveIndex;
         }
         EXPECT_EQ(light.lost, 0u);
@@ -123,7 +125,8 @@ TEST(WalkLight, LargePlaneReflectsWhatTheMediumWasMadeFor) {
 
 TEST(WalkLight, MediumOfBurleysProfile) {
     // docs/mathematics.md, section 14: l = 1.087 d and an albedo of 0.99055 at a reflectance of 0.8.
-    const sample::Medium m = sample::burleyMedium({1, 2, 0.1}, {0.8, 0.8, 0.8}, sample::Boundary::IndexMatched);
+    const sample::Medium m =
+        sample::burleyMedium({1, 2, 0.1}, {0.8, 0.8, 0.8}, sample::Boundary::IndexMatched);
     EXPECT_NEAR(m.meanFreePath[0], 1.087, 0.004);
     EXPECT_NEAR(m.meanFreePath[1], 2 * m.meanFreePath[0], 1e-12);
     EXPECT_NEAR(m.albedo[2], 0.99055, 1e-4);

@@ -23,7 +23,8 @@ inline Frame reliefFrame(uint32_t seed, uint32_t width, uint32_t height, float p
             const size_t i = size_t(y) * width + x;
             const float px = pixel * float(x), py = pixel * float(y);
             const float fx = 0.11f + 0.03f * float(seed % 3), fy = 0.07f;
-            const float z = 3 * std::sin(fx * px) * std::cos(fy * py) + (x > 0.6f * float(width) ? 30.0f : 0.0f);
+            const float z =
+                3 * std::sin(fx * px) * std::cos(fy * py) + (x > 0.6f * float(width) ? 30.0f : 0.0f);
             const float p[3] = {px, py, z};
             const float dx = 3 * fx * std::cos(fx * px) * std::cos(fy * py),
                         dy = -3 * fy * std::sin(fx * px) * std::sin(fy * py);
@@ -147,7 +148,8 @@ inline MapLight mapLight(uint32_t seed, bool perspective, bool reversed, Vec3 to
         const uint32_t x = i % size, y = i / size, cell = (x / 13) * 31 + (y / 13) * 17 + seed;
         const bool disc = std::hypot(double(x % 13) - 6, double(y % 13) - 6) < 3 + cell % 4;
         const double distance = away + 20 - (disc ? 5 + double(cell * 7 % 23) : -10) + random.uniform();
-        const double z = perspective ? (1 / distance - v.decoding.b) / v.decoding.a : distance / v.decoding.range;
+        const double z =
+            perspective ? (1 / distance - v.decoding.b) / v.decoding.a : distance / v.decoding.range;
         out.light.map.values.push_back(float(z));
         out.map.depth.push_back(float(z));
     }

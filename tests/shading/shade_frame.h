@@ -39,8 +39,10 @@ inline Tables makeTables(const pellucid::Device& device, uint32_t width = 96, ui
     c.width = s.width = width;
     c.height = s.height = height;
     Tables t{pellucid::Lut(device, c), pellucid::Lut(device, s), {}, {}};
-    t.curvatureTruth = {readTable(t.curvature, width, height), c.radiusMin, c.radiusMax, c.diffusionRadius, 0};
-    t.shadowTruth = {readTable(t.shadow, width, height), s.widthMin, s.widthMax, s.diffusionRadius, s.sharpening};
+    t.curvatureTruth = {readTable(t.curvature, width, height), c.radiusMin, c.radiusMax, c.diffusionRadius,
+                        0};
+    t.shadowTruth = {readTable(t.shadow, width, height), s.widthMin, s.widthMax, s.diffusionRadius,
+                     s.sharpening};
     return t;
 }
 

@@ -38,9 +38,9 @@ inline void setFrame(const pellucid::Device& device, pellucid::Shader& shader, c
     }
     for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot)
         if (const Image& image = f.slots[slot]; !image.values.empty())
-            shader.set(
-                PelImageSlot(slot),
-                pellucid::imageDesc(upload(device, image), floatFormats[image.components], f.width, f.height));
+            shader.set(PelImageSlot(slot),
+                       pellucid::imageDesc(upload(device, image), floatFormats[image.components], f.width,
+                                           f.height));
     for (const auto& [id, material] : f.materials)
         shader.setMaterial(id, material, f.curvatureLut ? tables.curvature : pellucid::Lut(),
                            f.shadowLut ? tables.shadow : pellucid::Lut());
@@ -53,9 +53,9 @@ inline void setFrame(const pellucid::Device& device, pellucid::Shader& shader, c
             shader.set(i, PEL_LIGHT_WIDE_SHADOW,
                        pellucid::imageDesc(upload(device, light.wide), PEL_FORMAT_R32F, f.width, f.height));
         if (!light.map.values.empty())
-            shader.set(
-                i, PEL_LIGHT_SHADOW_MAP,
-                pellucid::imageDesc(upload(device, light.map), PEL_FORMAT_R32F, light.mapSize, light.mapSize));
+            shader.set(i, PEL_LIGHT_SHADOW_MAP,
+                       pellucid::imageDesc(upload(device, light.map), PEL_FORMAT_R32F, light.mapSize,
+                                           light.mapSize));
         for (const MapImage& map : light.maps)
             shader.set(i, map.slot,
                        pellucid::imageDesc(pellucid::Buffer(device, map.values), floatFormats[map.components],
@@ -190,7 +190,8 @@ inline reference::Shaded truth(const Frame& f, const Tables& tables, size_t i) {
     pixel.shading = unit(PEL_SLOT_NORMAL_SHADING);
     pixel.geometric =
         s[PEL_SLOT_NORMAL_GEOMETRIC].values.empty() ? pixel.shading : unit(PEL_SLOT_NORMAL_GEOMETRIC);
-    pixel.blurred = s[PEL_SLOT_NORMAL_BLURRED].values.empty() ? pixel.geometric : unit(PEL_SLOT_NORMAL_BLURRED);
+    pixel.blurred =
+        s[PEL_SLOT_NORMAL_BLURRED].values.empty() ? pixel.geometric : unit(PEL_SLOT_NORMAL_BLURRED);
     if (material.specular > 0) {
         const Vec3 eye{f.camera.position[0], f.camera.position[1], f.camera.position[2]};
         pixel.toViewer = reference::normalized(eye - s[PEL_SLOT_POSITION].vec(i));

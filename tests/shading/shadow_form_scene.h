@@ -72,8 +72,8 @@ inline void setAtlas(pellucid::Shader& shader, const std::vector<MapImage>& maps
     const pellucid::Buffer shared(device(), all);
     offset = 0;
     for (const MapImage& m : maps) {
-        PelImageDesc desc =
-            pellucid::imageDesc(shared, floatFormats[m.components], m.width, m.height, offset * sizeof(float));
+        PelImageDesc desc = pellucid::imageDesc(shared, floatFormats[m.components], m.width, m.height,
+                                                offset * sizeof(float));
         desc.rowStride = row * sizeof(float);
         shader.set(0, m.slot, desc);
         offset += m.width * m.components;
@@ -261,8 +261,9 @@ inline ContentLight contentLight(PelShadowContent content, bool perspective, boo
             double sum[2] = {0, 0};
             for (uint32_t k = 0; k < 4; ++k) {
                 const double z = depth[(2 * y + k / 2) * 2 * size + 2 * x + k % 2];
-                sum[0] += content == PEL_SHADOW_CONTENT_EXPONENTIAL ? std::exp(l.params.shadowExponent * z) / 4
-                                                                    : z / 4;
+                sum[0] += content == PEL_SHADOW_CONTENT_EXPONENTIAL
+                              ? std::exp(l.params.shadowExponent * z) / 4
+                              : z / 4;
                 sum[1] += z * z / 4;
             }
             for (uint32_t c = 0; c < components; ++c) l.maps[0].values.push_back(float(sum[c]));

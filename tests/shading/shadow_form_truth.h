@@ -11,7 +11,8 @@ struct FormTruth {
 };
 
 inline reference::WideFilterParams filterOf(const PelLight& l, const PelMaterial& m) {
-    return {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope, int(l.shadowFilterTexels)};
+    return {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope,
+            int(l.shadowFilterTexels)};
 }
 inline Vec3 insetOf(const PelMaterial& m, Vec3 p, Vec3 n) {
     return p - double(m.deepScatterNormalOffset) * n;
@@ -62,10 +63,10 @@ inline FormTruth truthOf(const CascadeLight& from) {
                 const int k = reference::cascadeOf(matrices, inside, radius);
                 if (k < 0) return 0.0;
                 const auto& matrix = matrices[size_t(k)];
-                return reference::thickness(from.maps[size_t(k)].map,
-                                            reference::shadowCoordinates(matrix, inside, {0, 0, 0}, 0), taps,
-                                            radius * reference::uvPerLength(matrix, 0),
-                                            from.maps[size_t(k)].view.decoding, reference::MapFilter::bilinear);
+                return reference::thickness(
+                    from.maps[size_t(k)].map, reference::shadowCoordinates(matrix, inside, {0, 0, 0}, 0),
+                    taps, radius * reference::uvPerLength(matrix, 0), from.maps[size_t(k)].view.decoding,
+                    reference::MapFilter::bilinear);
             }};
 }
 
@@ -82,11 +83,11 @@ inline FormTruth truthOf(const ContentLight& from) {
             [&from, &l, moments](const PelMaterial& m, Vec3 p, Vec3 n, const auto& taps) {
                 const Vec3 uvz =
                     reference::shadowCoordinates(matrixOf(l.worldToShadow), p, n, m.deepScatterNormalOffset);
-                return moments
-                           ? reference::thickness(from.first, uvz, taps, m.thicknessFilterRadius,
-                                                  from.from.view.decoding, reference::MapFilter::bilinear)
-                           : reference::exponentialThickness(from.first, l.shadowExponent, uvz, taps,
-                                                             m.thicknessFilterRadius, from.from.view.decoding);
+                return moments ? reference::thickness(from.first, uvz, taps, m.thicknessFilterRadius,
+                                                      from.from.view.decoding, reference::MapFilter::bilinear)
+                               : reference::exponentialThickness(from.first, l.shadowExponent, uvz, taps,
+                                                                 m.thicknessFilterRadius,
+                                                                 from.from.view.decoding);
             }};
 }
 

@@ -84,7 +84,8 @@ const Formats formats[] = {
          for (int c = 0; c < 3; ++c) out.normal[c] = 2 * (n[c] / 1023.0) - 1;
          return out;
      }},
-    {"Unorm8HalfUnorm8Normal", PEL_FORMAT_RGBA8_UNORM, PEL_FORMAT_R16F, PEL_FORMAT_RGBA8_UNORM, PEL_FORMAT_R32_UINT,
+    {"Unorm8HalfUnorm8Normal", PEL_FORMAT_RGBA8_UNORM, PEL_FORMAT_R16F, PEL_FORMAT_RGBA8_UNORM,
+     PEL_FORMAT_R32_UINT,
      [](uint32_t i, Bytes& to) {
          Pixel out;
          for (uint32_t c = 0; c < 3; ++c)
@@ -192,13 +193,15 @@ TEST_P(FormatCodes, AreReadAsDefined) {
         const Rgb truth = packed.radiance(i);
         for (int c = 0; c < 3; ++c)
             if (!std::isnan(truth[c]))
-                worst = std::max(worst, std::abs(shown[3 * i + size_t(c)] - truth[c]) / std::max(1.0, truth[c]));
+                worst =
+                    std::max(worst, std::abs(shown[3 * i + size_t(c)] - truth[c]) / std::max(1.0, truth[c]));
     }
     EXPECT_LE(worst, tolerance::decodedImage);
     EXPECT_GT(*std::max_element(shown.begin(), shown.end()), 0.5f);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, FormatCodes, ::testing::Combine(::testing::ValuesIn(formats), ::testing::Bool()),
+INSTANTIATE_TEST_SUITE_P(All, FormatCodes,
+                         ::testing::Combine(::testing::ValuesIn(formats), ::testing::Bool()),
                          [](const auto& info) {
                              return std::string(std::get<0>(info.param).name) +
                                     (std::get<1>(info.param) ? "Padded" : "Tight");

@@ -46,7 +46,8 @@ TEST(ReferenceShade, RowsMatchTheTablesTexelCentres) {
     const CurvatureLutSpec curvature;
     const ShadowLutSpec shadow;
     for (int y : {0, 7, 511}) {
-        EXPECT_NEAR(curvatureRow(1 / curvature.radius(y), 1, 100, 1), (y + 0.5) / 512, tolerance::oracleExact);
+        EXPECT_NEAR(curvatureRow(1 / curvature.radius(y), 1, 100, 1), (y + 0.5) / 512,
+                    tolerance::oracleExact);
         EXPECT_NEAR(shadowRow(1, 1 / shadow.reciprocalWidth(y, 1), 8, 100, 1), (y + 0.5) / 512,
                     tolerance::oracleExact);
         // A material of twice the radius looks twice as curved: row of 1/(2r) as of 1/r.
@@ -98,7 +99,8 @@ TEST(ReferenceShade, HarmonicsAreOrthonormal) {
     const int n = 20000;
     double gram[9][9] = {};
     for (int i = 0; i < n; ++i) {
-        const double z = 1 - (2 * i + 1.0) / n, angle = i * pi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
+        const double z = 1 - (2 * i + 1.0) / n, angle = i * pi * (3 - std::sqrt(5.0)),
+                     r = std::sqrt(1 - z * z);
         double value[9];
         for (int j = 0; j < 9; ++j) {
             Ambient one;
@@ -202,7 +204,8 @@ TEST(ReferenceShade, SumIsOfItsTermsAndLights) {
             shadeLight(material, pixel, one).sum() + shadeLight(material, pixel, two).sum() + dark.sum();
         // Term by term, from the functions of each term.
         const double u = dot(pixel.blurred, one.toLight);
-        const Rgb delta = bilinear(curvature.table, (u + 1) / 2, (0.3 - 0.01) / 0.99) - max0(u) * Rgb{1, 1, 1};
+        const Rgb delta =
+            bilinear(curvature.table, (u + 1) / 2, (0.3 - 0.01) / 0.99) - max0(u) * Rgb{1, 1, 1};
         const double row = (saturate(dot(pixel.geometric, one.toLight)) / 8 - 0.01) / 0.115;
         const Rgb diffuse = material.albedo * one.color *
                             direct(delta, pixel.shading, pixel.blurred, one.toLight) *
@@ -211,7 +214,8 @@ TEST(ReferenceShade, SumIsOfItsTermsAndLights) {
         const Shaded first = shadeLight(material, pixel, one);
         for (int c = 0; c < 3; ++c) {
             EXPECT_NEAR(both.sum()[c], expected[c], tolerance::oracleExact);
-            EXPECT_NEAR(dark.sum()[c], 0.5 * material.albedo[c] * ambient.constant[c], tolerance::oracleExact);
+            EXPECT_NEAR(dark.sum()[c], 0.5 * material.albedo[c] * ambient.constant[c],
+                        tolerance::oracleExact);
             EXPECT_NEAR(first.scattered[c], diffuse[c], tolerance::oracleExact);
             EXPECT_NEAR(first.deepScatter[c],
                         through * material.deepScatterColor[c] * material.albedo[c] * one.color[c],
@@ -235,7 +239,8 @@ TEST(ReferenceShade, LampsFallOff) {
     lamp.spot = true;
     EXPECT_NEAR(lampAt(lamp, {0, 0, 0}).color.x, 1, tolerance::oracleExact);
     const double sine = std::sqrt(1 - 0.85 * 0.85);
-    EXPECT_NEAR(lampAt(lamp, Vec3{0, 0, 2} + 2 * Vec3{sine, 0, -0.85}).color.x, 0.5, tolerance::oracleClosedForm);
+    EXPECT_NEAR(lampAt(lamp, Vec3{0, 0, 2} + 2 * Vec3{sine, 0, -0.85}).color.x, 0.5,
+                tolerance::oracleClosedForm);
     EXPECT_EQ(lampAt(lamp, {2, 0, 1}).color.x, 0);
 }
 
@@ -337,7 +342,8 @@ TEST_F(FaceWorksPixels, ThicknessAgreesOnAverage) {
         }
         EXPECT_NEAR(ours / theirs, 1, tolerance::faceWorksThicknessMean);
         EXPECT_LT(apart[1], apart[0]);
-        EXPECT_LT(std::sqrt(apart[1] / in_.shape[0]), tolerance::faceWorksThicknessRms * theirs / in_.shape[0]);
+        EXPECT_LT(std::sqrt(apart[1] / in_.shape[0]),
+                  tolerance::faceWorksThicknessRms * theirs / in_.shape[0]);
     }
 }
 

@@ -88,7 +88,8 @@ GBuffer sphereOverPlane(uint32_t width, uint32_t height, double radius, double s
             const double px = (x + 0.5 - width / 2.0) * step, py = (y + 0.5 - height / 2.0) * step;
             const double z2 = radius * radius - px * px - py * py;
             if (z2 > 0)
-                g.set(g.at(x, y), {px, py, std::sqrt(z2)}, {px / radius, py / radius, std::sqrt(z2) / radius});
+                g.set(g.at(x, y), {px, py, std::sqrt(z2)},
+                      {px / radius, py / radius, std::sqrt(z2) / radius});
             else
                 g.set(g.at(x, y), {px, py, -3 * radius}, {0, 0, 1});
             g.ids[g.at(x, y)] = z2 > 0 ? 1 : 2;
@@ -107,7 +108,8 @@ double largest(const GBuffer& g, double edge) {
 TEST(ScreenCurvature, EqualsTheOracleAtEverySize) {
     std::mt19937 random(5);
     std::normal_distribution<float> noise;
-    for (auto [w, h] : {std::pair(1, 1), {1, 9}, {9, 1}, {2, 2}, {15, 3}, {16, 4}, {17, 5}, {31, 33}, {64, 20}}) {
+    for (auto [w, h] :
+         {std::pair(1, 1), {1, 9}, {9, 1}, {2, 2}, {15, 3}, {16, 4}, {17, 5}, {31, 33}, {64, 20}}) {
         GBuffer g(w, h);
         for (size_t i = 0; i < g.ids.size(); ++i) {
             // A bumpy surface with holes, cliffs, several objects and normals that are not of unit length.
@@ -222,7 +224,8 @@ TEST(ScreenCurvature, FromDepthAsFromPositions) {
     g.depth.assign(w * h, 1);
     for (uint32_t y = 0; y < h; ++y)
         for (uint32_t x = 0; x < w; ++x) {
-            const double dx = tangent * w / h * ((x + 0.5) / w * 2 - 1), dy = tangent * (1 - (y + 0.5) / h * 2);
+            const double dx = tangent * w / h * ((x + 0.5) / w * 2 - 1),
+                         dy = tangent * (1 - (y + 0.5) / h * 2);
             const double a = dx * dx + dy * dy + 1, b = -centre,
                          disc = b * b - a * (centre * centre - radius * radius);
             if (disc <= 0) continue;  // normal 0: nothing there
@@ -271,7 +274,8 @@ TEST(ScreenCurvature, NamesWhatIsWrong) {
     const PelImageDesc three = imageDesc(b, PEL_FORMAT_RGB32F, 8, 8),
                        one = imageDesc(out, PEL_FORMAT_R32F, 8, 8);
     const auto message = [&](const PelScreenCurvatureParams* params, const PelImageDesc* n,
-                             const PelImageDesc* p, const PelImageDesc* d, const PelImageDesc* c) -> std::string {
+                             const PelImageDesc* p, const PelImageDesc* d,
+                             const PelImageDesc* c) -> std::string {
         const PelError e = pelScreenCurvature(device().get(), params, n, p, d, nullptr, c, nullptr);
         return e == PEL_SUCCESS ? "" : pelGetErrorMessage();
     };
@@ -280,13 +284,15 @@ TEST(ScreenCurvature, NamesWhatIsWrong) {
     EXPECT_NE(message(nullptr, &three, nullptr, nullptr, &one).find("either"), std::string::npos);
     EXPECT_NE(message(nullptr, &three, &three, &one, &one).find("not both"), std::string::npos);
     EXPECT_NE(message(nullptr, &three, &three, nullptr, &three).find("R32F"), std::string::npos);
-    const PelImageDesc other = imageDesc(b, PEL_FORMAT_RGB32F, 8, 7), over = imageDesc(b, PEL_FORMAT_R32F, 8, 8);
+    const PelImageDesc other = imageDesc(b, PEL_FORMAT_RGB32F, 8, 7),
+                       over = imageDesc(b, PEL_FORMAT_R32F, 8, 8);
     EXPECT_NE(message(nullptr, &three, &other, nullptr, &one).find("one size"), std::string::npos);
     EXPECT_NE(message(nullptr, &three, &three, nullptr, &over).find("overlaps"), std::string::npos);
     // An output that is a component of its own between others does not overlap. One that is a component of
     // the normal does, and so does the same memory through another buffer.
     const Buffer both(device(), 8 * 8 * 16);
-    PelImageDesc four = imageDesc(both, PEL_FORMAT_RGB32F, 8, 8), part = imageDesc(both, PEL_FORMAT_R32F, 8, 8);
+    PelImageDesc four = imageDesc(both, PEL_FORMAT_RGB32F, 8, 8),
+                 part = imageDesc(both, PEL_FORMAT_R32F, 8, 8);
     four.pixelStride = part.pixelStride = 16;
     for (uint32_t component = 0; component < 4; ++component) {
         part.byteOffset = 4 * component;

@@ -191,7 +191,8 @@ TEST(Shade, EveryWidthAndHeight) {
              {1, 1}, {1, 9}, {7, 1}, {8, 2}, {9, 3}, {15, 17}, {16, 16}, {17, 33}, {31, 5}}) {
         Frame f = randomFrame(width, width, height, 2);
         f.slots[PEL_SLOT_MATERIAL] = {};
-        EXPECT_LE(worstError(f, shade(device(), f, tables())), tolerance::shadeSum) << width << " x " << height;
+        EXPECT_LE(worstError(f, shade(device(), f, tables())), tolerance::shadeSum)
+            << width << " x " << height;
     }
 }
 

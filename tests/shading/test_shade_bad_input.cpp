@@ -138,7 +138,8 @@ TEST(ShadeBadInput, WhatCommitMisses) {
     {
         Ready r;
         r.shader.set({r.frame.lights[0].params, r.frame.lights[0].params});
-        r.shader.set(1, PEL_LIGHT_WIDE_SHADOW, imageDesc(Buffer(device(), 32 * 16), PEL_FORMAT_R8_UNORM, 32, 16));
+        r.shader.set(1, PEL_LIGHT_WIDE_SHADOW,
+                     imageDesc(Buffer(device(), 32 * 16), PEL_FORMAT_R8_UNORM, 32, 16));
         expectError(PEL_ERROR_UNSUPPORTED, {"wide shadow", "R32F", "R8_UNORM"}, commit(r));
     }
     {
@@ -146,7 +147,8 @@ TEST(ShadeBadInput, WhatCommitMisses) {
         std::vector<PelLight> lights(20, r.frame.lights[0].params);
         r.shader.set(lights);
         for (uint32_t i = 0; i < 20; ++i)
-            r.shader.set(i, PEL_LIGHT_WIDE_SHADOW, imageDesc(Buffer(device(), 2048), PEL_FORMAT_R32F, 32, 16));
+            r.shader.set(i, PEL_LIGHT_WIDE_SHADOW,
+                         imageDesc(Buffer(device(), 2048), PEL_FORMAT_R32F, 32, 16));
         expectError(PEL_ERROR_UNSUPPORTED, {"16", "buffers"}, commit(r));
         const Buffer one(device(), 20 * 2048);
         for (uint32_t i = 0; i < 20; ++i)

@@ -82,8 +82,9 @@ TEST(ShadeBadPixels, AccumulatingOntoNanGivesTheInvalidColor) {
         Shader shader(device());
         setFrame(device(), shader, f, tables());
         const Buffer target(device(), before);
-        shader.set(PEL_SLOT_RADIANCE, imageDesc(target, components == 3 ? PEL_FORMAT_RGB32F : PEL_FORMAT_RGBA32F,
-                                                f.width, f.height));
+        shader.set(
+            PEL_SLOT_RADIANCE,
+            imageDesc(target, components == 3 ? PEL_FORMAT_RGB32F : PEL_FORMAT_RGBA32F, f.width, f.height));
         shader.commit().execute();
         const auto after = target.readAll<float>();
         for (size_t i = 0; i < f.pixels(); ++i) {

@@ -41,7 +41,8 @@ Result run(const Frame& f, uint64_t budget, bool normalMap = false) {
     if (normalMap) {
         shader.setNormalMap(2, {imageDesc(Buffer(device(), texels), PEL_FORMAT_RGB32F, 64, 64)});
         shader.set(PEL_SLOT_UV, imageDesc(Buffer(device(), uv), PEL_FORMAT_RG32F, f.width, f.height));
-        shader.set(PEL_SLOT_TANGENT, imageDesc(Buffer(device(), tangent), PEL_FORMAT_RGB32F, f.width, f.height));
+        shader.set(PEL_SLOT_TANGENT,
+                   imageDesc(Buffer(device(), tangent), PEL_FORMAT_RGB32F, f.width, f.height));
     }
     const auto target = setTarget(device(), shader, f);
     shader.commit().execute();

@@ -22,7 +22,8 @@ Frame interpolated(Frame f) {
 struct Difference {
     double rms = 0, share = 0;  // share of pixels more than a hundredth off
 };
-Difference between(const Frame& f, const std::vector<float>& a, const std::vector<float>& b, double scale = 1) {
+Difference between(const Frame& f, const std::vector<float>& a, const std::vector<float>& b,
+                   double scale = 1) {
     double sum = 0, off = 0, count = 0;
     for (size_t i = 0; i < f.pixels(); ++i) {
         if (f.materials.count(uint32_t(f.slots[PEL_SLOT_MATERIAL].at(i))) == 0) continue;
@@ -81,7 +82,8 @@ TEST(BetweenPixels, NothingIsTakenAcrossADepthEdgeOrAMaterial) {
 }
 
 TEST(BetweenPixels, BadPixelsStayAlone) {
-    Frame f = interpolated(shadowed(5, mapLight(5, false, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 97).light));
+    Frame f =
+        interpolated(shadowed(5, mapLight(5, false, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 97).light));
     const auto before = shade(device(), f, tables());
     const size_t normal = 22 * f.width + 60, position = sized(41, 9) * f.width + 121;
     f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values[3 * normal] = nan;

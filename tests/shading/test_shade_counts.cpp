@@ -88,7 +88,8 @@ TEST_P(ShadeCounts, PixelsAreTheHostsOwn) {
                 EXPECT_NEAR(double(stats.pixelsShadowLut), double(c.shadowLut), double(c.doubtful)) << where;
                 EXPECT_NEAR(double(stats.pixelsSpecular), double(c.specular), double(c.doubtful)) << where;
                 if (skip) {
-                    EXPECT_NEAR(double(stats.pixelsThickness), double(c.thickness), double(c.doubtful)) << where;
+                    EXPECT_NEAR(double(stats.pixelsThickness), double(c.thickness), double(c.doubtful))
+                        << where;
                 } else {
                     EXPECT_EQ(stats.pixelsThickness, (c.shaded - c.invalid) * f.lights.size()) << where;
                 }

@@ -33,8 +33,8 @@ CubeMap cubeOf(int size, Light&& light) {
     for (int face = 0; face < 6; ++face)
         for (int y = 0; y < size; ++y)
             for (int x = 0; x < size; ++x)
-                cube.texels.push_back(
-                    light(reference::cubeDirection(face, (2 * x + 1.0) / size - 1, (2 * y + 1.0) / size - 1)));
+                cube.texels.push_back(light(
+                    reference::cubeDirection(face, (2 * x + 1.0) / size - 1, (2 * y + 1.0) / size - 1)));
     return cube;
 }
 
@@ -256,14 +256,15 @@ TEST(ShadeCube, ABadTexelStaysWhereItIsRead) {
     f.options.invalidColor[0] = -3;
     f.options.countPixels = 1;
     const auto good = shade(device(), f, tables());
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         Frame g = f;
         const int face = 3, x = 0, y = 5;  // on an edge
         g.cube.texels[(face * 8 + y) * 8 + x].x = bad;
         PelShaderStats stats = pelShaderStatsDefaults();
         const auto result = shade(device(), g, tables(), &stats);
-        const Vec3 place =
-            reference::normalized(reference::cubeDirection(face, (2 * x + 1) / 8.0 - 1, (2 * y + 1) / 8.0 - 1));
+        const Vec3 place = reference::normalized(
+            reference::cubeDirection(face, (2 * x + 1) / 8.0 - 1, (2 * y + 1) / 8.0 - 1));
         uint64_t invalid = 0;
         for (size_t i = 0; i < normals.size(); ++i) {
             const bool lost = result[3 * i] == -3;
@@ -366,7 +367,8 @@ TEST(ShadeCube, BadInput) {
     shader.set(PEL_SLOT_RADIANCE, imageDesc(b, PEL_FORMAT_RGB32F, f.width, f.height));
     shader.setAmbientCube(imageDesc(b, PEL_FORMAT_RGB32F, 4, 24));
     EXPECT_THROW(shader.commit(), pellucid::Error);
-    EXPECT_NE(std::string(pelGetErrorMessage()).find("ambient cube"), std::string::npos) << pelGetErrorMessage();
+    EXPECT_NE(std::string(pelGetErrorMessage()).find("ambient cube"), std::string::npos)
+        << pelGetErrorMessage();
 }
 
 }  // namespace

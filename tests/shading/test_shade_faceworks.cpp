@@ -133,8 +133,8 @@ TEST_F(ShadeFaceWorks, AmbientNormals) {
         const auto shown = run();
         for (size_t i = 0; i < frame_.pixels(); ++i)
             for (int c = 0; c < 3; ++c)
-                largest = std::max(
-                    largest, std::abs(2.0 * (shown[3 * i + size_t(c)] - 1.0) - out_.row(i)[7 + 3 * c + axis]));
+                largest = std::max(largest, std::abs(2.0 * (shown[3 * i + size_t(c)] - 1.0) -
+                                                     out_.row(i)[7 + 3 * c + axis]));
     }
     EXPECT_LE(largest, tolerance::faceWorksPass);
 }

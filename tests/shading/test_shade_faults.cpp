@@ -48,7 +48,8 @@ F* next(const char* name) {
 
 // Not inlined: the compiler would see free() of what it takes for another allocator's memory.
 [[gnu::noinline]] void* operator new(size_t bytes) {
-    if (fault.load() == Fault::hostMemory && inLibrary(__builtin_return_address(0)) && strikes(Fault::hostMemory))
+    if (fault.load() == Fault::hostMemory && inLibrary(__builtin_return_address(0)) &&
+        strikes(Fault::hostMemory))
         throw std::bad_alloc();
     if (void* memory = std::malloc(bytes ? bytes : 1)) return memory;
     throw std::bad_alloc();
@@ -161,7 +162,8 @@ TEST_P(ShadeFaults, EachAllocationInTurn) {
         fresh.commit().execute();
         EXPECT_EQ(target.readAll<float>(), right) << "after call " << n;
     }
-    std::printf("%d calls failed, each in its turn; %d times it went on with less memory\n", failures, recovered);
+    std::printf("%d calls failed, each in its turn; %d times it went on with less memory\n", failures,
+                recovered);
     if (lasting)
         EXPECT_EQ(recovered, 0);
     else if (kind != Fault::hostMemory)

@@ -102,7 +102,8 @@ TEST(ShadeHeld, FramesWithProfilesThatScatter) {
 TEST(ShadeHeld, ScatteringAlone) {
     using namespace scatter_scene;
     const Picture p = ball(24, 10, 0.9, reference::normalized(Vec3{1, 0.3, 0.2}));
-    const Buffer e(own(), p.irradiance), x(own(), p.positions), ids(own(), p.ids), out(own(), p.pixels() * 12);
+    const Buffer e(own(), p.irradiance), x(own(), p.positions), ids(own(), p.ids),
+        out(own(), p.pixels() * 12);
     const auto rgb = [&](const Buffer& b) { return imageDesc(b, PEL_FORMAT_RGB32F, p.width, p.height); };
     const auto id = imageDesc(ids, PEL_FORMAT_R8_UINT, p.width, p.height);
     const auto execute = [&](Scatter& scatter, float targetError, const PelSubmit* submit) {

@@ -19,7 +19,8 @@ constexpr uint32_t widths[] = {1, 2, 7, 8, 9, 15, 16, 17, 31, 33, PEL_TILE_WIDTH
 template <class Where>
 void onlyAt(Frame& f, Where where) {
     for (size_t i = 0; i < f.pixels(); ++i)
-        f.slots[PEL_SLOT_MATERIAL].values[i] = where(uint32_t(i % f.width), uint32_t(i / f.width)) ? 1.0f : 0.0f;
+        f.slots[PEL_SLOT_MATERIAL].values[i] =
+            where(uint32_t(i % f.width), uint32_t(i / f.width)) ? 1.0f : 0.0f;
 }
 
 TEST_P(LastColumn, IsShaded) {

@@ -36,7 +36,8 @@ TEST(ShadeLayouts, InterleavedAndPaddedGivesTheSameBits) {
         for (uint32_t y = 0; y < f.height; ++y)
             for (uint32_t x = 0; x < f.width; ++x)
                 for (uint32_t c = 0; c < image.components; ++c)
-                    memory[at + size_t(y) * row + x * words + c] = float(image.at(size_t(y) * f.width + x, c));
+                    memory[at + size_t(y) * row + x * words + c] =
+                        float(image.at(size_t(y) * f.width + x, c));
         at += image.components;
     }
     const Buffer buffer(device(), memory);
@@ -65,7 +66,8 @@ TEST(ShadeLayouts, PlanarAndRgbaGiveTheSameBits) {
     std::vector<float> four(f.pixels() * 4, NAN);
     for (size_t i = 0; i < f.pixels(); ++i)
         for (int c = 0; c < 3; ++c) four[4 * i + c] = float(f.slots[PEL_SLOT_NORMAL_SHADING].at(i, c));
-    shader.set(PEL_SLOT_NORMAL_SHADING, imageDesc(Buffer(device(), four), PEL_FORMAT_RGBA32F, f.width, f.height));
+    shader.set(PEL_SLOT_NORMAL_SHADING,
+               imageDesc(Buffer(device(), four), PEL_FORMAT_RGBA32F, f.width, f.height));
     const auto expected = shade(device(), f, tables());
     EXPECT_EQ(shadeInto(shader, f), expected);
 
@@ -86,8 +88,9 @@ TEST(ShadeLayouts, OutputOverAnInput) {
     shader.set(PEL_SLOT_ALBEDO, desc).set(PEL_SLOT_RADIANCE, desc).commit().execute();
     const auto result = both.readAll<float>();
     for (size_t i = 0; i < result.size(); ++i)
-        EXPECT_EQ(result[i], f.slots[PEL_SLOT_MATERIAL].values[i / 3] != 0 ? expected[i]
-                                                                           : f.slots[PEL_SLOT_ALBEDO].values[i]);
+        EXPECT_EQ(result[i], f.slots[PEL_SLOT_MATERIAL].values[i / 3] != 0
+                                 ? expected[i]
+                                 : f.slots[PEL_SLOT_ALBEDO].values[i]);
     PelImageDesc shifted = desc;
     shifted.height = f.height - 1;
     shifted.byteOffset = 12;
@@ -132,7 +135,8 @@ TEST(ShadeLayouts, PositionsFromDepth) {
             depth.values[at] = bad;
             f.options.invalidColor[2] = -7;
             shader.set(f.options);
-            shader.set(PEL_SLOT_DEPTH, imageDesc(upload(device(), depth), PEL_FORMAT_R32F, f.width, f.height));
+            shader.set(PEL_SLOT_DEPTH,
+                       imageDesc(upload(device(), depth), PEL_FORMAT_R32F, f.width, f.height));
             const auto corrupted = shadeInto(shader, f);
             for (size_t i = 0; i < result.size(); ++i)
                 EXPECT_EQ(corrupted[i], i / 3 != at ? result[i] : i % 3 == 2 ? -7 : 0) << i;

@@ -61,7 +61,8 @@ std::vector<PelImageDesc> descriptions(const Mapped& m, const Buffer& buffer) {
     std::vector<PelImageDesc> all;
     uint64_t at = 0;
     for (const auto& level : m.levels) {
-        all.push_back(imageDesc(buffer, PEL_FORMAT_RGB32F, uint32_t(level.width), uint32_t(level.height), at));
+        all.push_back(
+            imageDesc(buffer, PEL_FORMAT_RGB32F, uint32_t(level.width), uint32_t(level.height), at));
         at += level.texels.size() * 12;
     }
     return all;
@@ -81,13 +82,14 @@ Vec3 mappedTruth(const Mapped& m, size_t i) {
     const auto g = [&](uint32_t c) { return f.slots[PEL_SLOT_UV_GRADIENT].at(i, c); };
     double level = reference::blurredNormalMip(m.levels[0].width, material.diffusionRadius, m.uvScale);
     if (!f.slots[PEL_SLOT_UV_GRADIENT].values.empty())
-        level = std::max(
-            level, reference::footprintLevel({g(0), g(1), g(2), g(3)}, m.levels[0].width, m.levels[0].height));
+        level = std::max(level, reference::footprintLevel({g(0), g(1), g(2), g(3)}, m.levels[0].width,
+                                                          m.levels[0].height));
     const Vec3 texel =
         reference::trilinear(m.levels, f.slots[PEL_SLOT_UV].at(i, 0), f.slots[PEL_SLOT_UV].at(i, 1), level);
     const auto& tangent = f.slots[PEL_SLOT_TANGENT];
     return reference::fromTangentSpace(texel, {tangent.at(i, 0), tangent.at(i, 1), tangent.at(i, 2)},
-                                       f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i), tangent.at(i, 3) < 0 ? -1 : 1);
+                                       f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i),
+                                       tangent.at(i, 3) < 0 ? -1 : 1);
 }
 
 TEST(NormalMap, MatchesTheOracle) {
@@ -199,7 +201,8 @@ TEST(NormalMap, BadInput) {
             [](Mapped&, Levels& l, uint32_t&) { l[1].format = PEL_FORMAT_RGBA8_UNORM; });
     refused(PEL_ERROR_INVALID_ARGUMENT, "R32F",
             [](Mapped&, Levels& l, uint32_t&) { l[0].format = PEL_FORMAT_R32F; });
-    refused(PEL_ERROR_INVALID_ARGUMENT, "17 levels", [](Mapped&, Levels& l, uint32_t&) { l.resize(17, l[0]); });
+    refused(PEL_ERROR_INVALID_ARGUMENT, "17 levels",
+            [](Mapped&, Levels& l, uint32_t&) { l.resize(17, l[0]); });
     refused(PEL_ERROR_INVALID_ARGUMENT, "UV image",
             [](Mapped& b, Levels&, uint32_t&) { b.frame.slots[PEL_SLOT_UV] = {}; });
     refused(PEL_ERROR_INVALID_ARGUMENT, "tangent image",
@@ -219,7 +222,8 @@ TEST(NormalMap, ATexelThatIsNoNumberStaysWithThePixelsThatReadIt) {
     for (size_t i = 0; i < m.frame.pixels(); ++i) {
         if (m.frame.slots[PEL_SLOT_MATERIAL].values[i] == 0) continue;
         // The oracle reads with a weight of 0 too.
-        const bool mayRead = !std::isfinite(reference::length(mappedTruth(m, i))), bad = after[3 * i + 1] == -7;
+        const bool mayRead = !std::isfinite(reference::length(mappedTruth(m, i))),
+                   bad = after[3 * i + 1] == -7;
         invalid += bad;
         EXPECT_TRUE(mayRead || !bad) << i;
         for (size_t c = 0; c < 3; ++c)

@@ -72,7 +72,8 @@ TEST(BlurNormals, DampsWavesAsItsKernelDoes) {
         for (size_t i = 0; i < f.pixels(); ++i) {
             f.slots[PEL_SLOT_MATERIAL].values[i] = 1;
             f.slots[PEL_SLOT_POSITION].values[3 * i + 2] = 0;
-            const double tilt = 0.05 * std::sin(2 * 3.14159265358979 / wavelength * 0.1 * double(i % f.width));
+            const double tilt =
+                0.05 * std::sin(2 * 3.14159265358979 / wavelength * 0.1 * double(i % f.width));
             const float n[3] = {float(tilt), 0, float(std::sqrt(1 - tilt * tilt))};
             std::copy_n(n, 3, &f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i]);
         }
@@ -104,7 +105,8 @@ TEST(BlurNormals, NothingCrossesADepthEdgeOrAMaterial) {
             f.options.blurNormals = 1;
             const auto shown = shade(device(), f, tables());
             for (size_t i = 0; i < f.pixels(); ++i)
-                EXPECT_LE(distance(shownNormal(shown, i), f.slots[PEL_SLOT_NORMAL_SHADING].vec(i)), tolerance::shadeTerm)
+                EXPECT_LE(distance(shownNormal(shown, i), f.slots[PEL_SLOT_NORMAL_SHADING].vec(i)),
+                          tolerance::shadeTerm)
                     << "gap " << gap << ", pixel " << i;
         }
 }

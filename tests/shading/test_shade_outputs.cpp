@@ -65,7 +65,8 @@ TEST(ShadeOutputs, EachMatchesTheOracleAndRadianceStaysWhatItIs) {
             const reference::Shaded truth = shade_test::truth(f, tables(), i);
             const Rgb diffuse = truth.scattered + truth.ambient;
             const PelMaterial& m = f.materials.at(uint32_t(f.slots[PEL_SLOT_MATERIAL].at(i)));
-            EXPECT_NEAR(shaded.thickness[i], truthLight(f, m, f.lights[0], i).thickness, tolerance::shadeThickness)
+            EXPECT_NEAR(shaded.thickness[i], truthLight(f, m, f.lights[0], i).thickness,
+                        tolerance::shadeThickness)
                 << i;
             for (int c = 0; c < 3; ++c) {
                 EXPECT_NEAR(shaded.diffuse[3 * i + c], diffuse[c], tolerance::shadeSum);
@@ -97,7 +98,8 @@ TEST(ShadeOutputs, OneAloneInHalf) {
     shader.commit().execute();
     EXPECT_EQ(radiance.readAll<float>(), all.radiance);
     const auto toFloat = [](uint16_t h) {
-        const double value = std::ldexp((h & 0x3ff) + (h & 0x7c00 ? 0x400 : 0), std::max(h >> 10 & 31, 1) - 25);
+        const double value =
+            std::ldexp((h & 0x3ff) + (h & 0x7c00 ? 0x400 : 0), std::max(h >> 10 & 31, 1) - 25);
         return h & 0x8000 ? -value : value;
     };
     const auto s = specular.readAll<uint16_t>(), t = thickness.readAll<uint16_t>();
@@ -129,7 +131,8 @@ TEST(ShadeOutputs, BadPixelsAndBadInput) {
     shader.set(PEL_SLOT_OUT_DIFFUSE, imageDesc(one, PEL_FORMAT_RGB32F, f.width - 1, f.height));
     EXPECT_THROW(shader.commit(), pellucid::Error) << "another size";
     PelImageDesc shifted = imageDesc(two, PEL_FORMAT_R32F, f.width, f.height, 4);
-    shader.clear(PEL_SLOT_OUT_DIFFUSE).set(PEL_SLOT_OUT_SPECULAR, imageDesc(two, PEL_FORMAT_RGB32F, f.width, f.height));
+    shader.clear(PEL_SLOT_OUT_DIFFUSE)
+        .set(PEL_SLOT_OUT_SPECULAR, imageDesc(two, PEL_FORMAT_RGB32F, f.width, f.height));
     shader.set(PEL_SLOT_OUT_THICKNESS, shifted);
     EXPECT_THROW(shader.commit(), pellucid::Error) << "outputs over each other";
     EXPECT_NE(std::string(pelGetErrorMessage()).find("overlap"), std::string::npos) << pelGetErrorMessage();

@@ -175,7 +175,8 @@ TEST(ShadeProfile, TransmissionIsTheSlabsAndNeverAdded) {
             const double s = shading.scene.thickness[i], d = distance[c],
                          back = std::max(0.0f, -shading.scene.normals[3 * i + 2]);
             const double slab = back * (0.25 * std::exp(-s / d) + 0.75 * std::exp(-s / (3 * d)));
-            EXPECT_NEAR(radiance[3 * i + c], std::max(double(without[3 * i + c]), slab), tolerance::profileLookUp)
+            EXPECT_NEAR(radiance[3 * i + c], std::max(double(without[3 * i + c]), slab),
+                        tolerance::profileLookUp)
                 << "pixel " << i << " channel " << c << " thickness " << s;
             through += slab > without[3 * i + c] + tolerance::profileLookUp;
         }
@@ -187,7 +188,8 @@ TEST(ShadeProfile, TransmissionIsTheSlabsAndNeverAdded) {
 }
 
 TEST(ShadeProfile, TransmissionOfEveryKindIsWhatLiesBeyond) {
-    const std::vector<Profile> all{Profile::skin(), Profile::named("marble"), Profile::burleyDistance(distance),
+    const std::vector<Profile> all{Profile::skin(), Profile::named("marble"),
+                                   Profile::burleyDistance(distance),
                                    Profile::table({0, 1, 2.5f}, {3, 2, 1, 1, 1, 2, 0, 0.5f, 0})};
     for (const Profile& profile : all) {
         const double radius = profile.info().radius;
@@ -304,7 +306,8 @@ TEST(ShadeProfile, AutoKeepsToTheScratchBudget) {
     in.thickness = false;
     Shading shading(material, in);
     shading.buffers.emplace_back(shading.device, shading.scene.position);
-    shading.shader.set(PEL_SLOT_POSITION, imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
+    shading.shader.set(PEL_SLOT_POSITION,
+                       imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
     const auto said = [&](uint64_t budget) {
         PelShaderOptions options = pelShaderOptionsDefaults();
         options.scratchBudget = budget;
@@ -340,7 +343,8 @@ TEST(ShadeProfile, TexelsLongerThanTheReachAreSaid) {
     shading.buffers.emplace_back(shading.device, depth);
     const PelImageDesc map = imageDesc(shading.buffers.back(), PEL_FORMAT_R32F, 4, 4);
     shading.buffers.emplace_back(shading.device, shading.scene.position);
-    shading.shader.set(PEL_SLOT_POSITION, imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
+    shading.shader.set(PEL_SLOT_POSITION,
+                       imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
     for (float extent : {4.0f, 400.0f}) {  // texels of 1 and of 100 mm
         PelLight light = pelLightDefaults();
         light.worldToShadow[0] = light.worldToShadow[5] = 1 / extent;
@@ -399,7 +403,8 @@ TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
         normals.insert(normals.end(), n, n + 3);
     }
     shading.buffers.emplace_back(shading.device, position);
-    shading.shader.set(PEL_SLOT_POSITION, imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
+    shading.shader.set(PEL_SLOT_POSITION,
+                       imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
     shading.buffers.emplace_back(shading.device, normals);
     shading.shader.set(PEL_SLOT_NORMAL_SHADING,
                        imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));

@@ -40,7 +40,8 @@ TEST(ShadeTaps, TurnedTheyMatchTheOracle) {
         for (size_t i = 0; i < f.pixels(); ++i) {
             const auto found = f.materials.find(uint32_t(f.slots[PEL_SLOT_MATERIAL].at(i)));
             if (found == f.materials.end()) continue;
-            EXPECT_NEAR(thickness[i], truthLight(f, found->second, f.lights[0], i).thickness, tolerance::shadeThickness)
+            EXPECT_NEAR(thickness[i], truthLight(f, found->second, f.lights[0], i).thickness,
+                        tolerance::shadeThickness)
                 << i;
             ++compared;
         }

@@ -74,7 +74,9 @@ TEST(ShadeThreads, SubmissionsOfSeveralShadersInOneQueue) {
         shaders.emplace_back(device());
         targets.emplace_back(device(), frames.back().pixels() * 12);
         setFrame(device(), shaders.back(), frames.back(), tables());
-        shaders.back().set(PEL_SLOT_RADIANCE, imageDesc(targets.back(), PEL_FORMAT_RGB32F, 150, 20 + seed)).commit();
+        shaders.back()
+            .set(PEL_SLOT_RADIANCE, imageDesc(targets.back(), PEL_FORMAT_RGB32F, 150, 20 + seed))
+            .commit();
     }
     const PelSubmit submit{};
     for (int round = 0; round < 3; ++round)

@@ -30,9 +30,9 @@ double worstShadow(const Frame& f, const MapLight& from, const std::vector<float
     for (size_t i = 0; i < f.pixels(); ++i) {
         const auto found = f.materials.find(uint32_t(f.slots[PEL_SLOT_MATERIAL].at(i)));
         if (found == f.materials.end()) continue;
-        const double truth = reference::wideShadow(from.map, from.view, f.slots[PEL_SLOT_POSITION].vec(i),
-                                                   f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i),
-                                                   params(from.light.params, found->second.shadowFilterWidth));
+        const double truth = reference::wideShadow(
+            from.map, from.view, f.slots[PEL_SLOT_POSITION].vec(i), f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i),
+            params(from.light.params, found->second.shadowFilterWidth));
         worst = std::max(worst, std::abs(truth - shown[3 * i]));
     }
     return worst;
@@ -50,7 +50,8 @@ TEST(WideShadow, MatchesTheOracle) {
                 EXPECT_EQ(stats.features, uint32_t(PEL_FEATURE_SHADOW | PEL_FEATURE_FILTER_SHADOW));
                 EXPECT_EQ(stats.launches, 4u);
                 EXPECT_LE(worstShadow(f, from, shown), tolerance::wideShadow)
-                    << "perspective " << perspective << ", reversed " << reversed << ", " << size << " texels";
+                    << "perspective " << perspective << ", reversed " << reversed << ", " << size
+                    << " texels";
                 size_t penumbra = 0;
                 for (size_t i = 0; i < f.pixels(); ++i)
                     penumbra += shown[3 * i] > 0.1f && shown[3 * i] < 0.9f;
@@ -141,7 +142,8 @@ TEST(WideShadow, OffCostsNothingAndAnImageGoesFirst) {
 TEST(WideShadow, BoundsDecideWithoutTexels) {
     double decided = 0, all = 0;
     for (uint32_t seed = 0; seed < 24; ++seed) {
-        MapLight from = mapLight(seed, seed % 2, seed / 2 % 2, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 90 + 37 * seed);
+        MapLight from =
+            mapLight(seed, seed % 2, seed / 2 % 2, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 90 + 37 * seed);
         if (seed % 3 == 0)
             for (size_t i = seed; i < from.light.map.values.size(); i += 1001)
                 from.light.map.values[i] = seed % 2 ? nan : -std::numeric_limits<float>::infinity();
@@ -182,7 +184,8 @@ TEST(WideShadow, AFactorOfTheMatrixChangesNothing) {
 TEST(WideShadow, BadTexelsAndPixels) {
     MapLight from = mapLight(3, true, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 61);
     for (size_t i = 0; i < from.map.depth.size(); i += 5)
-        from.light.map.values[i] = i % 2 ? nan : std::numeric_limits<float>::infinity(), from.map.depth[i] = NAN;
+        from.light.map.values[i] = i % 2 ? nan : std::numeric_limits<float>::infinity(),
+        from.map.depth[i] = NAN;
     Frame f = litRelief(from);
     EXPECT_LE(worstShadow(f, from, shade(device(), f, tables())), tolerance::wideShadow)
         << "such texels throw no shadow";

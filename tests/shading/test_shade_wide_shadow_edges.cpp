@@ -46,7 +46,8 @@ Seen compare(Frame f, const MapLight& from, const std::string& where) {
     f.options.disableSkipping = 1;
     EXPECT_EQ(shown, shade(device(), f, tables())) << where << ": without bounds";
     // Of a hard shadow float depths are a larger part.
-    EXPECT_LE(seen.worst, f.lights[0].params.shadowSoftness < 0.1f ? tolerance::wideShadowAnywhere : tolerance::wideShadow)
+    EXPECT_LE(seen.worst, f.lights[0].params.shadowSoftness < 0.1f ? tolerance::wideShadowAnywhere
+                                                                   : tolerance::wideShadow)
         << where;
     return seen;
 }
@@ -70,7 +71,8 @@ TEST(WideShadowEdges, SoftnessFromHardToWiderThanTheFilter) {
                 Frame f = sceneUnder(from, 1);
                 for (auto& [id, material] : f.materials) material.shadowFilterWidth *= 0.4f;
                 const std::string where = "softness " + std::to_string(softness) +
-                                          (perspective ? ", perspective" : "") + (reversed ? ", reversed" : "");
+                                          (perspective ? ", perspective" : "") +
+                                          (reversed ? ", reversed" : "");
                 const Seen seen = compare(f, from, where);
                 EXPECT_LT(seen.read, seen.filtered) << where << ": bounds decide some";
                 EXPECT_GT(seen.between, 100u) << where;
@@ -90,7 +92,8 @@ TEST(WideShadowEdges, UnderARoofThatComesDown) {
                 Frame f = sceneUnder(from, 1);
                 for (auto& [id, material] : f.materials) material.shadowFilterWidth *= 0.4f;
                 const std::string where = "softness " + std::to_string(softness) +
-                                          (perspective ? ", perspective" : "") + (reversed ? ", reversed" : "");
+                                          (perspective ? ", perspective" : "") +
+                                          (reversed ? ", reversed" : "");
                 const Seen seen = compare(f, from, where);
                 EXPECT_LT(seen.read, seen.filtered) << where << ": bounds decide some";
                 EXPECT_GT(seen.between, 20u) << where;
@@ -133,7 +136,8 @@ TEST(WideShadowEdges, OutsideOfTheMapEverythingIsLit) {
                 from.light.params.shadowFilterTexels = 256;
                 const Frame f = sceneUnder(from, 2);
                 const std::string where = std::to_string(size) + " texels" +
-                                          (perspective ? ", perspective" : "") + (reversed ? ", reversed" : "");
+                                          (perspective ? ", perspective" : "") +
+                                          (reversed ? ", reversed" : "");
                 const Seen seen = compare(f, from, where);
                 EXPECT_GT(seen.between, 200u) << where;
                 if (size > 2) {

@@ -15,7 +15,8 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 // Leaves out pixels near the line where another cascade is taken; `taken`: those that the others take, -1
 // where none.
-Worst worstCascade(const Frame& f, const CascadeLight& from, const Seen& seen, std::vector<int>* taken = nullptr) {
+Worst worstCascade(const Frame& f, const CascadeLight& from, const Seen& seen,
+                   std::vector<int>* taken = nullptr) {
     const auto matrices = matricesOf(from);
     const double perUv = 1 / reference::uvPerLength(matrices[0], 0);
     const auto sure = [&](Vec3 at, double radius) {
@@ -42,7 +43,8 @@ TEST(ShadowCascades, MatchTheOracle) {
             std::vector<int> taken;
             const Worst worst = worstCascade(f, from, seen, &taken);
             EXPECT_LE(worst.wide, tolerance::wideShadow) << "reversed " << reversed << ", atlas " << atlas;
-            EXPECT_LE(worst.thickness, tolerance::mapThickness) << "reversed " << reversed << ", atlas " << atlas;
+            EXPECT_LE(worst.thickness, tolerance::mapThickness)
+                << "reversed " << reversed << ", atlas " << atlas;
             for (int k = -1; k < 4; ++k)
                 EXPECT_GT(std::count(taken.begin(), taken.end(), k), 100) << "pixels that take cascade " << k;
             EXPECT_GT(worst.penumbra, f.pixels() / 50);

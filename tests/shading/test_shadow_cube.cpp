@@ -157,7 +157,8 @@ TEST(ShadowCube, WhatIsRefused) {
     const auto refused = [&](const char* word, auto change) {
         CubeLight from = cubeLight(16, false, turnTo(down, aims[0]), lamp, bumps);
         change(from.light);
-        expectError(PEL_ERROR_INVALID_ARGUMENT, {word}, [&] { shadeForms(formFrame(1, 9, 3), {from.light}); });
+        expectError(PEL_ERROR_INVALID_ARGUMENT, {word},
+                    [&] { shadeForms(formFrame(1, 9, 3), {from.light}); });
     };
     refused("16 x 96", [](Light& l) { l.maps[0].height = 95; });
     refused("directional", [](Light& l) { l.params.type = PEL_LIGHT_DIRECTIONAL; });

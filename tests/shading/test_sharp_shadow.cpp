@@ -244,7 +244,8 @@ TEST(SharpShadow, IsItsDefinition) {
             for (int i = 0; i < 3000; ++i) {
                 float n[3];
                 random.unit(n);
-                s.points.push_back({random.uniform(-40, 40), random.uniform(-40, 40), random.uniform(-25, 25)});
+                s.points.push_back(
+                    {random.uniform(-40, 40), random.uniform(-40, 40), random.uniform(-25, 25)});
                 s.normals.push_back(reference::normalized(Vec3{0.5 * n[0], 0.5 * n[1], 1 + 0.5 * n[2]}));
             }
             const std::vector<float> e = lit(s);

@@ -13,7 +13,8 @@ using namespace shade_test;
 
 namespace {
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+constexpr float nan = std::numeric_limits<float>::quiet_NaN(),
+                infinity = std::numeric_limits<float>::infinity();
 
 Frame interpolated(Frame f) {
     f.options.everyPixel = 0;

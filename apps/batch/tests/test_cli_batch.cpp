@@ -130,8 +130,9 @@ TEST_F(BatchCommand, NamesFilesAndWritesAnIndexOfThem) {
         EXPECT_EQ(pellucid::io::lutKinds[info.kind], table["kind"].get<std::string>());
         if (info.kind != PEL_LUT_CURVATURE) continue;
         EXPECT_EQ(table["name"].get<std::string>() + ".exr", table["file"]);
-        EXPECT_EQ(table["name"], table["profile"].get<std::string>() + "-" + table["form"].get<std::string>() +
-                                     "-" + std::to_string(info.curvature.width));
+        EXPECT_EQ(table["name"], table["profile"].get<std::string>() + "-" +
+                                     table["form"].get<std::string>() + "-" +
+                                     std::to_string(info.curvature.width));
         EXPECT_EQ(table["width"], info.curvature.width);
         EXPECT_EQ(table["radius_max"], info.curvature.radiusMax);
     }
@@ -147,9 +148,9 @@ TEST_F(BatchCommand, NamesFilesAndWritesAnIndexOfThem) {
     EXPECT_EQ(after["missing"], 1);
     EXPECT_EQ(after["tables"], index["tables"]);
     // A name whose request changes is made anew.
-    EXPECT_EQ(
-        run({"batch", manifest("[[lut]]\nname = \"shine\"\nsize = 8\n"), "-o", path("out"), "--json"}).json()["redone"],
-        1);
+    EXPECT_EQ(run({"batch", manifest("[[lut]]\nname = \"shine\"\nsize = 8\n"), "-o", path("out"), "--json"})
+                  .json()["redone"],
+              1);
 }
 
 // By default a manifest of version 1 makes FaceWorks' tables, one of version 2 those that a material makes of
@@ -192,7 +193,8 @@ TEST_F(BatchCommand, TablesBeginAsTheVersionOrThePresetSays) {
     EXPECT_EQ(made("version = 2\n" + shadow)[0]["axis"], "linear");
     EXPECT_EQ(made("[[lut]]\nkind = \"shadow\"\nname = \"s\"\naxis = \"root\"\nsize = 8\n")[0]["axis"],
               "linear");
-    EXPECT_EQ(made("version = 2\n[[lut]]\nkind = \"shadow\"\nname = \"s\"\nclosed_ends = 0\nsize = 8\n")[0]["closed_ends"],
+    EXPECT_EQ(made("version = 2\n[[lut]]\nkind = \"shadow\"\nname = \"s\"\nclosed_ends = 0\nsize = 8\n")
+                  [0]["closed_ends"],
               0);
 }
 

@@ -172,7 +172,8 @@ TEST_F(BlenderReference, ScatteringComesCloserToThePathTracedSphere) {
     const Difference whole = compare(out, burley, mask), wholeLambert = compare(lambert, burley, mask);
     report("sphere, Burley, whole", whole, wholeLambert);
     report("sphere, random walk, whole", compare(out, walk, mask), compare(lambert, walk, mask));
-    const Difference nearBurley = compare(out, burley, band), nearBurleyLambert = compare(lambert, burley, band);
+    const Difference nearBurley = compare(out, burley, band),
+                     nearBurleyLambert = compare(lambert, burley, band);
     report("sphere, Burley, |N.L| < 0.2", nearBurley, nearBurleyLambert);
     const Difference nearWalk = compare(out, walk, band), nearWalkLambert = compare(lambert, walk, band);
     report("sphere, random walk, |N.L| < 0.2", nearWalk, nearWalkLambert);
@@ -264,7 +265,8 @@ TEST_F(BlenderGBuffer, ConventionsOnAFileOfOurOwn) {
         io::ChannelType::Half);
     image.addInterleaved(std::vector<std::string>{"ViewLayer.IndexOB.X"}, id, io::ChannelType::Half);
     image.addInterleaved(
-        std::vector<std::string>{"ViewLayer.NShading.R", "ViewLayer.NShading.G", "ViewLayer.NShading.B"}, normal);
+        std::vector<std::string>{"ViewLayer.NShading.R", "ViewLayer.NShading.G", "ViewLayer.NShading.B"},
+        normal);
     io::writeExr(path("gbuffer.exr"), image);
     const std::vector<float> out =
         shade(path("gbuffer.exr"), std::string(names) + light + "[[material]]\nid = 1\n");

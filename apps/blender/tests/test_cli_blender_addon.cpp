@@ -18,7 +18,8 @@ TEST_F(CommandTest, TheAddOnRendersSkinTeethAnEyeAndJade) {
     fs::create_directories(out);
     fs::create_directories(home);
     ASSERT_EQ(
-        std::system(("python3 '" + source + "/packaging/blender_addon' '" + zip + "' >/dev/null").c_str()), 0);
+        std::system(("python3 '" + source + "/packaging/blender_addon' '" + zip + "' >/dev/null").c_str()),
+        0);
     const std::string line = "BLENDER_USER_SCRIPTS='" + home + "' BLENDER_USER_CONFIG='" + home +
                              "' PELLUCID_COMMAND='" PELLUCID_COMMAND "' '" + blender::command() +
                              "' --factory-startup -b -t 2 --python '" + source +
@@ -48,7 +49,8 @@ TEST_F(CommandTest, TheAddOnRendersSkinTeethAnEyeAndJade) {
     EXPECT_NEAR(scene.eyes[0].eye.gaze[1], -1, 1e-3);
     EXPECT_NEAR(scene.eyes[0].eye.scleraRadius, 9, 0.2);  // mm
     EXPECT_EQ(scene.materials[0].material.scattering, PEL_SCATTERING_NONE);
-    const io::SceneMaterial &face = scene.materials[1], &stone = scene.materials[2], &teeth = scene.materials[3];
+    const io::SceneMaterial &face = scene.materials[1], &stone = scene.materials[2],
+                            &teeth = scene.materials[3];
     EXPECT_EQ(stone.profile, "jade");
     EXPECT_TRUE(teeth.profile.empty() && teeth.curvatureLut.empty()) << "weight 0 is no skin";
     EXPECT_EQ(teeth.material.scattering, PEL_SCATTERING_NONE);

@@ -45,7 +45,8 @@ class BlenderScript : public CommandTest {
     std::vector<float> shade(const std::string& gbuffer, const std::string& scene) const {
         const Result result = run({"shade", gbuffer, "--scene", scene, "-o", path("out.exr")});
         EXPECT_EQ(result.exitCode, 0) << result.err;
-        return result.exitCode == 0 ? rgb(io::readImage(path("out.exr")), "R", "G", "B") : std::vector<float>();
+        return result.exitCode == 0 ? rgb(io::readImage(path("out.exr")), "R", "G", "B")
+                                    : std::vector<float>();
     }
     static std::vector<float> rgb(const io::Image& image, const std::string& r, const std::string& g,
                                   const std::string& b) {

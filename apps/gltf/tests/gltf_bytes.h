@@ -33,8 +33,9 @@ inline std::string glb(std::string json, std::string binary) {
     while (json.size() % 4) json += ' ';
     while (binary.size() % 4) binary += '\0';
     const size_t total = 12 + 8 + json.size() + (binary.empty() ? 0 : 8 + binary.size());
-    return word(0x46546C67) + word(2) + word(uint32_t(total)) + word(uint32_t(json.size())) + word(0x4E4F534A) +
-           json + (binary.empty() ? "" : word(uint32_t(binary.size())) + word(0x004E4942) + binary);
+    return word(0x46546C67) + word(2) + word(uint32_t(total)) + word(uint32_t(json.size())) +
+           word(0x4E4F534A) + json +
+           (binary.empty() ? "" : word(uint32_t(binary.size())) + word(0x004E4942) + binary);
 }
 
 // A square of four corners and six indices: positions at byte 0, texture coordinates at 48, 16-bit indices

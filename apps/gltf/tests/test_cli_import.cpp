@@ -201,7 +201,8 @@ TEST_F(Import, SamplesOfOtherPeople) {
         if (extension != ".gltf" && extension != ".glb") continue;
         const std::string name = fs::relative(entry.path(), samples).string();
         fs::remove_all(out());
-        const Result result = run({"import", entry.path().string(), "-o", out(), "--size", "48x48", "--json"});
+        const Result result =
+            run({"import", entry.path().string(), "-o", out(), "--size", "48x48", "--json"});
         const auto known = bad.find(name);
         if (result.exitCode == 3) {
             ++refused;

@@ -90,9 +90,9 @@ TEST(Gltf, JsonWithABufferInTextOrInAFile) {
 }
 
 TEST(Gltf, NodesMoveTurnScaleAndMirror) {
-    const GltfScene s =
-        decoded(square("", R"([{"children":[1,2],"translation":[10,0,0]},{"mesh":0,"rotation":[0,0,0.70710678,)"
-                           R"(0.70710678],"scale":[2,1,1]},
+    const GltfScene s = decoded(
+        square("", R"([{"children":[1,2],"translation":[10,0,0]},{"mesh":0,"rotation":[0,0,0.70710678,)"
+                   R"(0.70710678],"scale":[2,1,1]},
                 {"mesh":0,"matrix":[-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,5,1]}])"));
     ASSERT_EQ(s.mesh.vertexCount(), 8u);
     EXPECT_NEAR(position(s, 1)[0], 10, 1e-6);  // (2, 0, 0) a quarter turn about z, moved
@@ -135,7 +135,8 @@ TEST(Gltf, StripsFansAndNoIndices) {
     EXPECT_EQ(triangles("5"), (std::vector<uint32_t>{0, 1, 2, 2, 1, 0, 2, 0, 2, 2, 0, 3}));  // of 0 1 2 0 2 3
     EXPECT_EQ(triangles("6"), (std::vector<uint32_t>{0, 1, 2, 0, 2, 0, 0, 0, 2, 0, 2, 3}));
     const std::string noIndices = with(squareJson(",\"mode\":6"), ",\"indices\":2", "");
-    EXPECT_EQ(decoded(glb(noIndices, squareBuffer())).mesh.triangles, (std::vector<uint32_t>{0, 1, 2, 0, 2, 3}));
+    EXPECT_EQ(decoded(glb(noIndices, squareBuffer())).mesh.triangles,
+              (std::vector<uint32_t>{0, 1, 2, 0, 2, 3}));
     const std::string strip = with(squareJson(",\"mode\":5"), ",\"indices\":2", "");
     EXPECT_EQ(decoded(glb(strip, squareBuffer())).mesh.triangles, (std::vector<uint32_t>{0, 1, 2, 2, 1, 3}));
     expectSays(errorOf(square(",\"mode\":1")), {"has no triangles"});
@@ -202,14 +203,14 @@ TEST(Gltf, MaterialsThatScatter) {
         EXPECT_EQ(s.materials.size(), 1u);
         return s.materials.at(0);
     };
-    const GltfMaterial wax =
-        material(R"({"name":"Wax","pbrMetallicRoughness":{"baseColorFactor":[0.8,0.7,0.6,1],"metallicFactor":0,)"
-                 R"("roughnessFactor":0.5},"extensions":{
+    const GltfMaterial wax = material(
+        R"({"name":"Wax","pbrMetallicRoughness":{"baseColorFactor":[0.8,0.7,0.6,1],"metallicFactor":0,)"
+        R"("roughnessFactor":0.5},"extensions":{
             "KHR_materials_ior":{"ior":1.4},)"
-                 R"("KHR_materials_diffuse_transmission":{"diffuseTransmissionFactor":1,)"
-                 R"("diffuseTransmissionColorFactor":[1,0.9,0.8]},
+        R"("KHR_materials_diffuse_transmission":{"diffuseTransmissionFactor":1,)"
+        R"("diffuseTransmissionColorFactor":[1,0.9,0.8]},
             "KHR_materials_volume":{"thicknessFactor":0.02,"attenuationDistance":0.002,)"
-                 R"("attenuationColor":[0.5,0.25,0.1]},
+        R"("attenuationColor":[0.5,0.25,0.1]},
             "KHR_materials_volume_scatter":{"multiscatterColor":[0.9,0.6,0.3],"scatterAnisotropy":0.5}}})");
     const GltfLook look = lookOf(wax, "Wax", 3, "");
     EXPECT_EQ(look.how, "volume");
@@ -247,9 +248,9 @@ TEST(Gltf, MaterialsThatScatter) {
         EXPECT_NEAR(sheet.albedo[c] * through[c], 0.4 * leaf.diffuseTransmissionColor[c], 2e-3) << c;
     }
     EXPECT_EQ(lookOf(material("{}"), "m", 1, "").how, "metal");
-    EXPECT_EQ(
-        lookOf(material(R"({"pbrMetallicRoughness":{"metallicFactor":0}})"), "m", 1, "").material.material.scattering,
-        PEL_SCATTERING_NONE);
+    EXPECT_EQ(lookOf(material(R"({"pbrMetallicRoughness":{"metallicFactor":0}})"), "m", 1, "")
+                  .material.material.scattering,
+              PEL_SCATTERING_NONE);
     EXPECT_EQ(lookOf(material("{}"), "m", 1, "skin").material.profile, "skin");
     GltfMaterial scene;
     scene.name = "scene";
@@ -268,9 +269,11 @@ TEST(Gltf, WrongFilesSayWhatAndWhere) {
     expectSays(errorOf(square().substr(0, 16)), {"ends within the header"});
     expectSays(json2("\"2.0\"", "\"1.0\""), {"asset", "1.0"});
     expectSays(json2(R"("byteLength":92)", R"("byteLength":93)"), {"buffers[0]", "93"});
-    expectSays(json2(R"("byteOffset":80)", R"("byteOffset":81)"), {"bufferViews[2]", "ends at byte 93", "92"});
+    expectSays(json2(R"("byteOffset":80)", R"("byteOffset":81)"),
+               {"bufferViews[2]", "ends at byte 93", "92"});
     // Bytes behind what the buffer says it has are nobody's.
-    expectSays(json2(R"("byteLength":92)", R"("byteLength":91)"), {"bufferViews[2]", "ends at byte 92", "91"});
+    expectSays(json2(R"("byteLength":92)", R"("byteLength":91)"),
+               {"bufferViews[2]", "ends at byte 92", "91"});
     expectSays(json2(R"("byteOffset":80)", R"("byteOffset":9007199254740992)"), {"bufferViews[2]"});
     expectSays(json2(R"("byteOffset":80)", R"("byteOffset":-1)"), {"bufferViews[2].byteOffset"});
     expectSays(json2(R"("byteOffset":80)", R"("byteOffset":"x")"),
@@ -332,7 +335,8 @@ std::string nodesWith(const std::string& key, const std::string& place) {
 // visited.
 TEST(Gltf, PrimitivesAreDecodedOnceHoweverManyNodesPlaceThem) {
     std::string json = with(
-        squareJson("", "[" + repeated(R"({"mesh":0})", 20000) + "]"), R"([{"nodes":[0]}])", R"([{"nodes":[)" + [] {
+        squareJson("", "[" + repeated(R"({"mesh":0})", 20000) + "]"),
+        R"([{"nodes":[0]}])", R"([{"nodes":[)" + [] {
             std::string list = "0";
             for (int i = 1; i < 20000; ++i) list += "," + std::to_string(i);
             return list;

@@ -59,7 +59,8 @@ class Gltf {
             else if (!named.empty())
                 profile = io::findProfile(named).profile;
             py::object picture = py::none();
-            if (material.baseColorImage >= 0 && !made_.gltf.images[size_t(material.baseColorImage)].bytes.empty())
+            if (material.baseColorImage >= 0 &&
+                !made_.gltf.images[size_t(material.baseColorImage)].bytes.empty())
                 picture = py::bytes(made_.gltf.images[size_t(material.baseColorImage)].bytes);
             found.append(py::make_tuple(material.name, look.how, bytesOf(look.material.material), named,
                                         profile, picture));

@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "arrays.h"
-#include "gltf.h"
 #include "demo/demo_head.h"
+#include "gltf.h"
 #include "io/file_error.h"
 #include "io/image/image_file.h"
 #include "io/image/image_format.h"
@@ -121,7 +121,8 @@ py::tuple readImage(const std::string& path) {
 using Pixels = py::array_t<float, py::array::c_style | py::array::forcecast>;
 using Bytes = py::array_t<uint8_t, py::array::c_style>;
 
-void writeExr(const std::string& path, const std::vector<std::string>& names, const Pixels& pixels, bool half) {
+void writeExr(const std::string& path, const std::vector<std::string>& names, const Pixels& pixels,
+              bool half) {
     io::Image image;
     image.height = int(pixels.shape(0));
     image.width = int(pixels.shape(1));

@@ -89,7 +89,8 @@ class Scene {
             if (!image.channels.empty() && (height != image.height || width != image.width))
                 throw py::value_error("channel " + name + " has the shape (" + std::to_string(height) + ", " +
                                       std::to_string(width) + "), others have (" +
-                                      std::to_string(image.height) + ", " + std::to_string(image.width) + ")");
+                                      std::to_string(image.height) + ", " + std::to_string(image.width) +
+                                      ")");
             image.height = height, image.width = width;
             image.channels.push_back(
                 {name, io::ChannelType::Float, {pixels.data(), pixels.data() + pixels.size()}});
@@ -101,8 +102,9 @@ class Scene {
 
     using Material = std::tuple<uint32_t, std::string, std::string>;  // id, bytes, name of the profile
     py::dict shade(uintptr_t device, const std::vector<Material>& materials,
-                   const std::vector<std::string>& lights, const std::string& ambient, const std::string& camera,
-                   const std::string& options, const std::vector<std::string>& outputs) {
+                   const std::vector<std::string>& lights, const std::string& ambient,
+                   const std::string& camera, const std::string& options,
+                   const std::vector<std::string>& outputs) {
         const io::SceneFile scene = changed(materials, lights, ambient, camera, options);
         const auto o = structOf<PelShaderOptions>(options);
         std::vector<PelImageSlot> wanted;
@@ -205,7 +207,8 @@ class Scene {
     // Kept from call to call, so that only what changed is set again.
     io::SceneFrame& frameFor(PelDevice device, const io::SceneFile& scene, const PelShaderOptions& options,
                              const std::vector<PelImageSlot>& outputs) {
-        if (onDevice_ && onDevice_->frame && onDevice_->device.get() == device && onDevice_->outputs == outputs) {
+        if (onDevice_ && onDevice_->frame && onDevice_->device.get() == device &&
+            onDevice_->outputs == outputs) {
             try {
                 onDevice_->frame->update(scene, onDevice_->luts, options);
             } catch (...) {
@@ -218,7 +221,8 @@ class Scene {
         onDevice_->frame.reset();
         onDevice_->outputs = outputs;
         // With progress.
-        onDevice_->frame.emplace(io::prepareFrame(onDevice_->device, scene, onDevice_->luts, options, outputs));
+        onDevice_->frame.emplace(
+            io::prepareFrame(onDevice_->device, scene, onDevice_->luts, options, outputs));
         try {
             onDevice_->frame->show(*gbuffer_, scene);
         } catch (...) {

@@ -93,7 +93,8 @@ void waitInterruptibly(const pellucid::Event& event) {
         call([&] {
             const Clock::time_point look = Clock::now() + signalPeriod;
             PelError error;
-            while ((error = pelEventIsDone(event.get(), &done)) == PEL_SUCCESS && !done && Clock::now() < look) {
+            while ((error = pelEventIsDone(event.get(), &done)) == PEL_SUCCESS && !done &&
+                   Clock::now() < look) {
                 // Sleeping a sixteenth of the time waited so far finds the end at most that much late.
                 const auto nap = (Clock::now() - start) / 16;
                 std::this_thread::sleep_for(std::clamp<Clock::duration>(nap, std::chrono::microseconds(5),

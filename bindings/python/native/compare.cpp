@@ -16,10 +16,11 @@ void bindCompare(py::module_& module) {
         pellucid::io::ImageDifference d;
         {
             const WithoutGil free;
-            d = pellucid::io::compareImages(values(a), values(b),
-                                            mask ? std::span(static_cast<const uint8_t*>(pointer(mask)), pixels)
-                                                 : std::span<const uint8_t>(),
-                                            &invalid);
+            d = pellucid::io::compareImages(
+                values(a), values(b),
+                mask ? std::span(static_cast<const uint8_t*>(pointer(mask)), pixels)
+                     : std::span<const uint8_t>(),
+                &invalid);
         }
         py::dict result;
         result["pixels"] = d.pixels;

@@ -68,7 +68,8 @@ void bindDevice(py::module_& module) {
         .def_static("from_cl",
                     [](uintptr_t context, uintptr_t device, uintptr_t queue) {
                         return created([&] {
-                            return pellucid::Device::fromCl(pointer(context), pointer(device), pointer(queue));
+                            return pellucid::Device::fromCl(pointer(context), pointer(device),
+                                                            pointer(queue));
                         });
                     })
         .def("address", [](const Device& d) { return reinterpret_cast<uintptr_t>(d.handle.get()); })

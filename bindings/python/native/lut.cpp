@@ -8,7 +8,8 @@ namespace pel::python {
 namespace {
 // The table, and the event of its integration.
 template <class Desc, PelError (*Create)(PelDevice, const Desc*, PelLut*, const PelSubmit*)>
-std::pair<pellucid::Lut, pellucid::Event> created(const Device& d, const py::object& desc, const Waits& waits) {
+std::pair<pellucid::Lut, pellucid::Event> created(const Device& d, const py::object& desc,
+                                                  const Waits& waits) {
     PelLut handle = nullptr;
     const pellucid::Event done = submitted(waits, [&, what = structOf<Desc>(desc)](const PelSubmit* submit) {
         return Create(d.handle.get(), what, &handle, submit);

@@ -18,24 +18,25 @@ void bindLiveMesh(py::module_& module) {
                         });
                         return LiveMesh(made);
                     })
-        .def("update",
-             [](const LiveMesh& live, const VertexView& positions, const std::optional<VertexView>& normals,
-                const VertexView& curvature,
-                const std::optional<std::vector<std::pair<uint32_t, uint32_t>>>& changed, const Waits& waits) {
-                 const PelVertexView p = vertexView(positions), c = vertexView(curvature);
-                 const PelVertexView n = normals ? vertexView(*normals) : PelVertexView{};
-                 std::vector<PelVertexRange> ranges(1);
-                 if (changed) {
-                     ranges.clear();
-                     for (const auto& [first, count] : *changed) ranges.push_back({first, count});
-                     ranges.push_back({0, 0});  // so that there is a pointer to no ranges
-                 }
-                 return submitted(waits, [&](const PelSubmit* submit) {
-                     return pelLiveMeshUpdate(live.get(), &p, normals ? &n : nullptr, &c,
-                                              changed ? ranges.data() : nullptr,
-                                              changed ? uint32_t(ranges.size() - 1) : 0, submit);
-                 });
-             })
+        .def(
+            "update",
+            [](const LiveMesh& live, const VertexView& positions, const std::optional<VertexView>& normals,
+               const VertexView& curvature,
+               const std::optional<std::vector<std::pair<uint32_t, uint32_t>>>& changed, const Waits& waits) {
+                const PelVertexView p = vertexView(positions), c = vertexView(curvature);
+                const PelVertexView n = normals ? vertexView(*normals) : PelVertexView{};
+                std::vector<PelVertexRange> ranges(1);
+                if (changed) {
+                    ranges.clear();
+                    for (const auto& [first, count] : *changed) ranges.push_back({first, count});
+                    ranges.push_back({0, 0});  // so that there is a pointer to no ranges
+                }
+                return submitted(waits, [&](const PelSubmit* submit) {
+                    return pelLiveMeshUpdate(live.get(), &p, normals ? &n : nullptr, &c,
+                                             changed ? ranges.data() : nullptr,
+                                             changed ? uint32_t(ranges.size() - 1) : 0, submit);
+                });
+            })
         .def("stats", [](const LiveMesh& live) {
             PelLiveMeshStats stats = pelLiveMeshStatsDefaults();
             call([&] { return pelLiveMeshGetStats(live.get(), &stats); });
@@ -46,8 +47,9 @@ void bindLiveMesh(py::module_& module) {
 void bindScreen(py::module_& module) {
     module.def("screen_curvature", [](const Device& d, const py::object& params, const ImageView& normals,
                                       const std::optional<ImageView>& positions,
-                                      const std::optional<ImageView>& depth, const std::optional<ImageView>& ids,
-                                      const ImageView& curvature, const Waits& waits) {
+                                      const std::optional<ImageView>& depth,
+                                      const std::optional<ImageView>& ids, const ImageView& curvature,
+                                      const Waits& waits) {
         const auto desc = [](const std::optional<ImageView>& v) {
             return v ? imageDesc(*v) : pelImageDescDefaults();
         };
@@ -61,28 +63,29 @@ void bindScreen(py::module_& module) {
 }
 
 void bindSurfaceIntegral(py::module_& module) {
-    module.def("surface_integral", [](const Device& d, uintptr_t positions, uint32_t vertices,
-                                      uintptr_t indices, uint64_t count, uintptr_t irradiance, uint32_t at,
-                                      const pellucid::Profile* profile, float radius, float unit,
-                                      const std::array<float, 3>& cut, float tolerance,
-                                      const VertexView& points, const VertexView& result, const Waits& waits) {
-        PelSurfaceIntegralDesc desc = pelSurfaceIntegralDescDefaults();
-        desc.numVertices = vertices;
-        desc.positions = static_cast<const float*>(pointer(positions));
-        desc.indices = static_cast<const uint32_t*>(pointer(indices));
-        desc.numIndices = count;
-        desc.irradiance = static_cast<const float*>(pointer(irradiance));
-        desc.irradianceAt = PelIrradianceAt(at);
-        desc.profile = profile ? profile->get() : nullptr;
-        desc.diffusionRadius = radius;
-        desc.millimetresPerUnit = unit;
-        std::copy(cut.begin(), cut.end(), desc.cut);
-        desc.tolerance = tolerance;
-        desc.points = vertexView(points);
-        desc.result = vertexView(result);
-        return submitted(
-            waits, [&](const PelSubmit* submit) { return pelSurfaceIntegral(d.handle.get(), &desc, submit); });
-    });
+    module.def("surface_integral",
+               [](const Device& d, uintptr_t positions, uint32_t vertices, uintptr_t indices, uint64_t count,
+                  uintptr_t irradiance, uint32_t at, const pellucid::Profile* profile, float radius,
+                  float unit, const std::array<float, 3>& cut, float tolerance, const VertexView& points,
+                  const VertexView& result, const Waits& waits) {
+                   PelSurfaceIntegralDesc desc = pelSurfaceIntegralDescDefaults();
+                   desc.numVertices = vertices;
+                   desc.positions = static_cast<const float*>(pointer(positions));
+                   desc.indices = static_cast<const uint32_t*>(pointer(indices));
+                   desc.numIndices = count;
+                   desc.irradiance = static_cast<const float*>(pointer(irradiance));
+                   desc.irradianceAt = PelIrradianceAt(at);
+                   desc.profile = profile ? profile->get() : nullptr;
+                   desc.diffusionRadius = radius;
+                   desc.millimetresPerUnit = unit;
+                   std::copy(cut.begin(), cut.end(), desc.cut);
+                   desc.tolerance = tolerance;
+                   desc.points = vertexView(points);
+                   desc.result = vertexView(result);
+                   return submitted(waits, [&](const PelSubmit* submit) {
+                       return pelSurfaceIntegral(d.handle.get(), &desc, submit);
+                   });
+               });
 }
 
 // `create(handle, report)`; the report is Python's memory.
@@ -133,8 +136,8 @@ void bindMesh(py::module_& module) {
             "create",
             [](const Device& d, uint32_t numVertices, uintptr_t indices, uint64_t numIndices, uint32_t weld,
                float tolerance, uintptr_t positions, uint32_t positionStride, const py::object& report) {
-                const PelMeshTopologyDesc desc =
-                    topologyDesc(numVertices, indices, numIndices, weld, tolerance, positions, positionStride);
+                const PelMeshTopologyDesc desc = topologyDesc(numVertices, indices, numIndices, weld,
+                                                              tolerance, positions, positionStride);
                 return topologyFrom(report, [&](PelMeshTopology* made, PelMeshReport* found) {
                     return pelMeshTopologyCreate(d.handle.get(), &desc, made, found);
                 });
@@ -158,7 +161,8 @@ void bindMesh(py::module_& module) {
                  return py::bytes(bytes);
              })
         .def("normals",
-             [](const MeshTopology& t, const VertexView& positions, const VertexView& normals, const Waits& waits) {
+             [](const MeshTopology& t, const VertexView& positions, const VertexView& normals,
+                const Waits& waits) {
                  return submitted(waits, [&](const PelSubmit* submit) {
                      const PelVertexView p = vertexView(positions), n = vertexView(normals);
                      return pelMeshNormals(t.get(), &p, &n, submit);
@@ -171,10 +175,11 @@ void bindMesh(py::module_& module) {
                  const PelVertexView p = vertexView(positions), c = vertexView(curvature);
                  const PelVertexView n = normals ? vertexView(*normals) : PelVertexView{};
                  PelMeshReport* found = report.is_none() ? nullptr : structOf<PelMeshReport>(report);
-                 return submitted(waits, [&, settings = structOf<PelCurvatureParams>(params)](
-                                             const PelSubmit* submit) {
-                     return pelMeshCurvature(t.get(), settings, &p, normals ? &n : nullptr, &c, found, submit);
-                 });
+                 return submitted(
+                     waits, [&, settings = structOf<PelCurvatureParams>(params)](const PelSubmit* submit) {
+                         return pelMeshCurvature(t.get(), settings, &p, normals ? &n : nullptr, &c, found,
+                                                 submit);
+                     });
              })
         .def("uv_scale", [](const MeshTopology& t, const VertexView& positions, const VertexView& uvs) {
             const PelVertexView p = vertexView(positions), u = vertexView(uvs);

@@ -43,8 +43,9 @@ void bindProfile(py::module_& module) {
                     })
         .def_static("named",
                     [](const std::string& material) {
-                        return named(
-                            "", [&](PelProfile* out) { return pelProfileCreateNamed(material.c_str(), out); });
+                        return named("", [&](PelProfile* out) {
+                            return pelProfileCreateNamed(material.c_str(), out);
+                        });
                     })
         .def_static("of_address",  // of the module that reads files
                     [](uintptr_t address) {
@@ -59,17 +60,19 @@ void bindProfile(py::module_& module) {
                             names.push_back(name);
                         return names;
                     })
-        .def_static("dipole",
-                    [](const Triple& absorption, const Triple& scattering, float eta, const std::string& name) {
-                        return named(name, [&](PelProfile* out) {
-                            return pelProfileCreateDipole(absorption.data(), scattering.data(), eta, out);
-                        });
-                    })
+        .def_static(
+            "dipole",
+            [](const Triple& absorption, const Triple& scattering, float eta, const std::string& name) {
+                return named(name, [&](PelProfile* out) {
+                    return pelProfileCreateDipole(absorption.data(), scattering.data(), eta, out);
+                });
+            })
         .def_static("table",
                     [](uintptr_t distances, uintptr_t values, uint32_t count, const std::string& name) {
                         return named(name, [&](PelProfile* out) {
                             return pelProfileCreateTable(static_cast<const float*>(pointer(distances)),
-                                                         static_cast<const float*>(pointer(values)), count, out);
+                                                         static_cast<const float*>(pointer(values)), count,
+                                                         out);
                         });
                     })
         .def("info",
@@ -92,7 +95,8 @@ void bindProfile(py::module_& module) {
                  call([&] {
                      PelError error = PEL_SUCCESS;
                      // In pieces, so that Ctrl-C is soon noticed.
-                     for (uint32_t from = 0, n; from < count && !error && !(stopped = signalled()); from += n) {
+                     for (uint32_t from = 0, n; from < count && !error && !(stopped = signalled());
+                          from += n) {
                          n = std::min(count - from, 4096u);
                          error = pelProfileEvaluate(p.get(), at + from, n, r + 3 * size_t(from),
                                                     s + 3 * size_t(from));

@@ -26,7 +26,9 @@ void bindScatter(py::module_& module) {
         .def("set_image",
              [](const Scatter& s, uint32_t slot, const std::optional<ImageView>& image) {
                  const PelImageDesc desc = image ? imageDesc(*image) : pelImageDescDefaults();
-                 call([&] { return pelScatterSetImage(s.get(), PelImageSlot(slot), image ? &desc : nullptr); });
+                 call([&] {
+                     return pelScatterSetImage(s.get(), PelImageSlot(slot), image ? &desc : nullptr);
+                 });
              })
         .def("execute",
              [](const Scatter& s, const py::object& params, const ImageView& irradiance,

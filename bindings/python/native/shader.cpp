@@ -50,7 +50,8 @@ void bindShader(py::module_& module) {
                  });
              })
         .def("set_material",
-             [](const Shader& s, uint32_t id, const py::object& material, const Lut* curvature, const Lut* shadow) {
+             [](const Shader& s, uint32_t id, const py::object& material, const Lut* curvature,
+                const Lut* shadow) {
                  const PelMaterial* m = material.is_none() ? nullptr : structOf<PelMaterial>(material);
                  locked(s, [&] {
                      return pelShaderSetMaterial(s.get(), id, m, curvature ? curvature->get() : nullptr,
@@ -61,18 +62,21 @@ void bindShader(py::module_& module) {
              [](const Shader& s, uint32_t id, const std::vector<ImageView>& levels) {
                  std::vector<PelImageDesc> all;
                  for (const ImageView& level : levels) all.push_back(imageDesc(level));
-                 locked(s, [&] { return pelShaderSetNormalMap(s.get(), id, all.data(), uint32_t(all.size())); });
+                 locked(s,
+                        [&] { return pelShaderSetNormalMap(s.get(), id, all.data(), uint32_t(all.size())); });
              })
         .def("set_scattered_texture",
              [](const Shader& s, uint32_t id, const std::optional<ImageView>& texture) {
                  const PelImageDesc desc = texture ? imageDesc(*texture) : pelImageDescDefaults();
-                 locked(s, [&] { return pelShaderSetScatteredTexture(s.get(), id, texture ? &desc : nullptr); });
+                 locked(s,
+                        [&] { return pelShaderSetScatteredTexture(s.get(), id, texture ? &desc : nullptr); });
              })
         .def("set_eye",
              [](const Shader& s, uint32_t id, const py::object& eye, const Lut* caustics) {
                  const PelEye* e = eye.is_none() ? nullptr : structOf<PelEye>(eye);
-                 locked(s,
-                        [&] { return pelShaderSetEye(s.get(), id, e, caustics ? caustics->get() : nullptr); });
+                 locked(s, [&] {
+                     return pelShaderSetEye(s.get(), id, e, caustics ? caustics->get() : nullptr);
+                 });
              })
         .def("set_iris_texture",
              [](const Shader& s, uint32_t id, const std::optional<ImageView>& texture) {
@@ -94,12 +98,14 @@ void bindShader(py::module_& module) {
              [](const Shader& s, uint32_t light, uint32_t slot, const std::optional<ImageView>& image) {
                  const PelImageDesc desc = image ? imageDesc(*image) : pelImageDescDefaults();
                  locked(s, [&] {
-                     return pelShaderSetLightImage(s.get(), light, PelLightSlot(slot), image ? &desc : nullptr);
+                     return pelShaderSetLightImage(s.get(), light, PelLightSlot(slot),
+                                                   image ? &desc : nullptr);
                  });
              })
         .def("set_ambient",
              [](const Shader& s, const py::object& ambient) {
-                 locked(s, [&, a = structOf<PelAmbient>(ambient)] { return pelShaderSetAmbient(s.get(), a); });
+                 locked(s,
+                        [&, a = structOf<PelAmbient>(ambient)] { return pelShaderSetAmbient(s.get(), a); });
              })
         .def("set_ambient_cube",
              [](const Shader& s, const std::optional<ImageView>& faces) {

@@ -42,7 +42,8 @@ void bindTextureScatter(py::module_& module) {
                  const PelImageDesc e = imageDesc(irradiance), o = imageDesc(out),
                                     a = albedo ? imageDesc(*albedo) : pelImageDescDefaults();
                  return submitted(waits, [&](const PelSubmit* submit) {
-                     return pelTextureScatterExecute(s.get(), &settings, &e, albedo ? &a : nullptr, &o, submit);
+                     return pelTextureScatterExecute(s.get(), &settings, &e, albedo ? &a : nullptr, &o,
+                                                     submit);
                  });
              })
         .def("stats", [](const TextureScatter& s) {

@@ -61,7 +61,8 @@ uint64_t leftInGroups() {
             const uint64_t limit = number(at + (old ? "memory.limit_in_bytes" : "memory.max"),
                                           unlimited);  // "max" is not a number: no limit
             const uint64_t used = number(at + (old ? "memory.usage_in_bytes" : "memory.current"), 0);
-            const uint64_t cached = field(at + "memory.stat", old ? "total_inactive_file" : "inactive_file", 0);
+            const uint64_t cached =
+                field(at + "memory.stat", old ? "total_inactive_file" : "inactive_file", 0);
             if (limit != unlimited) left = std::min(left, leftOf(limit, leftOf(used, cached)));
             if (group.empty()) break;
         }

@@ -31,9 +31,10 @@ void unmapPages(void* at, size_t bytes) {
     ::munmap(at, bytes);
 }
 
-// Not by std::aligned_alloc, with which glibc maps and unmaps blocks of 128 KiB and more each time, page fault by page
-// fault: a freed block raises the threshold for mappings only by its size after alignment, so that the next block of
-// this size exceeds the threshold again. The address of the whole block precedes the aligned one.
+// Not by std::aligned_alloc, with which glibc maps and unmaps blocks of 128 KiB and more each time, page
+// fault by page fault: a freed block raises the threshold for mappings only by its size after alignment, so
+// that the next block of this size exceeds the threshold again. The address of the whole block precedes the
+// aligned one.
 void* allocateAligned(size_t alignment, size_t bytes) {
     void* const whole = std::malloc(bytes + alignment);
     if (!whole) return nullptr;

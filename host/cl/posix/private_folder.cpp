@@ -59,7 +59,8 @@ bool makePrivateFolder(const fs::path& folder) {
 
 std::string whyNotPrivate(const fs::path& folder) {
     std::error_code error;
-    const fs::path named = fs::absolute(folder, error).lexically_normal(), real = fs::canonical(folder, error);
+    const fs::path named = fs::absolute(folder, error).lexically_normal(),
+                   real = fs::canonical(folder, error);
     if (error) return text(folder.string(), " cannot be looked at");
     // A link may lead elsewhere: who may replace the link matters as much as who may write to its target.
     for (const fs::path& whole : {named, real}) {

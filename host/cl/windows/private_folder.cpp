@@ -1,5 +1,5 @@
-// On Windows only this user and administrators may write to the folders of a user's profile. Access control lists
-// are not read: a folder elsewhere does not count as private.
+// On Windows only this user and administrators may write to the folders of a user's profile. Access control
+// lists are not read: a folder elsewhere does not count as private.
 #include "cl/private_folder.h"
 
 #include <algorithm>

@@ -145,8 +145,9 @@ class Buffer : public Handle<PelBuffer, pelBufferRetain, pelBufferRelease> {
     void unmap() const { check(pelBufferUnmap(h_)); }
 };
 
-// A C structure and an object that it refers to, kept alive with it. Functions make one where they are given a temporary: the
-// structure by itself would refer to an object that is gone, and does not come out of this one by assignment.
+// A C structure and an object that it refers to, kept alive with it. Functions make one where they are given
+// a temporary: the structure by itself would refer to an object that is gone, and does not come out of this
+// one by assignment.
 template <class Struct, class Kept>
 class Owning {
   public:
@@ -162,7 +163,8 @@ class Owning {
     Struct made_;
 };
 
-// What functions here take: either of the two, by reference or by pointer; nullptr where the call allows NULL.
+// What functions here take: either of the two, by reference or by pointer; nullptr where the call allows
+// NULL.
 template <class Struct, class Kept>
 class StructRef {
   public:
@@ -197,7 +199,8 @@ inline PelImageDesc imageDesc(const Buffer& buffer, PelFormat format, uint32_t w
 // Of a temporary: keeps the buffer.
 inline OwnedImage imageDesc(Buffer&& buffer, PelFormat format, uint32_t width, uint32_t height,
                             uint64_t byteOffset = 0) {
-    const PelImageDesc desc = imageDesc(static_cast<const Buffer&>(buffer), format, width, height, byteOffset);
+    const PelImageDesc desc =
+        imageDesc(static_cast<const Buffer&>(buffer), format, width, height, byteOffset);
     return OwnedImage(std::move(buffer), desc);
 }
 
@@ -232,7 +235,8 @@ class MeshTopology : public Handle<PelMeshTopology, pelMeshTopologyRetain, pelMe
         check(pelMeshTopologySave(h_, bytes.data(), &size));
         return bytes;
     }
-    void normals(const VerticesRef& positions, const VerticesRef& result, const PelSubmit* submit = nullptr) const {
+    void normals(const VerticesRef& positions, const VerticesRef& result,
+                 const PelSubmit* submit = nullptr) const {
         check(pelMeshNormals(h_, positions.get(), result.get(), submit));
     }
     // With normals made from the positions.
@@ -289,7 +293,8 @@ class LiveMesh : public Handle<PelLiveMesh, pelLiveMeshRetain, pelLiveMeshReleas
 // Any of positions, depth and ids may be NULL, but not both of the first two.
 inline void screenCurvature(const Device& device, const PelScreenCurvatureParams& params,
                             const ImageRef& normals, const ImageRef& positions, const ImageRef& depth,
-                            const ImageRef& ids, const ImageRef& curvature, const PelSubmit* submit = nullptr) {
+                            const ImageRef& ids, const ImageRef& curvature,
+                            const PelSubmit* submit = nullptr) {
     check(pelScreenCurvature(device.get(), &params, normals.get(), positions.get(), depth.get(), ids.get(),
                              curvature.get(), submit));
 }
@@ -411,7 +416,8 @@ class TextureScatter : public Handle<PelTextureScatter, pelTextureScatterRetain,
     void setPositions(const VerticesRef& positions, const PelSubmit* submit = nullptr) {
         check(pelTextureScatterSetPositions(h_, positions.get(), submit));
     }
-    void draw(const VerticesRef& values, bool unit, const ImageRef& image, const PelSubmit* submit = nullptr) {
+    void draw(const VerticesRef& values, bool unit, const ImageRef& image,
+              const PelSubmit* submit = nullptr) {
         check(pelTextureScatterDraw(h_, values.get(), unit, image.get(), submit));
     }
     void execute(const PelTextureScatterParams& params, const ImageRef& irradiance, const ImageRef& albedo,
@@ -445,7 +451,8 @@ inline OwnedMaterial material(Profile&& profile, const Float3& albedo) {
 inline PelLight directionalLight(const Float3& toLight, const Float3& color) {
     PelLight light = pelLightDefaults();
     light.type = PEL_LIGHT_DIRECTIONAL;
-    const float length = std::sqrt(toLight[0] * toLight[0] + toLight[1] * toLight[1] + toLight[2] * toLight[2]);
+    const float length =
+        std::sqrt(toLight[0] * toLight[0] + toLight[1] * toLight[1] + toLight[2] * toLight[2]);
     for (size_t i = 0; i < 3; ++i) light.toLight[i] = toLight[i] / length, light.color[i] = color[i];
     return light;
 }
@@ -478,7 +485,8 @@ class Lut : public Handle<PelLut, pelLutRetain, pelLutRelease> {
         check(pelEyeLutCreate(device.get(), &desc, out(), submit));
     }
     Lut(const Device& device, const PelLutInfo& info, const std::vector<float>& texels) {
-        check(pelLutCreateFromTexels(device.get(), &info, texels.data(), texels.size() * sizeof(float), out()));
+        check(
+            pelLutCreateFromTexels(device.get(), &info, texels.data(), texels.size() * sizeof(float), out()));
     }
     PelLutInfo info() const {
         PelLutInfo info = pelLutInfoDefaults();
@@ -577,8 +585,8 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
     }
 };
 
-// Builds programs before they are needed (pelWarmUpPrograms): those of the groups (PelProgramGroup bits), and those that the
-// shaders would build at their commit. Returns how many were not there before.
+// Builds programs before they are needed (pelWarmUpPrograms): those of the groups (PelProgramGroup bits), and
+// those that the shaders would build at their commit. Returns how many were not there before.
 inline uint32_t warmUpPrograms(const Device& device, uint32_t groups, const std::vector<Shader>& shaders = {},
                                uint32_t threads = 0) {
     std::vector<PelShader> handles;

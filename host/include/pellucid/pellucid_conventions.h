@@ -1,8 +1,8 @@
 /* Matrices of renderers: from what OpenGL, Vulkan and Direct3D hand to a shader, to PelCamera and PelLight.
  *
- * A header of its own, for C and C++: nothing here is in the library. Work is done in double. pellucid_conventions.hpp has the same with exceptions,
- * pellucid.conventions is the same in Python. docs/guide/hosts.md shows what to pass for which renderer.
- */
+ * A header of its own, for C and C++: nothing here is in the library. Work is done in double.
+ * pellucid_conventions.hpp has the same with exceptions, pellucid.conventions is the same in Python.
+ * docs/guide/hosts.md shows what to pass for which renderer. */
 #ifndef PELLUCID_CONVENTIONS_H
 #define PELLUCID_CONVENTIONS_H
 
@@ -20,7 +20,8 @@ typedef enum PelClipDepth {
 typedef struct PelConvention {
     PelClipDepth depth;
     int yDown; /* 1: clip space has y downwards, as Vulkan's; 0: upwards, as OpenGL's and Direct3D's */
-    int bottomFirst; /* 1: the first row of the image in memory is its lowest, as glReadPixels gives it; 0: its highest */
+    /* 1: the first row of the image in memory is its lowest, as glReadPixels gives it; 0: its highest */
+    int bottomFirst;
     int columnMajor; /* 1: the 16 numbers are columns one after another (glm, OpenGL, Godot, bgfx), or rows of a matrix that multiplies row
                         vectors (DirectXMath); 0: rows of one that multiplies column vectors, as in this library */
 } PelConvention;
@@ -78,9 +79,10 @@ static inline int pelConventionInvert_(double m[4][4], double inverse[4][4]) {
     return 1;
 }
 
-/* Sets position and inverseViewProjection of `camera`, for a depth image that is what the depth buffer holds and whose first row is the highest. The
- * position of a parallel projection is far away on the line through the middle of the picture. Errors: PEL_ERROR_INVALID_ARGUMENT: numbers
- * that are not finite, no inverse; nothing is written. */
+/* Sets position and inverseViewProjection of `camera`, for a depth image that is what the depth buffer holds
+ * and whose first row is the highest. The position of a parallel projection is far away on the line through
+ * the middle of the picture. Errors: PEL_ERROR_INVALID_ARGUMENT: numbers that are not finite, no inverse;
+ * nothing is written. */
 static inline PelError pelCameraFromViewProjection(const float viewProjection[16], PelConvention convention,
                                                    PelCamera* camera) {
     double m[4][4], inverse[4][4], eye[4], largest = 0;
@@ -96,15 +98,17 @@ static inline PelError pelCameraFromViewProjection(const float viewProjection[16
     for (k = 0; k < 3; ++k) largest = fabs(eye[k]) > largest ? fabs(eye[k]) : largest;
     for (k = 0; k < 3; ++k) {
         const double length = sqrt(eye[0] * eye[0] + eye[1] * eye[1] + eye[2] * eye[2]);
-        camera->position[k] = (float)(fabs(eye[3]) > 1e-12 * largest ? eye[k] / eye[3] : -1e6 * eye[k] / length);
+        camera->position[k] =
+            (float)(fabs(eye[3]) > 1e-12 * largest ? eye[k] / eye[3] : -1e6 * eye[k] / length);
     }
     for (i = 0; i < 4; ++i)
         for (k = 0; k < 4; ++k) camera->inverseViewProjection[4 * i + k] = (float)inverse[i][k];
     return PEL_SUCCESS;
 }
 
-/* Sets what PelLight says of a shadow map that was drawn with this matrix: directional for a parallel projection, a spot for a perspective one (its
- * position and direction too). Colour, cone and filter are left alone. Errors: as above, and a matrix that makes no depth. */
+/* Sets what PelLight says of a shadow map that was drawn with this matrix: directional for a parallel
+ * projection, a spot for a perspective one (its position and direction too). Colour, cone and filter are left
+ * alone. Errors: as above, and a matrix that makes no depth. */
 static inline PelError pelLightFromViewProjection(const float viewProjection[16], PelConvention convention,
                                                   PelLight* light) {
     double m[4][4], image[4][4], largest = 0, across = 0;
@@ -116,14 +120,16 @@ static inline PelError pelLightFromViewProjection(const float viewProjection[16]
             !convention.yDown == !convention.bottomFirst ? -0.5 : 0.5; /* v grows against y, or with it */
         image[0][k] = 0.5 * (m[0][k] + m[3][k]);
         image[1][k] = down * m[1][k] + 0.5 * m[3][k];
-        image[2][k] = convention.depth == PEL_CLIP_DEPTH_MINUS_ONE_TO_ONE ? 0.5 * (m[2][k] + m[3][k]) : m[2][k];
+        image[2][k] =
+            convention.depth == PEL_CLIP_DEPTH_MINUS_ONE_TO_ONE ? 0.5 * (m[2][k] + m[3][k]) : m[2][k];
         image[3][k] = m[3][k];
     }
     for (k = 0; k < 3; ++k) {
         across = fabs(m[3][k]) > across ? fabs(m[3][k]) : across;
         for (i = 0; i < 3; ++i) largest = fabs(m[i][k]) > largest ? fabs(m[i][k]) : largest;
     }
-    if (across <= 1e-12 * largest) { /* parallel: z grows along its row, or against it, by 1 over depthRange */
+    /* parallel: z grows along its row, or against it, by 1 over depthRange */
+    if (across <= 1e-12 * largest) {
         const double sign = convention.depth == PEL_CLIP_DEPTH_ONE_TO_ZERO ? -1 : 1;
         double length;
         if (image[3][3] == 0) return PEL_ERROR_INVALID_ARGUMENT;

@@ -25,8 +25,8 @@ const float* floatsOf(const Matrix& matrix) {
 
 }  // namespace detail
 
-// The camera of a G-buffer, from the matrix that it was drawn with: a float[16], a pointer to 16 floats, or a type that holds 16 floats and nothing
-// else, as glm::mat4 and XMFLOAT4X4.
+// The camera of a G-buffer, from the matrix that it was drawn with: a float[16], a pointer to 16 floats, or a
+// type that holds 16 floats and nothing else, as glm::mat4 and XMFLOAT4X4.
 template <class Matrix>
 PelCamera cameraFromViewProjection(const Matrix& viewProjection, const PelConvention& convention) {
     PelCamera camera = pelCameraDefaults();

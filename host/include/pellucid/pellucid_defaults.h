@@ -1,5 +1,5 @@
-/* Defaults for the structures of pellucid.h, which includes this file. Inline, so that structSize is the size that the
- * caller compiled with. */
+/* Defaults for the structures of pellucid.h, which includes this file. Inline, so that structSize is the size
+ * that the caller compiled with. */
 #ifndef PELLUCID_DEFAULTS_H
 #define PELLUCID_DEFAULTS_H
 #include <string.h>
@@ -94,8 +94,9 @@ static inline float pelLengthOr_(float length, double otherwise) {
     if (otherwise > 3.402823466e38) otherwise = 3.402823466e38;
     return otherwise < 1.401298464e-45 ? 1.401298464e-45f : (float)otherwise;
 }
-/* A description with the lengths of that profile in the place of those that are 0. Radii of curvature from that of an ear's helix to
- * flat surface; penumbrae from light that falls straight in to light at a cosine of a thousandth. Look-ups beyond are clamped. */
+/* A description with the lengths of that profile in the place of those that are 0. Radii of curvature from
+ * that of an ear's helix to flat surface; penumbrae from light that falls straight in to light at a cosine of
+ * a thousandth. Look-ups beyond are clamped. */
 static inline PelCurvatureLutDesc pelCurvatureLutDescFilled(PelCurvatureLutDesc s, const PelProfileInfo* profile) {
     s.diffusionRadius = pelLengthOr_(s.diffusionRadius, profile->radius);
     s.radiusMin = pelLengthOr_(s.radiusMin, 0.25 * s.diffusionRadius);

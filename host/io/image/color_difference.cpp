@@ -39,10 +39,12 @@ double deltaE2000(const Lab& one, const Lab& two) {
     const double t = 1 - 0.17 * std::cos((meanH - 30) * degree) + 0.24 * std::cos(2 * meanH * degree) +
                      0.32 * std::cos((3 * meanH + 6) * degree) - 0.20 * std::cos((4 * meanH - 63) * degree);
     const double l50 = (meanL - 50) * (meanL - 50), mean7C = std::pow(meanC, 7);
-    const double sL = 1 + 0.015 * l50 / std::sqrt(20 + l50), sC = 1 + 0.045 * meanC, sH = 1 + 0.015 * meanC * t;
+    const double sL = 1 + 0.015 * l50 / std::sqrt(20 + l50), sC = 1 + 0.045 * meanC,
+                 sH = 1 + 0.015 * meanC * t;
     const double turn = 30 * std::exp(-std::pow((meanH - 275) / 25, 2));
     const double rT = -2 * std::sqrt(mean7C / (mean7C + pow25to7)) * std::sin(2 * turn * degree);
-    return std::sqrt(std::pow(dL / sL, 2) + std::pow(dC / sC, 2) + std::pow(dH / sH, 2) + rT * dC / sC * dH / sH);
+    return std::sqrt(std::pow(dL / sL, 2) + std::pow(dC / sC, 2) + std::pow(dH / sH, 2) +
+                     rT * dC / sC * dH / sH);
 }
 
 }  // namespace pellucid::io

@@ -144,9 +144,10 @@ class Check {
         if (taken_ > limit_) {
             throw FileError(path_, std::to_string(part.display.width) + " x " +
                                        std::to_string(part.display.height) + " pixels (" +
-                                       std::to_string(part.data.width) + " x " + std::to_string(part.data.height) +
-                                       " of them stored) of " + std::to_string(part.channels) +
-                                       " channels take " + tooLarge(taken_, uint64_t(limit_)));
+                                       std::to_string(part.data.width) + " x " +
+                                       std::to_string(part.data.height) + " of them stored) of " +
+                                       std::to_string(part.channels) + " channels take " +
+                                       tooLarge(taken_, uint64_t(limit_)));
         }
         if (chunks * double(placeOfChunk) > double(file_.size()))
             damaged("it is too short for " + std::to_string(part.data.width) + " x " +

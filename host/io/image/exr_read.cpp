@@ -122,8 +122,9 @@ PartPlan planPart(Image& image, const Imf::Header& header, int part, bool severa
         severalParts && header.hasName() && !header.name().empty() ? header.name() + "." : "";
     for (const std::string& name : plan.names) {
         const bool half = header.channels()[name].type == Imf::HALF;
-        image.channels.push_back(
-            {name.starts_with(prefix) ? name : prefix + name, half ? ChannelType::Half : ChannelType::Float, {}});
+        image.channels.push_back({name.starts_with(prefix) ? name : prefix + name,
+                                  half ? ChannelType::Half : ChannelType::Float,
+                                  {}});
     }
     constexpr int wholeChunks = 32, wholeChunksOfDwab = 256;
     plan.rows = header.compression() == Imf::DWAB_COMPRESSION ? wholeChunksOfDwab : wholeChunks;
@@ -169,7 +170,8 @@ void readBand(const Image& image, Imf::MultiPartInputFile& file, int part, const
         float* firstPixel =
             direct ? place.first + size_t(begin - display.min.y) * width * stride : bands.back().data();
         // OpenEXR takes the address of pixel (0, 0) in its coordinates, which may be outside of the buffer.
-        const int64_t origin = (int64_t(begin) * int64_t(width) + data.min.x) * int64_t(stride * sizeof(float));
+        const int64_t origin =
+            (int64_t(begin) * int64_t(width) + data.min.x) * int64_t(stride * sizeof(float));
         char* base = reinterpret_cast<char*>(reinterpret_cast<uintptr_t>(firstPixel) - uintptr_t(origin));
         frame.insert(plan.names[c],
                      Imf::Slice(Imf::FLOAT, base, stride * sizeof(float), width * stride * sizeof(float)));
@@ -184,7 +186,8 @@ void readBand(const Image& image, Imf::MultiPartInputFile& file, int part, const
     for (int y = std::max(begin, display.min.y); y < std::min(end, display.max.y + 1); ++y)
         for (size_t c = 0; c < wanted.size(); ++c) {
             const float* from = bands[c].data() + size_t(y - begin) * width + size_t(left - data.min.x);
-            const size_t first = size_t(y - display.min.y) * size_t(image.width) + size_t(left - display.min.x);
+            const size_t first =
+                size_t(y - display.min.y) * size_t(image.width) + size_t(left - display.min.x);
             for (size_t x = 0; x <= size_t(right - left); ++x)
                 wanted[c].first[(first + x) * wanted[c].stride] = from[x];
         }

@@ -80,7 +80,8 @@ void writeExr(const std::string& path, const Image& image, ExrCompression compre
     MemoryOutput memory(path);
     try {
         Imf::Header header(image.width, image.height);
-        header.compression() = compression == ExrCompression::Rle ? Imf::RLE_COMPRESSION : Imf::ZIP_COMPRESSION;
+        header.compression() =
+            compression == ExrCompression::Rle ? Imf::RLE_COMPRESSION : Imf::ZIP_COMPRESSION;
         for (const auto& [name, value] : image.attributes) setAttribute(header, name, value);
         Imf::FrameBuffer frame;
         std::vector<std::vector<half>> halves;
@@ -88,14 +89,16 @@ void writeExr(const std::string& path, const Image& image, ExrCompression compre
         const auto width = size_t(image.width);
         for (const Channel& c : image.channels) {
             if (c.pixels.size() != image.pixelCount())
-                throw std::invalid_argument("writeExr: channel " + c.name + " does not have the image's size");
+                throw std::invalid_argument("writeExr: channel " + c.name +
+                                            " does not have the image's size");
             const bool small = c.type == ChannelType::Half;
             if (small) halves.emplace_back(c.pixels.begin(), c.pixels.end());
             const void* pixels = small ? static_cast<const void*>(halves.back().data()) : c.pixels.data();
             header.channels().insert(c.name, Imf::Channel(small ? Imf::HALF : Imf::FLOAT));
             const size_t size = small ? sizeof(half) : sizeof(float);
-            frame.insert(c.name, Imf::Slice(small ? Imf::HALF : Imf::FLOAT,
-                                            static_cast<char*>(const_cast<void*>(pixels)), size, size * width));
+            frame.insert(c.name,
+                         Imf::Slice(small ? Imf::HALF : Imf::FLOAT,
+                                    static_cast<char*>(const_cast<void*>(pixels)), size, size * width));
         }
         const Threads threads;
         Imf::OutputFile file(memory, header);

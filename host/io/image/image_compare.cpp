@@ -24,8 +24,9 @@ double dot3(const float* a, const float* b) {
 
 }  // namespace
 
-ImageDifference compareImages(std::span<const float> a, std::span<const float> b, std::span<const uint8_t> mask,
-                              size_t* invalid, std::span<const float> secondHalf) {
+ImageDifference compareImages(std::span<const float> a, std::span<const float> b,
+                              std::span<const uint8_t> mask, size_t* invalid,
+                              std::span<const float> secondHalf) {
     if (a.size() != b.size() || a.size() % 3 != 0 || (!mask.empty() && mask.size() != a.size() / 3) ||
         (!secondHalf.empty() && secondHalf.size() != a.size()))
         throw std::invalid_argument("compareImages: the pictures and the mask have different sizes");

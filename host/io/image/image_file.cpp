@@ -64,7 +64,8 @@ void Image::interleave(std::span<const std::string> names, float* values) const 
     }
 }
 
-void Image::addInterleaved(std::span<const std::string> names, std::span<const float> values, ChannelType type) {
+void Image::addInterleaved(std::span<const std::string> names, std::span<const float> values,
+                           ChannelType type) {
     if (values.size() != names.size() * pixelCount()) {
         throw std::invalid_argument("addInterleaved: " + std::to_string(values.size()) + " values for " +
                                     std::to_string(names.size()) + " channels of " + std::to_string(width) +

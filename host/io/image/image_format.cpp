@@ -63,7 +63,8 @@ std::string jpeg(const std::string& path, std::string_view file, uint64_t limit)
         }
         const size_t length = bigEndian(file, at + 2, 2) + size_t{2};
         if (length < 4 || length > file.size() - at) cutOff(path);
-        const bool frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+        const bool frame =
+            marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
         if (frame) {
             if (length < 10) cutOff(path);
             checkImageSize(path, bigEndian(file, at + 7, 2), bigEndian(file, at + 5, 2),
@@ -84,7 +85,8 @@ std::string tga(const std::string& path, std::string_view file, uint64_t limit) 
     const uint32_t mapType = littleEndian(file, 1, 1), type = littleEndian(file, 2, 1),
                    bits = littleEndian(file, 16, 1);
     const uint32_t mapCount = littleEndian(file, 5, 2), mapBits = littleEndian(file, 7, 1);
-    const bool mapped = type == 1 || type == 9, grey = type == 3 || type == 11, color = type == 2 || type == 10;
+    const bool mapped = type == 1 || type == 9, grey = type == 3 || type == 11,
+               color = type == 2 || type == 10;
     const bool depth = mapped || grey ? bits == 8 || (grey && bits == 16)
                                       : bits == 15 || bits == 16 || bits == 24 || bits == 32;
     const bool map = mapped ? mapType == 1 && mapCount > 0 &&

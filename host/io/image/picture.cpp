@@ -46,8 +46,9 @@ void Picture::paint(int x, int y, Srgb8 color) {
 void Picture::paste(int x, int y, const Picture& other) {
     for (int row = 0; row < other.height; ++row) {
         for (int column = 0; column < other.width; ++column) {
-            const uint8_t* from = &other.rgb[3 * (static_cast<size_t>(row) * static_cast<size_t>(other.width) +
-                                                  static_cast<size_t>(column))];
+            const uint8_t* from =
+                &other.rgb[3 * (static_cast<size_t>(row) * static_cast<size_t>(other.width) +
+                                static_cast<size_t>(column))];
             paint(x + column, y + row, {from[0], from[1], from[2]});
         }
     }
@@ -73,16 +74,17 @@ Picture shrunk(const Picture& picture, int factor) {
             int count = 0;
             for (int dy = 0; dy < factor && y * factor + dy < picture.height; ++dy) {
                 for (int dx = 0; dx < factor && x * factor + dx < picture.width; ++dx, ++count) {
-                    const size_t at = static_cast<size_t>(y * factor + dy) * static_cast<size_t>(picture.width) +
-                                      static_cast<size_t>(x * factor + dx);
+                    const size_t at =
+                        static_cast<size_t>(y * factor + dy) * static_cast<size_t>(picture.width) +
+                        static_cast<size_t>(x * factor + dx);
                     for (size_t c = 0; c < 3; ++c)
                         sum[c] += decodeSrgb(static_cast<float>(picture.rgb[3 * at + c]) / 255.0f);
                 }
             }
             Srgb8 mean;
             for (size_t c = 0; c < 3; ++c) {
-                mean[c] =
-                    static_cast<uint8_t>(std::lround(255.0f * encodeSrgb(sum[c] / static_cast<float>(count))));
+                mean[c] = static_cast<uint8_t>(
+                    std::lround(255.0f * encodeSrgb(sum[c] / static_cast<float>(count))));
             }
             small.paint(x, y, mean);
         }
@@ -108,7 +110,8 @@ Picture contactSheet(std::span<const Tile> tiles, int columns, int textScale) {
     int y = gap;
     for (size_t row = 0; row < heights.size(); ++row) {
         int x = gap;
-        for (size_t column = 0; column < widths.size() && row * widths.size() + column < tiles.size(); ++column) {
+        for (size_t column = 0; column < widths.size() && row * widths.size() + column < tiles.size();
+             ++column) {
             const Tile& tile = tiles[row * widths.size() + column];
             sheet.paste(x, y, tile.picture);
             sheet.write(x, y + tile.picture.height + gap / 2, tile.label, ink, textScale);
@@ -132,7 +135,8 @@ Picture colorBar(int width, double low, double high, std::string_view unit, int 
     bar.write(0, textTop, shownNumber(low), ink, textScale);
     bar.write((width - textWidth(middle, textScale)) / 2, textTop, middle, ink, textScale);
     bar.write(width - textWidth(right, textScale), textTop, right, ink, textScale);
-    bar.write((width - textWidth(unit, textScale)) / 2, textTop + textHeight(textScale), unit, ink, textScale);
+    bar.write((width - textWidth(unit, textScale)) / 2, textTop + textHeight(textScale), unit, ink,
+              textScale);
     return bar;
 }
 

@@ -51,7 +51,8 @@ Picture contactSheet(std::span<const Tile> tiles, int columns, int textScale = 2
 Picture colorBar(int width, double low, double high, std::string_view unit, int textScale = 2);
 
 // The picture with a bar as wide as itself below.
-Picture withColorBar(const Picture& picture, double low, double high, std::string_view unit, int textScale = 2);
+Picture withColorBar(const Picture& picture, double low, double high, std::string_view unit,
+                     int textScale = 2);
 
 // Values in [low, high] as scaleColor; `outside` where mask (empty, or one per value) is 0.
 Picture colored(int width, int height, std::span<const float> values, float low, float high,

@@ -59,9 +59,9 @@ void check(const Texture& t) {
     const size_t across = (t.width + f.blockSide - 1) / f.blockSide,
                  down = (t.height + f.blockSide - 1) / f.blockSide;
     if (t.bytes.size() != across * down * f.blockBytes)
-        throw std::invalid_argument("a texture of " + std::to_string(t.width) + "x" + std::to_string(t.height) +
-                                    " takes " + std::to_string(across * down * f.blockBytes) +
-                                    " bytes, not " + std::to_string(t.bytes.size()));
+        throw std::invalid_argument(
+            "a texture of " + std::to_string(t.width) + "x" + std::to_string(t.height) + " takes " +
+            std::to_string(across * down * f.blockBytes) + " bytes, not " + std::to_string(t.bytes.size()));
 }
 
 // The data format descriptor [Khronos Data Format Specification 1.3]: one basic block with four float
@@ -105,7 +105,8 @@ void writeDds(const std::string& path, const Texture& t) {
     b.append(t.bytes).write(path);
 }
 
-void writeKtx2(const std::string& path, const Texture& t, const std::map<std::string, std::string>& keyValues) {
+void writeKtx2(const std::string& path, const Texture& t,
+               const std::map<std::string, std::string>& keyValues) {
     check(t);
     constexpr uint32_t headerSize = 80, levelIndexSize = 24;
     const FormatFacts f = factsOf(t.format);

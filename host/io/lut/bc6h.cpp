@@ -78,9 +78,9 @@ std::vector<uint16_t> decodeBc6h(uint32_t width, uint32_t height, std::span<cons
             const size_t e = m.subsets == 2 && bc6h::inSecond(block->partition, texel) ? 2 : 0;
             const int weight = bc6h::weights(m.subsets)[block->index[size_t(texel)]];
             for (size_t c = 0; c < 3; ++c)
-                texels[(size_t(y) * width + x) * 3 + c] =
-                    bc6h::halfOf(bc6h::interpolated(bc6h::unquantised(block->ends[e][c], m.bits),
-                                                    bc6h::unquantised(block->ends[e + 1][c], m.bits), weight));
+                texels[(size_t(y) * width + x) * 3 + c] = bc6h::halfOf(
+                    bc6h::interpolated(bc6h::unquantised(block->ends[e][c], m.bits),
+                                       bc6h::unquantised(block->ends[e + 1][c], m.bits), weight));
         }
     return texels;
 }
@@ -89,7 +89,8 @@ TexelError differenceOf(std::span<const uint16_t> halves, std::span<const uint16
     TexelError error;
     double sum = 0;
     for (size_t i = 0; i < halves.size(); ++i) {
-        const double d = double(bc6h::linearValue(storable(halves[i]))) - bc6h::linearValue(storable(others[i]));
+        const double d =
+            double(bc6h::linearValue(storable(halves[i]))) - bc6h::linearValue(storable(others[i]));
         error.max = std::max(error.max, std::abs(d));
         sum += d * d;
     }

@@ -162,7 +162,8 @@ class BitStream {
 
 int indexBits(const Block& block, int texel) {
     const int full = modes[block.mode].subsets == 2 ? 3 : 4;
-    const bool anchor = texel == 0 || (modes[block.mode].subsets == 2 && texel == secondAnchor(block.partition));
+    const bool anchor =
+        texel == 0 || (modes[block.mode].subsets == 2 && texel == secondAnchor(block.partition));
     return anchor ? full - 1 : full;
 }
 

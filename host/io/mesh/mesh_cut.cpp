@@ -36,7 +36,8 @@ class Cutter {
     }
 
     // The texture coordinates there, the same in both triangles of an edge where theirs are.
-    std::array<float, 2> uvAt(uint32_t a, uint32_t b, std::array<float, 2> uvA, std::array<float, 2> uvB) const {
+    std::array<float, 2> uvAt(uint32_t a, uint32_t b, std::array<float, 2> uvA,
+                              std::array<float, 2> uvB) const {
         if (a > b) std::swap(a, b), std::swap(uvA, uvB);
         const double t = above(a) / (above(a) - above(b));
         return {float(uvA[0] + t * (uvB[0] - uvA[0])), float(uvA[1] + t * (uvB[1] - uvA[1]))};
@@ -89,7 +90,8 @@ void dropUnused(MeshData& mesh) {
     for (uint32_t& v : mesh.triangles) {
         if (place[v] == UINT32_MAX) {
             place[v] = uint32_t(positions.size() / 3);
-            positions.insert(positions.end(), &mesh.positions[3 * size_t(v)], &mesh.positions[3 * size_t(v)] + 3);
+            positions.insert(positions.end(), &mesh.positions[3 * size_t(v)],
+                             &mesh.positions[3 * size_t(v)] + 3);
             normals.insert(normals.end(), &mesh.normals[3 * size_t(v)], &mesh.normals[3 * size_t(v)] + 3);
         }
         v = place[v];
@@ -155,7 +157,8 @@ void cutAndClose(PartedMesh& mesh, const std::string& part, const float (&normal
     mesh.partOf = std::move(partOf);
     std::map<uint32_t, int> ends;
     for (const auto& edge : rim) ++ends[edge[0]], --ends[edge[1]];
-    const bool closed = std::all_of(ends.begin(), ends.end(), [](const auto& end) { return end.second == 0; });
+    const bool closed =
+        std::all_of(ends.begin(), ends.end(), [](const auto& end) { return end.second == 0; });
     if (!rim.empty() && closed) {
         mesh.parts.push_back(cap);
         closeRim(mesh, rim, normal, uint32_t(mesh.parts.size() - 1));

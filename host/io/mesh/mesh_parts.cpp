@@ -21,7 +21,8 @@ struct DoubleTraits : OpenMesh::DefaultTraits {
 using PolyMesh = OpenMesh::PolyMesh_ArrayKernelT<DoubleTraits>;
 
 // The group of each face, in the order of the file.
-std::vector<uint32_t> groupsOf(const std::string& path, const std::string& text, std::vector<std::string>& names) {
+std::vector<uint32_t> groupsOf(const std::string& path, const std::string& text,
+                               std::vector<std::string>& names) {
     std::map<std::string, uint32_t> known;
     std::vector<uint32_t> groups;
     std::string current;

@@ -187,7 +187,8 @@ size_t removeAbandonedFiles(const std::string& path) {
         struct stat status {};
         if (::fstat(fd, &status) == 0 && S_ISREG(status.st_mode)) {
             const double age = std::difftime(std::time(nullptr), status.st_mtime);
-            if (age > (machine == machineTag() ? lockedAge : foreignAge) && ::flock(fd, LOCK_EX | LOCK_NB) == 0)
+            if (age > (machine == machineTag() ? lockedAge : foreignAge) &&
+                ::flock(fd, LOCK_EX | LOCK_NB) == 0)
                 removed += ::unlinkat(folder, name.c_str(), 0) == 0;
         }
         ::close(fd);

@@ -76,7 +76,8 @@ std::string readWholeFile(const std::string& path, uint64_t limit) {
     text.resize(size_t(bytes) + 1);
     size_t filled = 0;
     for (;;) {
-        const ssize_t got = ::read(file, text.data() + filled, std::min(text.size() - filled, size_t{1} << 30));
+        const ssize_t got =
+            ::read(file, text.data() + filled, std::min(text.size() - filled, size_t{1} << 30));
         if (got < 0 && errno == EINTR) continue;
         if (got < 0) unreadable(path);
         if (got == 0) break;

@@ -36,7 +36,8 @@ void readLut(TomlReader& reader, SceneFile& scene, PelLutKind kind, LutPreset pr
     if (lut.file.empty() && kind == PEL_LUT_CURVATURE &&
         !ordered(lut.info.curvature.radiusMin, lut.info.curvature.radiusMax))
         reader.fail("radius_min", "is not below radius_max");
-    if (lut.file.empty() && kind == PEL_LUT_SHADOW && !ordered(lut.info.shadow.widthMin, lut.info.shadow.widthMax))
+    if (lut.file.empty() && kind == PEL_LUT_SHADOW &&
+        !ordered(lut.info.shadow.widthMin, lut.info.shadow.widthMax))
         reader.fail("width_min", "is not below width_max");
     scene.luts.push_back(std::move(lut));
 }
@@ -119,7 +120,8 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
             const std::string table = kind == PEL_LUT_CURVATURE ? "curvature_lut" : "shadow_lut";
             throw FileError(scene.source,
                             "material " + std::to_string(m.id) + " asks for the " + table + " '" + name +
-                                "'; there is " + (list.empty() ? "no [[" + table + "]] table" : "only: " + list),
+                                "'; there is " +
+                                (list.empty() ? "no [[" + table + "]] table" : "only: " + list),
                             m.line);
         }
     }

@@ -87,7 +87,8 @@ void AtomicFile::write(const void* bytes, size_t count) {
     const char* next = static_cast<const char*>(bytes);
     while (count > 0) {
         DWORD wrote = 0;
-        if (!::WriteFile(handleOf(file_), next, DWORD(std::min<size_t>(count, size_t{1} << 30)), &wrote, nullptr) ||
+        if (!::WriteFile(handleOf(file_), next, DWORD(std::min<size_t>(count, size_t{1} << 30)), &wrote,
+                         nullptr) ||
             wrote == 0)
             fail();
         next += wrote;

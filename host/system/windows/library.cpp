@@ -20,8 +20,9 @@ void* symbolIn(void* library, const char* name) {
 std::string folderOf(const void* address) {
     HMODULE module = nullptr;
     wchar_t path[4096];
-    if (!::GetModuleHandleExW(GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS | GET_MODULE_HANDLE_EX_FLAG_UNCHANGED_REFCOUNT,
-                              static_cast<const wchar_t*>(address), &module))
+    if (!::GetModuleHandleExW(
+            GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS | GET_MODULE_HANDLE_EX_FLAG_UNCHANGED_REFCOUNT,
+            static_cast<const wchar_t*>(address), &module))
         return {};
     const DWORD length = ::GetModuleFileNameW(module, path, 4096);
     if (length == 0 || length == 4096) return {};

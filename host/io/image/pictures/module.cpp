@@ -26,8 +26,8 @@ void decode(Image& image, const ImageFormat& format, const std::function<void(co
     ImageSpec spec, config;
     config.attribute("oiio:UnassociatedAlpha", 1);  // otherwise colours come multiplied by alpha
     if (!input || !input->set_ioproxy(&memory) || !input->open(image.source, spec, config))
-        throw FileError(image.source,
-                        "is not an image that can be read: " + (input ? input->geterror() : OIIO::geterror()));
+        throw FileError(image.source, "is not an image that can be read: " +
+                                          (input ? input->geterror() : OIIO::geterror()));
     image.width = spec.width;
     image.height = spec.height;
     const auto channels = size_t(std::max(spec.nchannels, 0)), width = size_t(std::max(spec.width, 0));

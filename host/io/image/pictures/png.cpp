@@ -100,7 +100,9 @@ void decode(Image& image, const ImageFormat& format, const std::function<void(co
     if (!r.info) throw std::bad_alloc();
     png_set_user_limits(r.png, 0x7fffffff, 0x7fffffff);  // ours is checked by the caller
     r.source = {format.bytes.data(), format.bytes.size()};
-    const auto broken = [&] { throw FileError(image.source, "is not an image that can be read: " + r.error); };
+    const auto broken = [&] {
+        throw FileError(image.source, "is not an image that can be read: " + r.error);
+    };
     if (!readHeader(r)) broken();
     image.width = int(png_get_image_width(r.png, r.info));
     image.height = int(png_get_image_height(r.png, r.info));
