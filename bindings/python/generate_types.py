@@ -37,11 +37,16 @@ def comment_before(text, position):
     return tidy(match.group(1)) if match and not match.group(1).startswith(" ----") else ""
 
 
+def comments_behind(body):
+    """The body of a structure or enumeration with each comment that stands above a member moved behind it."""
+    return re.sub(r"^[ ]*/\*((?:(?!\*/).)*)\*/[ ]*\n([ ]*\w[^;,/\n]*(?:[;,]|(?=\n)))[ ]*$", r"\2 /*\1*/", body, flags=re.S | re.M)
+
+
 def parse_enums(text):
     enums = {}
     for match in re.finditer(r"typedef enum (\w+) \{(.*?)\} \1;", text, re.S):
         entries = re.findall(r"(PEL_\w+) =\s*([^,/\n]+?)\s*,?[ ]*(?:/\*(.*?)\*/)?\s*(?=\n|PEL_|\Z)",
-                             match.group(2), re.S)
+                             comments_behind(match.group(2)), re.S)
         names = [name for name, _, _ in entries]
         if not entries or len(names) != len(re.findall(r"PEL_\w+ =", match.group(2))):
             raise SystemExit(f"{match.group(1)}: an enumerator was not understood")
@@ -65,7 +70,7 @@ def parse_structs(text, enums):
             continue
         fields = []
         for declaration, doc in re.findall(r"([\w][\w \*\[\],]*);[ ]*(?:/\*(.*?)\*/)?",
-                                           COMMENT_ON_OWN_LINE.sub("", body), re.S):
+                                           COMMENT_ON_OWN_LINE.sub("", comments_behind(body)), re.S):
             pointer = re.match(r"(?:const )?(\w+)\s*(\*?)\s*(\w+)((?:\[\w+\])*)$", declaration.strip())
             if not pointer:
                 raise SystemExit(f"{name}: the field '{declaration}' was not understood")

@@ -71,7 +71,9 @@ TEST_F(Demo, PicturesAreThoseThatShadeMakesOfItsGBuffer) {
             EXPECT_TRUE(key.ends_with("_ms") || key == "bytes" ||
                         stage.contains(key.substr(0, key.find("_per"))))
                 << key;
-            if (key.ends_with("_per_second")) EXPECT_LT(value.get<double>(), 1e11) << stage;
+            if (key.ends_with("_per_second")) {
+                EXPECT_LT(value.get<double>(), 1e11) << stage;
+            }
         }
     // The scenes of which bench/roofline counts instructions can be made of the demo's, and can be read.
     ASSERT_EQ(

@@ -166,7 +166,9 @@ TEST_F(Import, CamerasFarAwayAndBentOutOfShape) {
             run({"import", write("far.glb", file), "-o", out(), "--size", "32x32", "--json"});
         ASSERT_EQ(result.exitCode, 0) << place << result.err;
         EXPECT_NO_THROW(io::readScene(out("scene.toml"))) << place;
-        if (draws()) EXPECT_EQ(shaded().exitCode, 0) << place;
+        if (draws()) {
+            EXPECT_EQ(shaded().exitCode, 0) << place;
+        }
     }
 }
 
@@ -219,7 +221,9 @@ TEST_F(Import, SamplesOfOtherPeople) {
         ++good;
         EXPECT_NO_THROW(io::readScene(out("scene.toml"))) << name;
         EXPECT_NO_THROW(io::loadMesh(out("mesh.obj"))) << name;
-        if (draws() && good % 6 == 1) EXPECT_EQ(shaded().exitCode, 0) << name;
+        if (draws() && good % 6 == 1) {
+            EXPECT_EQ(shaded().exitCode, 0) << name;
+        }
     }
     EXPECT_GT(good, 12u);
     EXPECT_GE(refused, bad.size());
