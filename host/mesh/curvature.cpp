@@ -105,7 +105,6 @@ void estimateQuadric(MeshTopology& topology, const cl::Defines& common, const Sl
     const MeshTopology::TwoRings& lists = twoRings(topology, program);
     cl::Launch estimate(program, "curvature_quadric");
     rowArguments(topology, estimate, rows);
-    estimate.arg(topology.slices()).arg(topology.rings());
     estimate.arg(data.positions.memory).arg(data.positions.layout.offset);
     estimate.arg(data.normals.memory).arg(data.normals.layout.offset).arg(planeStrideOf(topology)).arg(planes);
     estimate.arg(lists.starts).arg(lists.points).arg(lists.rounds).arg(counts);

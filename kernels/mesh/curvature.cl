@@ -12,9 +12,10 @@
 
 // (min + max) / 2 of |dn| / |dp| over the edges of a slot [FaceWorks 1.0].
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvature_edge(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices,
-    __global const uint* rings, __global const uint* runs, __global const float* positions, uint positionOffset,
-    __global const float* normals, uint normalOffset, uint planeStride, __global float* curvature) {
+    uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict slices,
+    __global const uint* restrict rings, __global const uint* restrict runs,
+    __global const float* restrict positions, uint positionOffset, __global const float* restrict normals,
+    uint normalOffset, uint planeStride, __global float* curvature) {
     const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     RingCursor ring = ringBegin(first, slots, slices);
@@ -46,8 +47,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
 
 // The mean over a slot's triangles of their other two slots' values, itself not included.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvature_smooth(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
-    __global const uint* runs, uint planeStride, __global const float* from, __global float* to) {
+    uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict slices,
+    __global const uint* restrict rings, __global const uint* restrict runs, uint planeStride,
+    __global const float* restrict from, __global float* to) {
     const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     from += (size_t)get_global_id(1) * planeStride;
@@ -66,13 +68,13 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
     storew(selectw(self, sum / weight, (self == self) & (weight > 0.0f)), first, to);
 }
 
-inline float finiteOrZero(float value) {
+static inline float finiteOrZero(float value) {
     return isfinite(value) ? value : 0.0f;
 }
 
 // `planes` after smoothing, `estimated` as the estimator left them (for the directions).
-inline void storeQuantity(uint slot, uint planeStride, __global const float* planes,
-                          __global const float* estimated, float scale, __global float* result) {
+static inline void storeQuantity(uint slot, uint planeStride, __global const float* planes,
+                                 __global const float* estimated, float scale, __global float* result) {
     const float first = planes[slot] * scale;
 #if PEL_MESH_PLANES > 1
     const float second = planes[(size_t)planeStride + slot] * scale;
@@ -99,8 +101,8 @@ inline void storeQuantity(uint slot, uint planeStride, __global const float* pla
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvature_store(
-    __global const uint* slotOf, uint planeStride, __global const float* planes,
-    __global const float* estimated, float scale, __global float* result, VertexLayout layout) {
+    __global const uint* restrict slotOf, uint planeStride, __global const float* restrict planes,
+    __global const float* restrict estimated, float scale, __global float* result, VertexLayout layout) {
     const uint vertex = get_global_id(0);
     if (vertex >= layout.count) return;
 #if PEL_MESH_MAPPED
@@ -114,10 +116,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
 
 // The same for the vertices of some slots: those of the listed slices whose bit is set in lanes[].
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvature_store_listed(
-    uint slots, uint listed, __global const uint* list, __global const uint* lanes,
-    __global const uint* memberOffsets, __global const uint* members, uint planeStride,
-    __global const float* planes, __global const float* estimated, float scale, __global float* result,
-    VertexLayout layout) {
+    uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict lanes,
+    __global const uint* restrict memberOffsets, __global const uint* restrict members, uint planeStride,
+    __global const float* restrict planes, __global const float* restrict estimated, float scale,
+    __global float* result, VertexLayout layout) {
     const uint item = get_global_id(0), slot = meshSlot(item, slots, listed, list);
     if (slot >= slots || !(lanes[item / PEL_MESH_LANES] >> (item % PEL_MESH_LANES) & 1)) return;
     result += layout.offset;

@@ -22,10 +22,10 @@
 // slivers. With DIFFUSE_AREA weights are not limited here, and `rates` is the slot's factor for diffuse_balance. crease2: square of the change of normal at which weights
 // fall to 1/e; 0: none do.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffuse_weights(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices,
-    __global const uint* rings, __global const uint* runs, __global const float* positions,
-    uint positionOffset, __global const float* normals, uint normalOffset, float limit, float crease2,
-    __global float* weights, __global float* rates) {
+    uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict slices,
+    __global const uint* restrict rings, __global const uint* restrict runs,
+    __global const float* restrict positions, uint positionOffset, __global const float* restrict normals,
+    uint normalOffset, float limit, float crease2, __global float* weights, __global float* rates) {
     const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     RingCursor ring = ringBegin(first, slots, slices);
@@ -124,8 +124,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffus
 // Multiplies each weight by the mean of the factors of its edge's ends, alike from both, so that nothing is lost between them. Writes
 // the slot's rate.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffuse_balance(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
-    __global const uint* runs, __global float* weights, __global const float* factors, __global float* rates) {
+    uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict slices,
+    __global const uint* restrict rings, __global const uint* restrict runs, __global float* weights,
+    __global const float* restrict factors, __global float* rates) {
     const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     RingCursor ring = ringBegin(first, slots, slices);
@@ -143,8 +144,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffus
 
 // Slows an edge down as the faster one of its ends asks for: alike from both, so that nothing is lost between them.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffuse_limit(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
-    __global const uint* runs, float limit, __global float* weights, __global const float* rates) {
+    uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict slices,
+    __global const uint* restrict rings, __global const uint* restrict runs, float limit,
+    __global float* weights, __global const float* restrict rates) {
     const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     RingCursor ring = ringBegin(first, slots, slices);
@@ -161,10 +163,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffus
 // next = gain (current + L current / limit) - before, where gain is 2, or 1 for the first stage, which has nothing before;
 // sum += coefficient next, where the first stage begins with `begin` current. next may be before.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffuse_stage(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices,
-    __global const uint* rings, __global const uint* runs, __global const float* weights, uint planeStride,
-    __global const float* current, __global const float* before, __global float* next, __global float* sum,
-    int isFirst, float begin, float coefficient) {
+    uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict slices,
+    __global const uint* restrict rings, __global const uint* restrict runs,
+    __global const float* restrict weights, uint planeStride, __global const float* restrict current,
+    __global const float* before, __global float* next, __global float* sum, int isFirst, float begin,
+    float coefficient) {
     const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     const size_t plane = (size_t)get_global_id(1) * planeStride;

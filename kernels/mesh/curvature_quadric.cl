@@ -17,16 +17,15 @@
 // and the one vertex behind a neighbour with four neighbours, which is kept although the next walk begins
 // with it (on meshes of four and eight neighbours that takes up to a sixth off the error).
 //
-// Where a ring is small among larger triangles, or thinner than the two-ring, most of that lies outside of what the ring says
-// is near, and what is left does not tell nine numbers. Such slots are fitted once more, to all of the two-ring in
-// coordinates that its own moments give. Positions are known to float rounding only, and where points stand so that H would
-// be off by more than that allows, the fit is done again too; if that does not help, to the rings of all these points.
+// The fit's coordinates come from the second moments of the two-ring, so that slivers fit as well as other
+// triangles, and a ring that is small among larger triangles still has points that determine nine numbers.
 //
-// Of a ring with many neighbours (the hub of a fan, seen from its rim) only the nearest on either side are
-// in the list.
+// Of a ring with many neighbours (the hub of a fan, for a vertex on its rim) only the nearest on either side are
+// in the list. A slot of at most four neighbours with few points takes the three-ring as well (two_ring.cl).
 //
-// What the points leave open (fewer than nine, all on a line) a ridge decides, towards a quadric and then a plane; a
-// term whose pivot is lost to rounding is dropped. The result is always finite. Such slots are counted.
+// A ridge determines what the points leave undetermined (fewer than nine points, or all on a line), towards a
+// quadric and then a plane. A term whose pivot is lost to rounding is dropped. The result is always finite. Such
+// slots are counted.
 //
 // Inputs: position (length) and unit normal of each slot, one-rings, and points of the two-ring (shared/mesh.h).
 // Output: lib/mesh/principal.clh; counts->lowDegreeFits, where counts is not NULL.
@@ -35,10 +34,10 @@
 //
 // Variants: PEL_MESH_STRIDE (lib/mesh/mesh_slots.clh), PEL_MESH_PLANES (lib/mesh/principal.clh).
 
-#include "mesh/quadric_again.clh"
+#include "mesh/quadric_chart.clh"
 
 // How many lanes of the `slots` that begin at `first` are set.
-inline uint countLanes(maskw mask, uint first, uint slots) {
+static inline uint countLanes(maskw mask, uint first, uint slots) {
     const uintw one = selectw((uintw)(0), (uintw)(1), mask & ((uintw)(first) + as_uintw(lanesw()) < slots));
 #if PEL_WIDTH == 1
     return one;
@@ -55,11 +54,11 @@ inline uint countLanes(maskw mask, uint first, uint slots) {
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvature_quadric(
-    uint slots, uint listed, __global const uint* slicesWanted, __global const uint* slices,
-    __global const uint* rings, __global const float* positions, uint positionOffset,
-    __global const float* normals, uint normalOffset, uint planeStride, __global float* planes,
-    __global const uint* starts, __global const uint* points, __global const uint* rounds,
-    __global MeshCounts* counts) {
+    uint slots, uint listed, __global const uint* restrict slicesWanted,
+    __global const float* restrict positions, uint positionOffset, __global const float* restrict normals,
+    uint normalOffset, uint planeStride, __global float* restrict planes,
+    __global const uint* restrict starts, __global const uint* restrict points,
+    __global const uint* restrict rounds, __global MeshCounts* restrict counts) {
     const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, slicesWanted);
     if (first >= slots) return;
     const Points list = pointsBegin(first, slots, starts, rounds);
@@ -72,7 +71,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
     chart.origin = frame.origin, chart.n = frame.n, chart.u = frame.u, chart.v = frame.v;
     maskw spread;
     for (int again = 0; again < 2; ++again) {
-        spread = scaleChart(&chart, &list, points, positions) & frame.sound;
+        spread = measureRing(&chart, &list, points, positions) & frame.sound;
         const maskw doubtful = spread & chart.doubtful;
         if (again || !anyw(doubtful)) break;
         const Vec3w mean = ringNormal(&list, points, normals);
@@ -81,32 +80,41 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
         orientChart(&chart, select3(chart.n, mean, chart.replaced));
     }
 
+    Moments moments;
+    moments.uu = moments.uv = moments.vv = moments.nn = 0.0f, moments.weight = 1e-20f;
+    for (uint row = list.row; row < list.end; ++row) {
+        const Slots at = pointsAt(&list, row, points);
+        addMoments(&moments, at, spread & (at.each != list.self.each), &chart, positions);
+    }
+    shapeChart(&chart, &moments);
     Fit fit;
     clearFit(&fit);
     for (uint row = list.row; row < list.end; ++row) {
         const Slots at = pointsAt(&list, row, points);
-        addPoint(&fit, at, spread & (at.each != list.self.each), &chart, positions);
+        addPoint(&fit, locate(at, spread & (at.each != list.self.each), &chart, positions));
     }
-    // Copies, so that what the loop uses stays in registers.
-    Fit whole = fit;
-    const Chart same = chart;
-    const maskw unsure = solve(&whole, &same), noisy = isNoisy(&whole, &chart);
-    Result best = resultOf(&whole);
-    const maskw poor = spread & (noisy | unsure | (chart.round < LEAST_ROUND));
-    if (anyw(poor)) {
-        // Copies, so that what the first fit uses stays in registers.
-        const Lists lists = {slices, rings, points, rounds, positions};
-        const Points copy = list;
-        Chart wide = chart;
-        Result other = best;
-        fitAgain(&lists, &copy, &wide, &other, poor, noisy);
-        chart = wide, best = other;
+    // A copy, so that the sums of the loop stay in registers.
+    Fit solved = fit;
+    factorize(&solved, &chart);
+    substitute(&solved, solved.right);
+    if (anyw(spread & solved.poor)) {
+        floatw residual[TERMS];
+#pragma unroll
+        for (int i = 0; i < TERMS; ++i) residual[i] = -ridgeOf(&solved, &chart, i) * solved.right[i];
+        for (uint row = list.row; row < list.end; ++row) {
+            const Slots at = pointsAt(&list, row, points);
+            addResidual(residual, &solved, locate(at, spread & (at.each != list.self.each), &chart, positions));
+        }
+        substitute(&solved, residual);
+#pragma unroll
+        for (int i = 0; i < TERMS; ++i) solved.right[i] += residual[i];
     }
-    const maskw low = spread & best.low;
+    const maskw low = spread & solved.low;
     if (counts && anyw(low)) atomic_add(&counts->lowDegreeFits, countLanes(low, first, slots));
 
     // Back to derivatives of the height, in units of the reach, by the tangent vectors.
-    const floatw fx = best.x, fy = best.y, fxx = best.xx, fxy = best.xy, fyy = best.yy;
+    const floatw fx = solved.right[0], fy = solved.right[1];
+    const floatw fxx = solved.right[2], fxy = solved.right[3], fyy = solved.right[4];
     const floatw du = chart.su + fma(chart.xx, fx, chart.xy * fy), dv = fma(chart.yy, fy, chart.sv);
     const floatw duu = chart.xx * fma(chart.xx, fxx, 2.0f * chart.xy * fxy) + chart.xy * chart.xy * fyy;
     const floatw duv = chart.yy * fma(chart.xx, fxy, chart.xy * fyy), dvv = chart.yy * chart.yy * fyy;

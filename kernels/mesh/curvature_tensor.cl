@@ -17,9 +17,9 @@ typedef struct Corner {
     maskw usable;
 } Corner;
 
-__attribute__((always_inline)) inline Corner corner_load(Slots slots, uint last, Vec3w origin,
-                                                         __global const float* positions,
-                                                         __global const float* normals) {
+static inline __attribute__((always_inline)) Corner corner_load(Slots slots, uint last, Vec3w origin,
+                                                                __global const float* positions,
+                                                                __global const float* normals) {
     Corner c;
     Vec3w p;
     gather3(positions, last, slots, &p.x, &p.y, &p.z);
@@ -30,7 +30,7 @@ __attribute__((always_inline)) inline Corner corner_load(Slots slots, uint last,
     return c;
 }
 
-inline Corner cornerSelect(const Corner f, const Corner t, maskw mask) {
+static inline Corner cornerSelect(const Corner f, const Corner t, maskw mask) {
     Corner c;
     c.offset = select3(f.offset, t.offset, mask);
     c.normal = select3(f.normal, t.normal, mask);
@@ -43,8 +43,8 @@ typedef struct Form {
 } Form;
 
 // Adds triangle (slot, a, b), whose corners' order does not matter.
-__attribute__((always_inline)) inline void add_triangle(Form* form, Vec3w n, Vec3w u, Vec3w v, Corner a,
-                                                        Corner b, maskw mask, floatw scale) {
+static inline __attribute__((always_inline)) void add_triangle(Form* form, Vec3w n, Vec3w u, Vec3w v,
+                                                               Corner a, Corner b, maskw mask, floatw scale) {
     // In units of about the ring's size, so that products of lengths stay in the range of float.
     const Vec3w ea = scale3(a.offset, scale), eb = scale3(b.offset, scale);
     const Vec3w across = cross3(ea, eb);
@@ -92,9 +92,10 @@ __attribute__((always_inline)) inline void add_triangle(Form* form, Vec3w n, Vec
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvature_tensor(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices,
-    __global const uint* rings, __global const uint* runs, __global const float* positions, uint positionOffset,
-    __global const float* normals, uint normalOffset, uint planeStride, __global float* planes) {
+    uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict slices,
+    __global const uint* restrict rings, __global const uint* restrict runs,
+    __global const float* restrict positions, uint positionOffset, __global const float* restrict normals,
+    uint normalOffset, uint planeStride, __global float* planes) {
     const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     RingCursor ring = ringBegin(first, slots, slices);

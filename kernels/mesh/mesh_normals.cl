@@ -12,9 +12,9 @@
 #include "lib/mesh/mesh_triangle.clh"
 
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_normals(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices,
-    __global const uint* rings, __global const uint* runs, __global const float* positions,
-    uint positionOffset, __global float* normals, uint normalOffset) {
+    uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict slices,
+    __global const uint* restrict rings, __global const uint* restrict runs,
+    __global const float* restrict positions, uint positionOffset, __global float* normals, uint normalOffset) {
     const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     RingCursor ring = ringBegin(first, slots, slices);
@@ -61,8 +61,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_n
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_normals_store(
-    __global const uint* slotOf, __global const float* normals, uint normalOffset, __global float* result,
-    VertexLayout layout) {
+    __global const uint* restrict slotOf, __global const float* restrict normals, uint normalOffset,
+    __global float* result, VertexLayout layout) {
     const uint vertex = get_global_id(0);
     if (vertex >= layout.count) return;
 #if PEL_MESH_MAPPED

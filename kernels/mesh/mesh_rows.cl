@@ -15,9 +15,9 @@
 #define MEMBERS_AHEAD 64
 
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_rows(
-    uint slots, uint listed, __global const uint* list, __global const uint* memberOffsets,
-    __global const uint* members, __global const float* positions, VertexLayout positionLayout,
-    __global const float* normals, VertexLayout normalLayout, __global float* rows) {
+    uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict memberOffsets,
+    __global const uint* restrict members, __global const float* restrict positions, VertexLayout positionLayout,
+    __global const float* restrict normals, VertexLayout normalLayout, __global float* rows) {
     const uint slot = meshSlot(get_global_id(0), slots, listed, list);
     if (slot >= slots) return;
 #if PEL_MESH_MAPPED
@@ -46,9 +46,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_r
 
 // Whole numbers only, so that the order of additions does not matter.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_count(
-    uint vertices, __global const float* positions, VertexLayout positionLayout, __global const float* normals,
-    VertexLayout normalLayout, uint slots, __global const uint* slices, __global const uint* rings,
-    __global const float* slotPositions, VertexLayout slotLayout, __global MeshCounts* counts) {
+    uint vertices, __global const float* restrict positions, VertexLayout positionLayout,
+    __global const float* restrict normals, VertexLayout normalLayout, uint slots,
+    __global const uint* restrict slices, __global const uint* restrict rings,
+    __global const float* restrict slotPositions, VertexLayout slotLayout, __global MeshCounts* counts) {
     const uint i = get_global_id(0);
     if (i < vertices) {
         const float3 p = meshUsablePosition(vertexLoad3(positions, positionLayout, i));

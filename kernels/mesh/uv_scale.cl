@@ -8,13 +8,14 @@
 
 #include "lib/mesh/mesh_vertex.clh"
 
-inline float edgeLongest2(float3 a, float3 b, float3 c) {
+static inline float edgeLongest2(float3 a, float3 b, float3 c) {
     return fmax(dot(b - a, b - a), fmax(dot(c - b, c - b), dot(a - c, a - c)));
 }
 
 // Squared longest edge and squared longest UV edge of a triangle; NaN or Inf if it has such vertices.
-inline float2 triangleLongest2(uint triangle, __global const uint* indices, __global const float* positions,
-                               VertexLayout positionLayout, __global const float* uvs, VertexLayout uvLayout) {
+static inline float2 triangleLongest2(uint triangle, __global const uint* indices,
+                                      __global const float* positions, VertexLayout positionLayout,
+                                      __global const float* uvs, VertexLayout uvLayout) {
     const uint3 v = vload3(triangle, indices);
     const float2 length2 = (float2)(edgeLongest2(vertexLoad3(positions, positionLayout, v.x),
                                                  vertexLoad3(positions, positionLayout, v.y),
@@ -34,8 +35,9 @@ inline float2 triangleLongest2(uint triangle, __global const uint* indices, __gl
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void uv_scale_largest(
-    uint triangles, __global const uint* indices, __global const float* positions,
-    VertexLayout positionLayout, __global const float* uvs, VertexLayout uvLayout, __global float* largest) {
+    uint triangles, __global const uint* restrict indices, __global const float* restrict positions,
+    VertexLayout positionLayout, __global const float* restrict uvs, VertexLayout uvLayout,
+    __global float* largest) {
     const uint item = get_global_id(0);
     float2 high = (float2)(0.0f);
     for (uint t = item; t < triangles; t += PEL_UV_SCALE_ITEMS) {
@@ -46,9 +48,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void uv_sca
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void uv_scale_sum(
-    uint triangles, __global const uint* indices, __global const float* positions,
-    VertexLayout positionLayout, __global const float* uvs, VertexLayout uvLayout, float smallestLength2,
-    float smallestUv2, __global UvScaleShare* shares) {
+    uint triangles, __global const uint* restrict indices, __global const float* restrict positions,
+    VertexLayout positionLayout, __global const float* restrict uvs, VertexLayout uvLayout,
+    float smallestLength2, float smallestUv2, __global UvScaleShare* shares) {
     const uint item = get_global_id(0);
     // The binary logarithm of each squared ratio: exponents add up exactly as whole numbers, the logarithms
     // of the mantissas lie within [-1, 1] and add up with Kahan's correction. As good as double precision,

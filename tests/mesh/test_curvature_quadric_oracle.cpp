@@ -116,7 +116,7 @@ std::vector<std::pair<std::string, reference::Mesh>> meshes() {
                      tessellate(monkeySaddle(2), sized(24, 10), sized(17, 8), irregular).mesh);
     orient(all.back().second);
     addNoise(all.back().second, 0.05, 6);
-    // So far away that rounding of positions shows: the three-ring.
+    // So far away that rounding of positions shows.
     const FlatMesh refined = redGreen(delaunay(uniformPoints(sized(400, 120), 5)), 0.3, 2);
     all.emplace_back("refined ellipsoid, far away", lifted(refined, ellipsoidCap(1, 1.5, 2)).mesh);
     for (Vec3& p : all.back().second.positions) p = p + Vec3{30, 40, -20};
@@ -139,7 +139,7 @@ std::vector<float> measured(const Mesh& mesh, PelCurvatureQuantity quantity, uin
 
 TEST(CurvatureQuadricOracle, AllQuantities) {
     std::set<size_t> valences;
-    size_t borders = 0, replaced = 0, wide = 0, wider = 0, lowOfAll = 0;
+    size_t borders = 0, replaced = 0, lowOfAll = 0;
     for (const auto& [name, given] : meshes()) {
         SCOPED_TRACE(name);
         const Pair pair = pairOf(given);
@@ -175,8 +175,6 @@ TEST(CurvatureQuadricOracle, AllQuantities) {
             valences.insert(ring[v].size());
             borders += k.border;
             replaced += k.replaced;
-            wide += k.wide;
-            wider += k.wider;
             const float* f = &frames[8 * v];
             const reference::Vec3 d1{f[2], f[3], f[4]}, d2{f[5], f[6], f[7]};
             const double errors[5] = {
@@ -202,8 +200,6 @@ TEST(CurvatureQuadricOracle, AllQuantities) {
     for (size_t n = 3; n <= 12; ++n) EXPECT_TRUE(valences.contains(n)) << n;
     EXPECT_GT(borders, 100u);
     EXPECT_GT(replaced, 5u);
-    EXPECT_GT(wide, 500u);
-    EXPECT_GT(wider, 20u);
     EXPECT_GT(lowOfAll, 50u);
 }
 

@@ -76,16 +76,22 @@ TEST(CurvatureScattered, PoissonDisks) {
 
 TEST(CurvatureScattered, TrianglesSplitAtTheirCentroids) {
     expectAccurate("poked twice", poked(flatGrid(140, 140), 0.2, 2, 3));
+    // Each split triangle has a vertex of valence 3 inside.
+    expectAccurate("poked, coarse", poked(flatGrid(40, 40), 0.3, 1, 21));
     // Normals averaged over slivers within slivers are off by 8 degrees: only exact ones.
     expectAccurate("poked four times", poked(flatGrid(70, 70), 0.7, 4, 3), false);
+    for (uint32_t seed : {21u, 22u, 23u})
+        expectAccurate("random, poked three times", poked(delaunay(uniformPoints(2500, seed)), 0.5, 3, seed),
+                       false);
 }
 
 TEST(CurvatureScattered, RedGreenRefinement) {
     expectAccurate("red and green", redGreen(flatGrid(90, 90), 0.3, 1));
-    // Of random triangles some parts are slivers so small that float positions leave nothing of their curvature: without a look at
-    // the three-ring there, the worst vertices are 19 and 28 % off.
-    for (uint32_t seed : {2u, 4u})
-        expectAccurate("red and green, random", redGreen(delaunay(uniformPoints(5000, int(seed))), 0.3, seed));
+    // Some vertices halve an edge of a sliver. They have four neighbours and few points, which amplify the
+    // rounding of float positions: without the points of the three-ring the worst are 11 to 28 % off.
+    for (uint32_t seed : {2u, 4u, 6u, 7u})
+        expectAccurate("red and green, random", redGreen(delaunay(uniformPoints(5000, seed)), 0.3, seed),
+                       seed < 5);
 }
 
 TEST(CurvatureScattered, FitsOfLowerDegreeAreCounted) {
@@ -111,7 +117,9 @@ TEST(CurvatureScattered, FitsOfLowerDegreeAreCounted) {
     closed.normals.insert(closed.normals.end(), whole.normals.begin(), whole.normals.end());
     for (size_t i = 12; i < 24; ++i) closed.indices[i] += 6;
     EXPECT_EQ(curvature(closed, weldedDesc(closed), meanParams(PEL_CURVATURE_QUADRIC)).report.lowDegreeFits, 6u);
-    EXPECT_GT(low(redGreen(delaunay(uniformPoints(600, 1)), 0.3, 1)), low(redGreen(flatGrid(24, 24), 0.3, 1)));
+    // The points of a strip lie on two curves, which leaves the bending across it undetermined.
+    EXPECT_EQ(low(flatGrid(24, 1)), 50u);
+    EXPECT_LT(low(flatGrid(24, 24)), 50u);
 }
 
 TEST(CurvatureScattered, TheDefaultIsNearTheTruth) {

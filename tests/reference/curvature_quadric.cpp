@@ -45,35 +45,36 @@ std::set<int> nearOf(const Neighbourhood& n, int vertex) {
     return near;
 }
 
-// The weight of each vertex in the fit at `vertex`.
-std::map<int, int> twoRing(const std::vector<Neighbourhood>& all, int vertex) {
-    std::map<int, int> counts;
-    for (int b : all[vertex].ring) {
-        ++counts[b];
-        std::set<int> further = nearOf(all[b], vertex);
-        further.erase(vertex);
-        if (all[b].closed) {
-            const int next = all[vertex].across.at(b), before = all[vertex].before.at(b);
-            further.erase(next);
-            further.erase(before);
-            // The corner on the other side of the edge (b, next) is left to the neighbour `next`; not where
-            // there is no other.
-            if (further.size() > 1)
-                further.erase(all[b].before.at(next) == vertex ? all[b].across.at(next) : all[b].before.at(next));
-        }
-        for (int f : further) ++counts[f];
-    }
-    return counts;
+// The neighbours of `b` away from its neighbour `vertex`: all others or, where the ring of `b` is closed, without
+// the two neighbours that both share and without the corner on the other side of the edge (b, next). That corner
+// is left to the neighbour `next` of `vertex`, except where it is the only one.
+std::set<int> beyond(const std::vector<Neighbourhood>& all, int b, int vertex) {
+    std::set<int> further = nearOf(all[b], vertex);
+    further.erase(vertex);
+    if (!all[b].closed) return further;
+    const int next = all[b].before.at(vertex);
+    further.erase(next);
+    further.erase(all[b].across.at(vertex));
+    if (further.size() > 1) further.erase(all[b].before.at(next));
+    return further;
 }
 
-// The points of the two-ring and, as often as they come up, the rings of these, if those have at most 36
-// neighbours.
-std::map<int, int> threeRing(const std::vector<Neighbourhood>& all, int vertex, const std::map<int, int>& two) {
-    std::map<int, int> counts = two;
-    for (const auto& [point, count] : two)
-        for (int f : all[point].ring)
-            if (f != vertex && all[point].ring.size() <= 36) counts[f] += count;
-    return counts;
+// How many times each vertex counts in the fit at `vertex`. A closed ring of at most four neighbours with a
+// two-ring of fewer than 15 points gets the three-ring as well.
+std::map<int, int> pointsOf(const std::vector<Neighbourhood>& all, int vertex) {
+    std::map<int, int> points, further;
+    int count = 0;
+    for (int b : all[vertex].ring) {
+        ++points[b], ++count;
+        for (int f : beyond(all, b, vertex)) {
+            ++points[f], ++count;
+            for (int g : beyond(all, f, b))
+                if (g != vertex) ++further[g];
+        }
+    }
+    if (all[vertex].closed && all[vertex].ring.size() <= 4 && count < 15)
+        for (const auto& [point, times] : further) points[point] += times;
+    return points;
 }
 
 struct Frame {
@@ -94,22 +95,11 @@ struct Chart {
     double flatness = 0;
     double xu = 0, yu = 0, yv = 0;  // coordinates x = xu u, y = yu u + yv v; u, v in units of twice the reach
     double steepness = 0, slope2 = 0;
-    double unit = 0, round = 1, farthest2 = 4;
+    double unit = 0, round = 1;
     bool thin = false;  // than high
 };
 
-// (x, y) = size L^-1 (u, v) with L L' = moments.
-void shape(Chart& chart, double uu, double uv, double vv, double thick, double size) {
-    const double least = std::max(1e-6 * (uu + vv), thick);
-    const double l11 = std::sqrt(std::max(uu, least)), l21 = uv / l11;
-    const double l22 = std::sqrt(std::max(vv - l21 * l21, least));
-    chart.xu = size / l11;
-    chart.yv = size / l22;
-    chart.yu = -chart.yv * l21 / l11;
-    chart.round = std::min(1.0, std::pow(2 * l11 * l22 / (uu + vv), 2));
-}
-
-Chart chartOf(const Mesh& mesh, const std::set<int>& ring, int vertex, Vec3 normal, bool replaced) {
+Chart chartOf(const Mesh& mesh, const std::set<int>& ring, int vertex, Vec3 normal) {
     Chart chart;
     chart.frame = frameOf(normal);
     for (int b : ring)
@@ -134,7 +124,6 @@ Chart chartOf(const Mesh& mesh, const std::set<int>& ring, int vertex, Vec3 norm
     chart.flatness = 1 / (1 + std::pow(chart.steepness / 0.04, 2));
     chart.unit = 2 * chart.reach;
     chart.thin = uu < nn || vv - uv * uv / uu < nn;
-    shape(chart, uu, uv, vv, replaced ? nn : 0, std::sqrt(0.5));
     return chart;
 }
 
@@ -181,44 +170,30 @@ void principal(QuadricCurvature& out, const Frame& frame, double hu, double hv, 
     out.secondDirection = cross(out.normal, out.firstDirection);
 }
 
-// All points as wide as long, near ones weighing more, or all alike.
-void widen(Chart& chart, const Mesh& mesh, const std::map<int, int>& points, int vertex, bool replaced,
-           bool alike) {
+// Coordinates in which the points are as wide as long: (x, y) = L^-1 (u, v) / 2 with L L' their second
+// moments, in a unit in which their mean squared distance is 0.72.
+void shape(Chart& chart, const Mesh& mesh, const std::map<int, int>& points, int vertex, bool replaced) {
     double uu = 0, uv = 0, vv = 0, nn = 0, total = 0;
     for (const auto& [point, count] : points) {
         const Vec3 p = (mesh.positions[point] - mesh.positions[vertex]) / chart.unit;
         const double u = dot(p, chart.frame.u), v = dot(p, chart.frame.v);
         const double n = dot(p, chart.frame.n) - chart.slopeU * u - chart.slopeV * v;
-        const double weight = alike ? count : count / (0.05 + dot(p, p));
+        const double weight = count / (0.05 + dot(p, p));
         uu += weight * u * u, uv += weight * u * v, vv += weight * v * v, nn += weight * n * n, total += weight;
     }
-    // Its unit makes the mean square of the distance 0.72.
     const double unit2 = (uu + vv) / total / 0.72, part = 1 / (total * unit2);
+    const double least = std::max(1e-6 * 0.72, replaced ? part * nn : 0);
+    const double l11 = std::sqrt(std::max(part * uu, least)), l21 = part * uv / l11;
+    const double l22 = std::sqrt(std::max(part * vv - l21 * l21, least));
     chart.unit *= std::sqrt(unit2);
-    chart.farthest2 = 16;
-    shape(chart, part * uu, part * uv, part * vv, replaced ? part * nn : 0, 0.5);
+    chart.xu = 0.5 / l11;
+    chart.yv = 0.5 / l22;
+    chart.yu = -chart.yv * l21 / l11;
+    chart.round = std::min(1.0, std::pow(2 * l11 * l22 / 0.72, 2));
 }
 
 void nearer(double& margin, double value, double threshold) {
     margin = std::min(margin, std::abs(value / threshold - 1));
-}
-
-double determinant(std::array<std::array<double, 9>, 9> a, size_t first, size_t last) {
-    double product = 1;
-    for (size_t i = first; i < last; ++i) {
-        product *= a[i][i];
-        for (size_t k = i + 1; k < last; ++k)
-            for (size_t j = last; j-- > i;) a[k][j] -= a[k][i] / a[i][i] * a[i][j];
-    }
-    return product;
-}
-
-// How well the points separate quadratic terms from linear ones, and cubic terms from all lower ones: from 0,
-// not at all, to 1, as if the lower terms were absent.
-double distinct(const std::array<std::array<double, 9>, 9>& a) {
-    const double five = determinant(a, 0, 5);
-    return std::min(five / (determinant(a, 0, 2) * determinant(a, 2, 5)),
-                    determinant(a, 0, 9) / (five * determinant(a, 5, 9)));
 }
 
 // The smallest contribution of a quadratic or cubic term to the sum of squares, given the terms before it, in
@@ -238,25 +213,18 @@ double smallestTerm(std::array<std::array<double, 9>, 9> a, double total, bool b
 struct Fit {
     std::array<double, 9> solution{};
     double told = 0;
-    double distinct = 0;
-    // Error of H, times the square of the reach, for an error of 1 of each height and of the vertex.
-    double noise = 0;
     int points = 0;
 };
 
-Fit fitTo(const Mesh& mesh, const std::map<int, int>& points, const Chart& chart, int vertex, bool border,
-          double& margin) {
+Fit fitTo(const Mesh& mesh, const std::map<int, int>& points, const Chart& chart, int vertex, bool border) {
     Fit fit;
     std::array<std::array<double, 9>, 9> matrix{};
     std::array<double, 9> right{};
-    double total = 0, weights2 = 0;
-    std::array<double, 9> ones{};
+    double total = 0;
     for (const auto& [point, count] : points) {
         const Vec3 p = (mesh.positions[point] - mesh.positions[vertex]) / chart.unit;
         const double u = dot(p, chart.frame.u), v = dot(p, chart.frame.v);
         const double x = chart.xu * u, y = chart.yu * u + chart.yv * v;
-        nearer(margin, x * x + y * y, chart.farthest2);
-        if (!(x * x + y * y <= chart.farthest2)) continue;
         const double q = dot(p, chart.frame.n) - chart.slopeU * u - chart.slopeV * v;
         const double r2 = u * u + v * v, bent = r2 + chart.flatness * q * q;
         const double z = bent > 0 ? q * r2 / bent : 0;
@@ -264,11 +232,9 @@ Fit fitTo(const Mesh& mesh, const std::map<int, int>& points, const Chart& chart
         const double terms[9] = {
             x, y, x * x / 2, x * y, y * y / 2, x * x * x / 6, x * x * y / 2, x * y * y / 2, y * y * y / 6};
         total += count * std::min(weight, 20.0);
-        weights2 += count * weight * weight;
         ++fit.points;
         for (int i = 0; i < 9; ++i) {
             right[i] += count * weight * z * terms[i];
-            ones[i] += count * weight * terms[i];
             for (int j = 0; j < 9; ++j) matrix[i][j] += count * weight * terms[i] * terms[j];
         }
     }
@@ -276,38 +242,9 @@ Fit fitTo(const Mesh& mesh, const std::map<int, int>& points, const Chart& chart
     const double often[9] = {1, 1, 1, 2, 1, 1, 3, 3, 1};
     for (int i = 0; i < 9; ++i) matrix[i][i] += total * often[i] * (i < 5 ? 1e-7 : border ? 1e-3 : 1e-5);
     if (!(total > 0)) return fit;
-    fit.distinct = distinct(matrix);
     fit.told = smallestTerm(matrix, total, border);
     fit.solution = solve(matrix, right);
-    // Of the error of heights, what the sum of squares leaves to H.
-    std::array<double, 9> trace{};
-    trace[2] = chart.xu * chart.xu / 2, trace[3] = chart.xu * chart.yu;
-    trace[4] = (chart.yu * chart.yu + chart.yv * chart.yv) / 2;
-    const std::array<double, 9> part = solve(matrix, trace);
-    double square = 0;
-    double own = 0;
-    for (int i = 0; i < 9; ++i) square += part[i] * trace[i], own += part[i] * ones[i];
-    fit.noise = std::sqrt(square * weights2 / total + own * own) * std::pow(chart.reach / chart.unit, 2);
-
     return fit;
-}
-
-// Whether float rounding of positions, which moves heights by 2^-25 (root mean square) of what the position
-// has along the normal, moves H by too much. What is far from one of the thresholds decides however near
-// another one is.
-bool isNoisy(const Fit& fit, const Chart& chart, Vec3 at, double& margin) {
-    const Vec3 n = chart.frame.n;
-    const double noise =
-        fit.noise * std::ldexp(1, -25) * length(Vec3{n.x * at.x, n.y * at.y, n.z * at.z}) / chart.reach;
-    const auto& s = fit.solution;
-    const double xu = chart.xu, yu = chart.yu, yv = chart.yv, part = chart.reach / chart.unit;
-    const double uu = xu * xu * s[2] + 2 * xu * yu * s[3] + yu * yu * s[4], uv = yv * (xu * s[3] + yu * s[4]),
-                 vv = yv * yv * s[4];
-    const double bent = part * std::sqrt((uu * uu + 2 * uv * uv + vv * vv) / 2);
-    const double over[] = {noise / 3e-5, noise / (0.01 * bent), fit.noise / 3};
-    const double least = std::min({over[0], over[1], over[2]});
-    nearer(margin, least, 1);
-    return least > 1;
 }
 
 }  // namespace
@@ -320,7 +257,7 @@ std::vector<QuadricCurvature> quadricCurvature(const Mesh& mesh) {
         const std::set<int>& ring = all[vertex].ring;
         out.border = all[vertex].border;
         const Vec3 given = normalized(mesh.normals[vertex]);
-        Chart chart = chartOf(mesh, ring, vertex, given, false);
+        Chart chart = chartOf(mesh, ring, vertex, given);
         if (!(chart.reach > 0)) continue;
         out.measured = true;
 
@@ -335,33 +272,14 @@ std::vector<QuadricCurvature> quadricCurvature(const Mesh& mesh) {
         if (doubtful) nearer(out.margin, cosine, 0.99);
         if (doubtful && cosine < 0.99) {
             out.replaced = true;
-            chart = chartOf(mesh, ring, vertex, normalized(sum), true);
+            chart = chartOf(mesh, ring, vertex, normalized(sum));
         }
 
-        std::map<int, int> points = twoRing(all, vertex);
-        double fine = 1;  // of the narrow fit, which does not count where it is not used
-        Fit fit = fitTo(mesh, points, chart, vertex, out.border, fine);
-        nearer(out.margin, fit.distinct, 1e-3);
-        nearer(out.margin, chart.round, 0.1);
-        bool noisy = isNoisy(fit, chart, mesh.positions[vertex], out.margin);
-        if (noisy || fit.distinct < 1e-3 || chart.round < 0.1) {
-            out.wide = true;
-            widen(chart, mesh, points, vertex, out.replaced, false);
-            fine = 1;
-            fit = fitTo(mesh, points, chart, vertex, out.border, fine);
-            if (noisy) nearer(out.margin, fit.distinct, 1e-3);
-            noisy = isNoisy(fit, chart, mesh.positions[vertex], out.margin) || (noisy && fit.distinct < 1e-3);
-            out.wider = noisy;
-        }
-        if (out.wider) {
-            points = threeRing(all, vertex, points);
-            widen(chart, mesh, points, vertex, out.replaced, true);
-            fine = 1;
-            fit = fitTo(mesh, points, chart, vertex, out.border, fine);
-        }
+        const std::map<int, int> points = pointsOf(all, vertex);
+        shape(chart, mesh, points, vertex, out.replaced);
+        const Fit fit = fitTo(mesh, points, chart, vertex, out.border);
         nearer(out.lowMargin, fit.told, 1);
         out.low = fit.told < 1;
-        out.margin = std::min(out.margin, fine);
         out.points = fit.points;
         const std::array<double, 9>& s = fit.solution;
 

@@ -10,8 +10,6 @@ struct QuadricCurvature : PrincipalCurvatures {
     Vec3 normal;                           // unit, of the fitted surface
     bool measured = false;                 // false: no neighbour at another place
     bool replaced = false;                 // the given normal was not believed
-    bool wide = false;                     // fitted once more, to the whole two-ring
-    bool wider = false;                    // and once more, to the three-ring
     bool low = false;                      // the points do not tell all terms apart even so
     bool border = false;
     int points = 0;  // distinct vertices that tell about this one
