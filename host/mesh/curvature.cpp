@@ -106,7 +106,10 @@ void estimateQuadric(MeshTopology& topology, const cl::Defines& common, const Sl
     cl::Launch estimate(program, "curvature_quadric");
     rowArguments(topology, estimate, rows);
     estimate.arg(data.positions.memory).arg(data.positions.layout.offset);
-    estimate.arg(data.normals.memory).arg(data.normals.layout.offset).arg(planeStrideOf(topology)).arg(planes);
+    estimate.arg(data.normals.memory)
+        .arg(data.normals.layout.offset)
+        .arg(planeStrideOf(topology))
+        .arg(planes);
     estimate.arg(lists.starts).arg(lists.points).arg(lists.rounds).arg(counts);
     launchRows(topology, estimate, rows, lanes);
 }
@@ -130,15 +133,19 @@ void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params,
         edge ? "curvature_edge" : "curvature_tensor");
     ringArguments(topology, estimate, rows);
     estimate.arg(data.positions.memory).arg(data.positions.layout.offset);
-    estimate.arg(data.normals.memory).arg(data.normals.layout.offset).arg(planeStrideOf(topology)).arg(planes);
+    estimate.arg(data.normals.memory)
+        .arg(data.normals.layout.offset)
+        .arg(planeStrideOf(topology))
+        .arg(planes);
     launchRows(topology, estimate, rows, width(topology.device()));
 }
 
 void storeQuantity(MeshTopology& topology, const PelCurvatureParams& params, uint32_t stride,
                    const cl::Memory& smoothed, const cl::Memory& estimated, const VertexView& curvature,
                    Rows::Work* work) {
-    cl::Launch store(topology.device().programs().get("mesh/curvature.cl", passDefines(topology, params, stride)),
-                     "curvature_store");
+    cl::Launch store(
+        topology.device().programs().get("mesh/curvature.cl", passDefines(topology, params, stride)),
+        "curvature_store");
     store.arg(topology.slotOf()).arg(planeStrideOf(topology)).arg(smoothed).arg(estimated);
     store.arg(params.scale).arg(curvature.memory).arg(curvature.layout);
     topology.device().launch(store, over(topology.vertices()));

@@ -10,7 +10,8 @@ uint32_t quantityFloats(PelCurvatureQuantity quantity);  // per vertex
 uint32_t planesOf(PelCurvatureQuantity quantity);  // that the passes carry (kernels/lib/mesh/principal.clh)
 uint32_t planeStrideOf(const MeshTopology& topology);  // floats
 
-// The steps of a curvature, for callers that take only some of them (mesh/live_mesh.cpp). `counts`: a MeshCounts, or empty.
+// The steps of a curvature, for callers that take only some of them (mesh/live_mesh.cpp). `counts`: a
+// MeshCounts, or empty.
 cl::Defines passDefines(const MeshTopology& topology, const PelCurvatureParams& params, uint32_t stride);
 void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params, const SlotData& data,
                        const cl::Memory& planes, const Rows& rows, const cl::Memory& counts = {});

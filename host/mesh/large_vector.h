@@ -10,8 +10,8 @@
 
 namespace pel {
 
-// Takes large arrays from the system in whole pages at once: touching them page by page takes longer than to sort into them. New elements
-// are not set, where std::vector writes zeros first.
+// Takes large arrays from the system in whole pages at once: touching them page by page takes longer than
+// to sort into them. New elements are not set, where std::vector writes zeros first.
 template <class T>
 struct LargeAllocator {
     using value_type = T;

@@ -1,8 +1,9 @@
-// Which rows an update works on. Distances are in edges. A changed vertex reaches: its own gathered row (0);
-// normals that are made, and smoothing weights (1; one more at creases, two more for area weights); estimates
-// (`estimateReach_`); and one more for each smoothing pass, the first of which reaches as far as weights do. The estimates of all other rows are kept. Values
-// between passes are not kept, so pass p of P works on P - p more rows than it must, from which the later
-// passes read. Work is done in whole slices of rows.
+// Which rows an update works on. Distances are in edges. A changed vertex reaches: its own gathered row
+// (0); normals that are made, and smoothing weights (1; one more at creases, two more for area weights);
+// estimates (`estimateReach_`); and one more for each smoothing pass, the first of which reaches as far as
+// weights do. The estimates of all other rows are kept. Values between passes are not kept, so pass p of P
+// works on P - p more rows than it must, from which the later passes read. Work is done in whole slices of
+// rows.
 #include "mesh/live_mesh.h"
 
 #include <algorithm>
@@ -66,7 +67,8 @@ void LiveMesh::update(const VertexView& positions, const VertexView& normals, co
                       const PelVertexRange* changed, uint32_t numChanged) {
     MeshTopology& topology = *topology_;
     const std::unique_lock guard(mutex_);
-    stats_.launches = stats_.rowsEstimated = stats_.rowsSmoothed = stats_.rowsStored = stats_.bytesUploaded = 0;
+    stats_.launches = stats_.rowsEstimated = stats_.rowsSmoothed = stats_.rowsStored = stats_.bytesUploaded =
+        0;
     if (topology.vertices() == 0) return;
     std::vector<PelVertexRange> ranges;
     for (uint32_t i = 0; changed && i < numChanged; ++i)
@@ -81,7 +83,8 @@ void LiveMesh::update(const VertexView& positions, const VertexView& normals, co
     fresh_ = true;  // until everything is enqueued
     madeNormals_ = !normals.memory;
     target_ = curvature;
-    // Quadric: up to the three-ring. Otherwise the ring; normals that are made depend on the neighbours' rings.
+    // Quadric: up to the three-ring. Otherwise the ring; normals that are made depend on the neighbours'
+    // rings.
     estimateReach_ = params_.estimator == PEL_CURVATURE_QUADRIC ? 3 : madeNormals_ ? 2 : 1;
 
     const Scratch scratch = [&](MeshTopology::Scratch which, size_t bytes) -> const cl::Memory& {

@@ -21,8 +21,8 @@ struct MeshAdjacency {
 // No list depends on the order of a slot's corners.
 MeshAdjacency buildAdjacency(const CornerTable& table);
 
-// The same of a scattered table whose slots get new numbers first, so that neighbours get close ones. `numbers`: of each slot. They
-// do not depend on the order of the triangles.
+// The same of a scattered table whose slots get new numbers first, so that neighbours get close ones.
+// `numbers`: of each slot. They do not depend on the order of the triangles.
 MeshAdjacency buildRenumbered(const CornerTable& table, std::vector<uint32_t>& numbers);
 
 // The lists in the layout that shared/mesh.h describes.

@@ -12,7 +12,8 @@ namespace {
 // With fewer, a thread costs more than it saves.
 constexpr size_t leastTriangles = 32768;
 
-// Runs of slots whose corners fit into a second-level cache, but no more of them than a processor can write to side by side.
+// Runs of slots whose corners fit into a second-level cache, but no more of them than a processor can write
+// to side by side.
 class Buckets {
   public:
     explicit Buckets(uint32_t slots) {
@@ -56,7 +57,8 @@ void look(const Triangles& triangles, const Buckets& buckets, size_t begin, size
     }
 }
 
-// For few corners each finds its place by counting those before it: their order is random, and a branch on it is guessed wrong.
+// For few corners each finds its place by counting those before it: their order is random, and a branch on
+// it is guessed wrong.
 void sortByFrom(Corner* begin, Corner* end) {
     constexpr size_t few = 8;
     const auto count = size_t(end - begin);
@@ -77,7 +79,8 @@ void sortByFrom(Corner* begin, Corner* end) {
 // Sorts the corners of one bucket, a run of slots from `first` on.
 void sortBucket(const PlacedCorner* placed, size_t count, uint32_t* begins, size_t slots, size_t first,
                 size_t before, bool byFrom, Corner* out) {
-    // Counts of the next slot, so that the places that move on while corners are written end as the places where slots begin.
+    // Counts of the next slot, so that the places that move on while corners are written end as the places
+    // where slots begin.
     std::vector<uint32_t> places(slots + 1);
     for (size_t i = 0; i < count; ++i) ++places[placed[i].slot - first + 1];
     for (size_t s = 0; s < slots; ++s) places[s + 1] += places[s];
@@ -94,8 +97,9 @@ CornerTable sortCorners(const Triangles& triangles) {
              " triangles are more than a topology holds (715827882): split the mesh");
     const Buckets buckets(triangles.slots);
     std::vector<Seen> parts(partsOf(triangles.count, leastTriangles));
-    inParts(triangles.count, parts.size(),
-            [&](size_t part, size_t begin, size_t end) { look(triangles, buckets, begin, end, parts[part]); });
+    inParts(triangles.count, parts.size(), [&](size_t part, size_t begin, size_t end) {
+        look(triangles, buckets, begin, end, parts[part]);
+    });
 
     // Corners of a bucket lie together, those of the first part first.
     CornerTable table;
@@ -119,8 +123,8 @@ CornerTable sortCorners(const Triangles& triangles) {
                 if (part.vertices[v]) parts[0].vertices[v] = true;
     }
     table.unreferenced = uint32_t(std::count(parts[0].vertices.begin(), parts[0].vertices.end(), false));
-    // With fewer slots everything stays in the second-level cache. Random slots are a third of their number apart on average,
-    // those of a grid its root.
+    // With fewer slots everything stays in the second-level cache. Random slots are a third of their number
+    // apart on average, those of a grid its root.
     constexpr uint32_t fewSlots = 16384;
     table.scattered = triangles.slots >= fewSlots && corners > 0 &&
                       double(distance) / double(corners / 3) > triangles.slots / 16.0;

@@ -27,12 +27,13 @@ struct Triangles {
 
 // The corners of all triangles but degenerate ones, sorted by the slot that they are at.
 struct CornerTable {
-    LargeVector<uint32_t> begins;  // slots + 1: those of a slot are from begins[slot] to before begins[slot + 1]
+    LargeVector<uint32_t>
+        begins;  // slots + 1: those of a slot are from begins[slot] to before begins[slot + 1]
     LargeVector<Corner> corners;  // and RingBuilder::readAhead more
     uint32_t degenerate = 0;
     uint32_t unreferenced = 0;  // vertices without a triangle
-    // Whether neighbours are so far apart in memory that every access misses the caches. If so, the corners of a slot
-    // are sorted by `from`.
+    // Whether neighbours are so far apart in memory that every access misses the caches. If so, the corners
+    // of a slot are sorted by `from`.
     bool scattered = false;
 };
 CornerTable sortCorners(const Triangles& triangles);

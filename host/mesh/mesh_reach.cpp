@@ -54,7 +54,8 @@ MeshReach MeshReacher::reach(const std::vector<PelVertexRange>& changed, uint32_
         if (distance == farthest) break;
         next.clear();
         for (uint32_t slot : front)
-            for (uint32_t row = slices_[slot / PEL_MESH_LANES]; row < slices_[slot / PEL_MESH_LANES + 1]; ++row) {
+            for (uint32_t row = slices_[slot / PEL_MESH_LANES]; row < slices_[slot / PEL_MESH_LANES + 1];
+                 ++row) {
                 const uint32_t other =
                     rings_[size_t(row) * PEL_MESH_LANES + slot % PEL_MESH_LANES] & PEL_MESH_SLOT;
                 if (take(slotMarks_, other)) next.push_back(other);
@@ -62,7 +63,8 @@ MeshReach MeshReacher::reach(const std::vector<PelVertexRange>& changed, uint32_
         front.swap(next);
     }
     if (result.upTo.size() > stored) {
-        std::vector<uint32_t>& place = sliceMarks_;  // of each slice in the list; marks are not from a later round
+        std::vector<uint32_t>& place =
+            sliceMarks_;  // of each slice in the list; marks are not from a later round
         for (uint32_t i = 0; i < result.upTo[stored]; ++i) place[result.slices[i]] = i;
         result.lanes.resize(result.upTo[stored]);
         for (uint32_t slot : near)

@@ -9,7 +9,8 @@ namespace pel {
 struct MeshReach {
     std::vector<uint32_t> slices;
     std::vector<uint32_t> upTo;
-    std::vector<uint32_t> lanes;  // per slice of the first levels up to `stored`: bit i is set if its slot i is that near
+    std::vector<uint32_t>
+        lanes;  // per slice of the first levels up to `stored`: bit i is set if its slot i is that near
     uint64_t storedSlots = 0;
 };
 

@@ -41,7 +41,8 @@ void Renumbering::run() noexcept {
         number(first);
         for (; next < known_; ++next) {
             move(next);
-            // RingBuilder reads a few corners past a slot's own. So a block is ready only when enough corners follow it.
+            // RingBuilder reads a few corners past a slot's own. So a block is ready only when enough
+            // corners follow it.
             if (next - told < block || next % block != 0) continue;
             const uint32_t whole = next - block;
             if (written_ - moved.begins[whole] < RingBuilder::readAhead) continue;

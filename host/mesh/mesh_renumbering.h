@@ -35,7 +35,8 @@ class Renumbering {
     explicit Renumbering(const CornerTable& table);
     void run() noexcept;
 
-    // Filled by run(). Another thread may read the corners of as many slots as `ready` says meanwhile, and RingBuilder::readAhead more.
+    // Filled by run(). Another thread may read the corners of as many slots as `ready` says meanwhile, and
+    // RingBuilder::readAhead more.
     CornerTable moved;
     Written ready{0};
     std::vector<uint32_t> numbers;  // the new number of each slot, once all is done

@@ -38,7 +38,8 @@ RingBuilder::Edges RingBuilder::build(uint32_t slot, const Corner* corners, uint
             ++edges.all;
             edges.border += triangles == 1;
             edges.nonManifold += triangles > 2;
-            edges.inconsistent += triangles == 2 && ends_[node.next].backward == ends_[node.next + 1].backward;
+            edges.inconsistent +=
+                triangles == 2 && ends_[node.next].backward == ends_[node.next + 1].backward;
         }
         return edges;
     }
@@ -62,8 +63,8 @@ bool RingBuilder::buildSmallFan(const Corner* corners, uint32_t count, LargeVect
         for (uint32_t a = 0; a < smallFan; ++a) found |= corners[a].*end == slot ? bits[a] : 0;
         return found & valid;
     };
-    // Forwards from any corner until there is no next one, then backwards from it. A walk that takes each corner once has no two
-    // with the same `from` or `to`: one of them would be taken twice, or never.
+    // Forwards from any corner until there is no next one, then backwards from it. A walk that takes each
+    // corner once has no two with the same `from` or `to`: one of them would be taken twice, or never.
     const auto isOne = [](uint32_t found) { return (found & (found - 1)) == 0; };
     uint32_t walk[2 * smallFan], begin = smallFan, end = smallFan, taken = 1;
     walk[end++] = 0;

@@ -40,7 +40,8 @@ Diffusion planDiffusion(MeshTopology& topology, const SlotData& data, const PelC
                         const Scratch& scratch);
 
 // `weighed`: rows whose weights are computed.
-void smoothToRadius(MeshTopology& topology, const SlotData& data, const Diffusion& diffusion, SlotPlanes& values,
-                    const Scratch& scratch, const Rows& weighed = {}, const RowsOfPass& rows = {});
+void smoothToRadius(MeshTopology& topology, const SlotData& data, const Diffusion& diffusion,
+                    SlotPlanes& values, const Scratch& scratch, const Rows& weighed = {},
+                    const RowsOfPass& rows = {});
 
 }  // namespace pel

@@ -66,7 +66,8 @@ class MeshTopology final : public Object {
         float most = 0, middle = 0;
     };
     DiffusionRates diffusionRates[2];
-    // Starts, points and rounds of the two-rings (shared/mesh.h), made or queued; empty: not yet. Guarded by lock().
+    // Starts, points and rounds of the two-rings (shared/mesh.h), made or queued; empty: not yet. Guarded
+    // by lock().
     struct TwoRings {
         cl::Memory starts, points, rounds;
     } twoRings;

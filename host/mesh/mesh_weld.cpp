@@ -150,7 +150,8 @@ MeshWeld weldVertices(const PelMeshTopologyDesc& desc, const std::function<void(
         const Point p = positions[v];
         uint32_t first = CellTable::none;
         if (finite(p)) {
-            first = exact ? findExact(table, positions, p) : findNear(table, positions, p, desc.weldTolerance);
+            first =
+                exact ? findExact(table, positions, p) : findNear(table, positions, p, desc.weldTolerance);
             if (first == CellTable::none)
                 table.insert(exact ? exactCell(p) : gridCell(p, desc.weldTolerance), v);
         }

@@ -26,7 +26,8 @@ const MeshTopology::TwoRings& twoRings(MeshTopology& topology, const cl::Program
     MeshTopology::TwoRings& made = topology.twoRings;
     if (made.points) return made;
     Device& device = topology.device();
-    const size_t padded = (size_t(topology.slots()) + PEL_POINT_LANES - 1) / PEL_POINT_LANES * PEL_POINT_LANES;
+    const size_t padded =
+        (size_t(topology.slots()) + PEL_POINT_LANES - 1) / PEL_POINT_LANES * PEL_POINT_LANES;
     std::vector<uint32_t> counts(padded);
     const cl::Queue queue = device.anotherQueue();
     const cl::Memory links = device.allocate(std::max<size_t>(topology.ringEntries(), 1) * sizeof(uint32_t)),

@@ -22,7 +22,8 @@ VertexView checkedView(const PelVertexView* view, const char* name, const Device
         invalidArgument("`", name, "` has offset ", view->byteOffset, " and stride ", stride,
                         " bytes; both must be multiples of 4");
     if (stride < element)
-        invalidArgument("`", name, "` has stride ", stride, " bytes; its ", components, " floats need ", element);
+        invalidArgument("`", name, "` has stride ", stride, " bytes; its ", components, " floats need ",
+                        element);
     if (view->byteOffset / 4 > UINT32_MAX)
         fail(PEL_ERROR_UNSUPPORTED, "`", name, "` begins ", view->byteOffset,
              " bytes into its buffer; at most 16 GiB are supported");

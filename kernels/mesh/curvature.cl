@@ -1,11 +1,14 @@
 // Curvature at the vertices of a mesh and its uniform smoothing (mathematics, section 5).
 //
-// Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h). Results between passes:
-// planes of one float per slot, 1/length (lib/mesh/principal.clh), NaN if nothing could be measured. Such a
-// slot is left out of its neighbours' means, and the last pass writes 0 for it, so no NaN spreads or is
-// returned. One work-item: PEL_WIDTH slots (of plane get_global_id(1)); curvature_store:
-// one vertex of the caller. Variants: PEL_MESH_MAPPED 1: vertices find their slot in slotOf. PEL_MESH_STRIDE,
-// PEL_MESH_RUNS: lib/mesh/mesh_slots.clh. PEL_MESH_LISTED: lib/mesh/mesh_vertex.clh. PEL_MESH_PLANES, PEL_MESH_QUANTITY (a
+// Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h). Results between
+// passes: planes of one float per slot, 1/length (lib/mesh/principal.clh), NaN if nothing could be
+// measured. Such a slot is left out of its neighbours' means, and the last pass writes 0 for it, so no NaN
+// spreads or is returned.
+//
+// One work-item: PEL_WIDTH slots (of plane get_global_id(1)); curvature_store: one vertex of the caller.
+//
+// Variants: PEL_MESH_MAPPED 1: vertices find their slot in slotOf. PEL_MESH_STRIDE, PEL_MESH_RUNS:
+// lib/mesh/mesh_slots.clh. PEL_MESH_LISTED: lib/mesh/mesh_vertex.clh. PEL_MESH_PLANES, PEL_MESH_QUANTITY (a
 // PelCurvatureQuantity): what curvature_store reads and writes.
 
 #include "lib/mesh/mesh_ring.clh"
@@ -125,7 +128,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
     result += layout.offset;
 #if PEL_MESH_MAPPED
     for (uint m = memberOffsets[slot]; m < memberOffsets[slot + 1]; ++m)
-        storeQuantity(slot, planeStride, planes, estimated, scale, result + (size_t)members[m] * layout.stride);
+        storeQuantity(slot, planeStride, planes, estimated, scale,
+                      result + (size_t)members[m] * layout.stride);
 #else
     storeQuantity(slot, planeStride, planes, estimated, scale, result + (size_t)slot * layout.stride);
 #endif

@@ -2,14 +2,16 @@
 // a standard deviation of the radius (a Gaussian blur where the surface is flat). Twice the triangles give
 // the same answer.
 //
-// The Laplacian L is the cotangent one [Pinkall & Polthier 1993] over Voronoi areas. With DIFFUSE_AREA no weight is negative, and
-// the sum of value times area (a third of each triangle for each corner) is kept: negative cotangents become 0, which spreads too
-// much, and the others are lessened until the ring's second moment, the sum of weight times length^2, is again what all
-// cotangents together have: 4 Voronoi areas. Each edge takes the mean of its two ends' factors.
+// The Laplacian L is the cotangent one [Pinkall & Polthier 1993] over Voronoi areas. With DIFFUSE_AREA no
+// weight is negative, and the sum of value times area (a third of each triangle for each corner) is kept:
+// negative cotangents become 0, which spreads too much, and the others are lessened until the ring's second
+// moment, the sum of weight times length^2, is again what all cotangents together have: 4 Voronoi areas.
+// Each edge takes the mean of its two ends' factors.
 //
-// What is left after a time, exp(time L), is summed up in Chebyshev polynomials of L [Tal-Ezer, Spectral Methods in Time for
-// Parabolic Problems, SIAM J. Numer. Anal. 26, 1989]: one stage each, their number grows with radius / edge, not with its
-// square, and what is left out is below 2e-4. Coefficients: host/mesh/mesh_diffusion.cpp.
+// What is left after a time, exp(time L), is summed up in Chebyshev polynomials of L [Tal-Ezer, Spectral
+// Methods in Time for Parabolic Problems, SIAM J. Numer. Anal. 26, 1989]: one stage each, their number
+// grows with radius / edge, not with its square, and what is left out is below 2e-4. Coefficients:
+// host/mesh/mesh_diffusion.cpp.
 //
 // Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h); planes as in
 // curvature.cl. One work-item: PEL_WIDTH slots (of plane get_global_id(1) in diffuse_stage). Variants:
@@ -17,10 +19,11 @@
 
 #include "lib/mesh/mesh_triangle.clh"
 
-// Writes, for each entry of the rings, weight / area / limit, so that a stage needs nothing else; and the slot's rate, the sum
-// of weight / area, 1/length^2. A slot whose rate exceeds the limit is slowed down to it, which keeps every stage stable on
-// slivers. With DIFFUSE_AREA weights are not limited here, and `rates` is the slot's factor for diffuse_balance. crease2: square of the change of normal at which weights
-// fall to 1/e; 0: none do.
+// Writes, for each entry of the rings, weight / area / limit, so that a stage needs nothing else; and the
+// slot's rate, the sum of weight / area, 1/length^2. A slot whose rate exceeds the limit is slowed down to
+// it, which keeps every stage stable on slivers. With DIFFUSE_AREA weights are not limited here, and
+// `rates` is the slot's factor for diffuse_balance. crease2: square of the change of normal at which
+// weights fall to 1/e; 0: none do.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffuse_weights(
     uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict slices,
     __global const uint* restrict rings, __global const uint* restrict runs,
@@ -121,8 +124,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffus
 }
 
 #if DIFFUSE_AREA
-// Multiplies each weight by the mean of the factors of its edge's ends, alike from both, so that nothing is lost between them. Writes
-// the slot's rate.
+// Multiplies each weight by the mean of the factors of the two ends of its edge. Both ends compute the same
+// weight, so the sum of values is conserved. Writes the slot's rate.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffuse_balance(
     uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict slices,
     __global const uint* restrict rings, __global const uint* restrict runs, __global float* weights,
@@ -142,7 +145,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffus
     storew(rate, first, rates);
 }
 
-// Slows an edge down as the faster one of its ends asks for: alike from both, so that nothing is lost between them.
+// Scales the weight of an edge down to the stable rate of its faster end. Both ends compute the same
+// weight, so the sum of values is conserved.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffuse_limit(
     uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict slices,
     __global const uint* restrict rings, __global const uint* restrict runs, float limit,
@@ -160,8 +164,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffus
 }
 #endif
 
-// next = gain (current + L current / limit) - before, where gain is 2, or 1 for the first stage, which has nothing before;
-// sum += coefficient next, where the first stage begins with `begin` current. next may be before.
+// next = gain (current + L current / limit) - before, with gain 2. The first stage has gain 1 and no
+// `before`. sum += coefficient next; the first stage starts with sum = begin current. `next` and `before`
+// may be the same memory.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffuse_stage(
     uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict slices,
     __global const uint* restrict rings, __global const uint* restrict runs,

@@ -1,9 +1,9 @@
-// Curvature by a local polynomial through the two-ring of each slot (mathematics, section 5): heights over the tangent
-// plane of the given normal, fitted by least squares with slope, quadratic and cubic terms. The slope
-// corrects the normal. The cubic terms absorb what would otherwise disturb the quadratic ones on irregular
-// meshes, and are not used further. Only positions are measured: the normal says which direction is up. A
-// normal that is far off the normals of its ring, as where noise folded a sliver over, is replaced by their
-// mean.
+// Curvature by a local polynomial through the two-ring of each slot (mathematics, section 5): heights over
+// the tangent plane of the given normal, fitted by least squares with slope, quadratic and cubic terms. The
+// slope corrects the normal. The cubic terms absorb what would otherwise disturb the quadratic ones on
+// irregular meshes, and are not used further. Only positions are measured: the normal says which direction
+// is up. A normal that differs much from the normals of its ring, for example where noise has folded a sliver
+// over, is replaced by their mean.
 //
 // Heights are bent first: q becomes q r^2 / (r^2 + q^2), r being the distance along the plane. A circle
 // through the slot that touches the plane, q = k (r^2 + q^2) / 2, then becomes exactly the parabola k r^2 /
@@ -11,24 +11,26 @@
 // quadratic ones, the more, the longer the cells are. The plane must touch the surface for that: the slope of
 // the ring, unless it is small, is taken off first, and the bending fades out where the ring is still steep.
 //
-// The two-ring is a list, made once from the rings of the ring (two_ring.cl). Where those are closed, their walks begin after the
-// slot's own neighbours and leave out the last vertex, with which the next walk begins, so each vertex of the
-// two-ring counts once. Some count several times: at borders; where triangles are not consistently oriented;
-// and the one vertex behind a neighbour with four neighbours, which is kept although the next walk begins
-// with it (on meshes of four and eight neighbours that takes up to a sixth off the error).
+// The two-ring is a list, made once from the rings of the ring (two_ring.cl). Where those are closed, their
+// walks begin after the slot's own neighbours and leave out the last vertex, with which the next walk
+// begins, so each vertex of the two-ring counts once. Some count several times: at borders; where triangles
+// are not consistently oriented; and the one vertex behind a neighbour with four neighbours, which is kept
+// although the next walk begins with it (on meshes of four and eight neighbours that takes up to a sixth
+// off the error).
 //
 // The fit's coordinates come from the second moments of the two-ring, so that slivers fit as well as other
 // triangles, and a ring that is small among larger triangles still has points that determine nine numbers.
 //
-// Of a ring with many neighbours (the hub of a fan, for a vertex on its rim) only the nearest on either side are
-// in the list. A slot of at most four neighbours with few points takes the three-ring as well (two_ring.cl).
+// Of a ring with many neighbours (the hub of a fan, for a vertex on its rim) only the nearest on either
+// side are in the list. A slot of at most four neighbours with few points takes the three-ring as well
+// (two_ring.cl).
 //
-// A ridge determines what the points leave undetermined (fewer than nine points, or all on a line), towards a
-// quadric and then a plane. A term whose pivot is lost to rounding is dropped. The result is always finite. Such
-// slots are counted.
+// A ridge determines what the points leave undetermined (fewer than nine points, or all on a line), towards
+// a quadric and then a plane. A term whose pivot is lost to rounding is dropped. The result is always
+// finite. Such slots are counted.
 //
-// Inputs: position (length) and unit normal of each slot, one-rings, and points of the two-ring (shared/mesh.h).
-// Output: lib/mesh/principal.clh; counts->lowDegreeFits, where counts is not NULL.
+// Inputs: position (length) and unit normal of each slot, one-rings, and points of the two-ring
+// (shared/mesh.h). Output: lib/mesh/principal.clh; counts->lowDegreeFits, where counts is not NULL.
 //
 // One work-item: PEL_WIDTH slots, 16 of them too.
 //
@@ -103,7 +105,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
         for (int i = 0; i < TERMS; ++i) residual[i] = -ridgeOf(&solved, &chart, i) * solved.right[i];
         for (uint row = list.row; row < list.end; ++row) {
             const Slots at = pointsAt(&list, row, points);
-            addResidual(residual, &solved, locate(at, spread & (at.each != list.self.each), &chart, positions));
+            addResidual(residual, &solved,
+                        locate(at, spread & (at.each != list.self.each), &chart, positions));
         }
         substitute(&solved, residual);
 #pragma unroll

@@ -4,9 +4,13 @@
 // of the triangle's area that lies nearest to the slot.
 //
 // Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h). Output:
-// lib/mesh/principal.clh. One work-item: PEL_WIDTH slots. Each triangle is solved once for each of its
-// corners: three times the arithmetic, but no memory traffic, no second pass and no atomic sums.
-// Variants: PEL_MESH_STRIDE, PEL_MESH_RUNS (lib/mesh/mesh_slots.clh), PEL_MESH_PLANES (lib/mesh/principal.clh).
+// lib/mesh/principal.clh.
+//
+// One work-item: PEL_WIDTH slots. Each triangle is solved once for each of its corners: three times the
+// arithmetic, but no memory traffic, no second pass and no atomic sums.
+//
+// Variants: PEL_MESH_STRIDE, PEL_MESH_RUNS (lib/mesh/mesh_slots.clh), PEL_MESH_PLANES
+// (lib/mesh/principal.clh).
 
 #include "lib/mesh/mesh_frame.clh"
 #include "lib/mesh/mesh_triangle.clh"
@@ -17,9 +21,9 @@ typedef struct Corner {
     maskw usable;
 } Corner;
 
-static inline __attribute__((always_inline)) Corner corner_load(Slots slots, uint last, Vec3w origin,
-                                                                __global const float* positions,
-                                                                __global const float* normals) {
+static inline __attribute__((always_inline)) Corner loadCorner(Slots slots, uint last, Vec3w origin,
+                                                               __global const float* positions,
+                                                               __global const float* normals) {
     Corner c;
     Vec3w p;
     gather3(positions, last, slots, &p.x, &p.y, &p.z);
@@ -43,8 +47,8 @@ typedef struct Form {
 } Form;
 
 // Adds triangle (slot, a, b), whose corners' order does not matter.
-static inline __attribute__((always_inline)) void add_triangle(Form* form, Vec3w n, Vec3w u, Vec3w v,
-                                                               Corner a, Corner b, maskw mask, floatw scale) {
+static inline __attribute__((always_inline)) void addTriangle(Form* form, Vec3w n, Vec3w u, Vec3w v, Corner a,
+                                                              Corner b, maskw mask, floatw scale) {
     // In units of about the ring's size, so that products of lengths stay in the range of float.
     const Vec3w ea = scale3(a.offset, scale), eb = scale3(b.offset, scale);
     const Vec3w across = cross3(ea, eb);
@@ -115,15 +119,15 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
     RingWalk walk = {0, 0};
     for (; ring.row < ring.behind; ++ring.row) {
         const RingStep step = ringStep(&ring, &walk, rings, runs);
-        const Corner current = corner_load(step.entry.slots, ring.last, frame.origin, positions, normals);
+        const Corner current = loadCorner(step.entry.slots, ring.last, frame.origin, positions, normals);
         const floatw length2 = dot3(current.offset, current.offset);
         scale = selectw(scale, 1.0f / sqrt(length2),
                         !(scale > 0.0f) & (length2 >= PEL_MESH_MIN_LENGTH2) & finitew(length2));
         // Inside a walk: the triangle to the neighbour before. At its end: the one back to its start, if it
         // is closed.
         if (anyw(step.triangle))
-            add_triangle(&form, n, u, v, previous, cornerSelect(current, start, step.ends),
-                         step.triangle & sound, scale);
+            addTriangle(&form, n, u, v, previous, cornerSelect(current, start, step.ends),
+                        step.triangle & sound, scale);
         start = cornerSelect(start, current, step.starts);
         previous = current;
     }

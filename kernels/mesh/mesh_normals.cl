@@ -6,15 +6,16 @@
 //
 // One work-item: PEL_WIDTH slots (mesh_normals), one vertex of the caller (mesh_normals_store).
 //
-// Variants: PEL_MESH_STRIDE (also of the output), PEL_MESH_RUNS (lib/mesh/mesh_slots.clh); PEL_MESH_MAPPED 1: vertices find their slot in
-// slotOf.
+// Variants: PEL_MESH_STRIDE (also of the output), PEL_MESH_RUNS (lib/mesh/mesh_slots.clh); PEL_MESH_MAPPED
+// 1: vertices find their slot in slotOf.
 
 #include "lib/mesh/mesh_triangle.clh"
 
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_normals(
     uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict slices,
     __global const uint* restrict rings, __global const uint* restrict runs,
-    __global const float* restrict positions, uint positionOffset, __global float* normals, uint normalOffset) {
+    __global const float* restrict positions, uint positionOffset, __global float* normals,
+    uint normalOffset) {
     const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     RingCursor ring = ringBegin(first, slots, slices);

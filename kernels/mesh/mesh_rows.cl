@@ -16,8 +16,9 @@
 
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_rows(
     uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict memberOffsets,
-    __global const uint* restrict members, __global const float* restrict positions, VertexLayout positionLayout,
-    __global const float* restrict normals, VertexLayout normalLayout, __global float* rows) {
+    __global const uint* restrict members, __global const float* restrict positions,
+    VertexLayout positionLayout, __global const float* restrict normals, VertexLayout normalLayout,
+    __global float* rows) {
     const uint slot = meshSlot(get_global_id(0), slots, listed, list);
     if (slot >= slots) return;
 #if PEL_MESH_MAPPED

@@ -1,13 +1,15 @@
-// The points of each slot as a list (shared/mesh.h): its two-ring, and for some slots its three-ring. The quadric
-// estimator reads this list instead of walking the rings of a ring. The lists depend on the topology only and are
-// made once, in three stages of one kernel, because each kernel takes a CPU's compiler a tenth of a second.
+// The points of each slot as a list (shared/mesh.h): its two-ring, and for some slots its three-ring. The
+// quadric estimator reads this list instead of walking the rings of a ring. The lists depend on the
+// topology only and are made once, in three stages of one kernel, because each kernel takes a CPU's
+// compiler a tenth of a second.
 //
-// PEL_TWO_RING_LINK finds the place of each slot in its neighbours' rings. Inputs: one-rings. Outputs: links,
-// parallel to the entries of the rings: the row, counted from the first of its slice, of this slot in the ring of
-// that neighbour (the last one if there are several; 0 for fillers); rounds (shared/mesh.h).
-// Each edge is looked up in the shorter one of its two rings, by the slot that has the longer one: the hub of
-// a fan has as many neighbours as the fan has triangles.
-// PEL_TWO_RING_COUNT writes how many points each slot has, PEL_TWO_RING_LIST the points.
+// PEL_TWO_RING_LINK finds the place of each slot in its neighbours' rings. Inputs: one-rings. Outputs:
+// links, parallel to the entries of the rings: the row, counted from the first of its slice, of this slot
+// in the ring of that neighbour (the last one if there are several; 0 for fillers); rounds (shared/mesh.h).
+// Each edge is looked up in the shorter one of its two rings, by the slot that has the longer one: the hub
+// of a fan has as many neighbours as the fan has triangles.
+//
+// PEL_TWO_RING_COUNT writes the number of points of each slot, PEL_TWO_RING_LIST the points.
 //
 // One work-item: one slot. Variants: none.
 
@@ -33,8 +35,8 @@ static inline uint listLength(__global const uint* slices, __global const uint* 
     return length;
 }
 
-// The part of a neighbour's ring that is listed: `count` steps from row `from` on. Three rows before step `middle`
-// are skipped.
+// The part of a neighbour's ring that is listed: `count` steps from row `from` on. Three rows before step
+// `middle` are skipped.
 typedef struct Steps {
     uint length, from, middle, count;
 } Steps;

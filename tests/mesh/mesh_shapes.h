@@ -36,8 +36,8 @@ inline Mesh torus(uint32_t rings, uint32_t sides, double a = 3, double b = 1) {
     return mesh;
 }
 
-// Rings of latitude round the z axis, closed by a vertex at each pole, which comes first and last: near the poles
-// triangles are slivers.
+// Rings of latitude round the z axis, closed by a vertex at each pole, which comes first and last: near the
+// poles triangles are slivers.
 inline Mesh latLongSphere(uint32_t rings, uint32_t columns, double radius) {
     Mesh mesh;
     const double pi = 3.14159265358979323846;

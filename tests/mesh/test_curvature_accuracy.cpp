@@ -15,7 +15,8 @@ namespace {
 
 constexpr PelCurvatureEstimator estimators[] = {PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC};
 
-PelCurvatureParams paramsOf(PelCurvatureEstimator estimator, PelCurvatureQuantity quantity, uint32_t passes = 0) {
+PelCurvatureParams paramsOf(PelCurvatureEstimator estimator, PelCurvatureQuantity quantity,
+                            uint32_t passes = 0) {
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     params.estimator = estimator;
     params.quantity = quantity;
@@ -81,7 +82,8 @@ TEST(CurvatureTensor, EqualsTheOracle) {
                     expected.push_back(c.first);
                     expected.push_back(c.second);
                 }
-                EXPECT_LE(relativeError(principal(pair.mesh, PEL_CURVATURE_TENSOR), expected), tolerance::tensorCurvature)
+                EXPECT_LE(relativeError(principal(pair.mesh, PEL_CURVATURE_TENSOR), expected),
+                          tolerance::tensorCurvature)
                     << name << " " << int(kind) << " " << noisy;
             }
 }
@@ -94,7 +96,8 @@ TEST(CurvatureAccuracy, IrregularTorus) {
     for (bool exactNormals : {true, false})
         EXPECT_LE(torusError(100, Tessellation::irregular, exactNormals, PEL_CURVATURE_QUADRIC),
                   tolerance::torusQuadric);
-    EXPECT_LE(torusError(140, Tessellation::irregular, true, PEL_CURVATURE_TENSOR), tolerance::torusExactNormals);
+    EXPECT_LE(torusError(140, Tessellation::irregular, true, PEL_CURVATURE_TENSOR),
+              tolerance::torusExactNormals);
 }
 
 TEST(CurvatureAccuracy, ConvergesUnderRefinement) {
@@ -130,7 +133,8 @@ TEST(CurvatureAccuracy, EverySurface) {
 }
 
 TEST(CurvatureAccuracy, SliversAtThePolesOfASphere) {
-    // At a pole the coordinates of the fit are as wide as long, and the wide circle round it is not part of its neighbourhood.
+    // At a pole the coordinates of the fit are as wide as long, and the wide circle round it is not part of
+    // its neighbourhood.
     for (double radius : {1.0, 1e-6, 1e6}) {
         const Mesh mesh = latLongSphere(200, 400, radius);
         const std::vector<float> k = principal(mesh, PEL_CURVATURE_QUADRIC);
@@ -141,7 +145,8 @@ TEST(CurvatureAccuracy, SliversAtThePolesOfASphere) {
 }
 
 TEST(CurvatureAccuracy, LongCellsOfASphere) {
-    // Cells up to 16 times longer than wide. What bends along them in fourth order must not count as bending across.
+    // Cells up to 16 times longer than wide. What bends along them in fourth order must not count as
+    // bending across.
     const std::vector<float> k = principal(latLongSphere(400, 50, 1), PEL_CURVATURE_QUADRIC);
     double worst = 0;
     for (float value : k) worst = std::max(worst, std::abs(value - 1.0));
@@ -164,9 +169,11 @@ TEST(CurvatureAccuracy, TiltedNormalsOnlySayWhichWayIsUp) {
 }
 
 TEST(CurvatureAccuracy, NormalsOfAMeshWithFoldedTriangles) {
-    // The jitter folds some triangles; normals made from them are off by tens of degrees, however fine the mesh.
+    // The jitter folds some triangles; normals made from them are off by tens of degrees, however fine the
+    // mesh.
     const std::pair<const char*, reference::Surface> surfaces[] = {
-        {"cone", reference::coneSurface(0.5236, 1, 4)}, {"ellipsoid", reference::ellipsoidSurface(3, 2, 1.5)}};
+        {"cone", reference::coneSurface(0.5236, 1, 4)},
+        {"ellipsoid", reference::ellipsoidSurface(3, 2, 1.5)}};
     for (const auto& [name, surface] : surfaces) {
         AnalyticMesh mesh = tessellate(surface, 120, 80, Tessellation::irregular);
         mesh.mesh.normals = reference::estimatedNormals(mesh.mesh);
@@ -201,8 +208,8 @@ TEST(CurvatureAccuracy, ANormalInItsOwnPlaneIsReplaced) {
 
 namespace {
 
-// Noise of 2 % of an edge, smoothed to three edges: RMS error of mean curvature over the RMS curvedness of the truth, away
-// from the border and in its outermost two rows.
+// Noise of 2 % of an edge, smoothed to three edges: RMS error of mean curvature over the RMS curvedness of
+// the truth, away from the border and in its outermost two rows.
 std::pair<double, double> noisyErrors(const reference::Surface& surface) {
     AnalyticMesh noisy = tessellate(surface, 140, 140, Tessellation::irregular);
     addNoise(noisy.mesh, 0.02, 11);
@@ -267,7 +274,8 @@ TEST(CurvatureAccuracy, DoesNotDependOnTheUnitOfLength) {
 TEST(CurvatureAccuracy, FarFromTheOriginOnlyTheRoundingOfPositionsShows) {
     // Positions that float holds exactly both near and far: moving them must change nothing at all.
     Mesh mesh =
-        pairOf(tessellate(reference::torusSurface(3, 1), sized(48, 9), sized(24, 7), Tessellation::irregular).mesh)
+        pairOf(tessellate(reference::torusSurface(3, 1), sized(48, 9), sized(24, 7), Tessellation::irregular)
+                   .mesh)
             .mesh;
     for (float& x : mesh.positions) x = std::round(x * 4096) / 4096;
     Mesh far = mesh;
@@ -285,7 +293,8 @@ TEST(CurvatureAccuracy, FarFromTheOriginOnlyTheRoundingOfPositionsShows) {
 
 TEST(CurvatureQuantities, AreWhatTheyAreOfThePrincipalOnes) {
     const Mesh mesh =
-        pairOf(tessellate(reference::torusSurface(3, 1), sized(40, 9), sized(30, 7), Tessellation::irregular).mesh)
+        pairOf(tessellate(reference::torusSurface(3, 1), sized(40, 9), sized(30, 7), Tessellation::irregular)
+                   .mesh)
             .mesh;
     for (auto estimator : estimators)
         for (uint32_t passes : {0u, 2u}) {
@@ -314,7 +323,8 @@ TEST(CurvatureQuantities, AreWhatTheyAreOfThePrincipalOnes) {
 
 TEST(CurvatureQuantities, ScaleMultipliesCurvatureAndGaussianTwice) {
     const Mesh mesh = torus(24, 16);
-    for (auto [quantity, factor] : {std::pair(PEL_QUANTITY_MEAN, 4.0f), std::pair(PEL_QUANTITY_GAUSSIAN, 16.0f)}) {
+    for (auto [quantity, factor] :
+         {std::pair(PEL_QUANTITY_MEAN, 4.0f), std::pair(PEL_QUANTITY_GAUSSIAN, 16.0f)}) {
         PelCurvatureParams params = paramsOf(PEL_CURVATURE_TENSOR, quantity);
         const auto one = curvature(mesh, topologyDesc(mesh), params).values;
         params.scale = 4;
@@ -324,7 +334,8 @@ TEST(CurvatureQuantities, ScaleMultipliesCurvatureAndGaussianTwice) {
 }
 
 TEST(CurvatureQuantities, DirectionsOfACylinder) {
-    const AnalyticMesh cylinder = tessellate(reference::cylinderSurface(2, 6), 60, 30, Tessellation::irregular);
+    const AnalyticMesh cylinder =
+        tessellate(reference::cylinderSurface(2, 6), 60, 30, Tessellation::irregular);
     const Mesh mesh = pairOf(cylinder.mesh).mesh;
     const std::vector<bool> skip = onBorder(mesh, 2);
     for (auto estimator : estimators) {
@@ -339,7 +350,8 @@ TEST(CurvatureQuantities, DirectionsOfACylinder) {
             EXPECT_NEAR(f[2] * f[5] + f[3] * f[6] + f[4] * f[7], 0, tolerance::direction);
             // The second direction is the axis, the first goes round. Whichever coordinate the axis is, the
             // normal has none of it.
-            const double axis = std::abs(f[5 + 2]), across = std::abs(f[2] * n[0] + f[3] * n[1] + f[4] * n[2]);
+            const double axis = std::abs(f[5 + 2]),
+                         across = std::abs(f[2] * n[0] + f[3] * n[1] + f[4] * n[2]);
             EXPECT_GT(axis, 1 - tolerance::directionIrregular) << v;
             EXPECT_LT(across, tolerance::directionIrregular) << v;
         }
@@ -348,7 +360,8 @@ TEST(CurvatureQuantities, DirectionsOfACylinder) {
 
 TEST(CurvatureEstimators, ComeOutTheSameBitForBit) {
     const Mesh mesh =
-        pairOf(tessellate(reference::torusSurface(3, 1), sized(60, 9), sized(40, 7), Tessellation::irregular).mesh)
+        pairOf(tessellate(reference::torusSurface(3, 1), sized(60, 9), sized(40, 7), Tessellation::irregular)
+                   .mesh)
             .mesh;
     for (auto estimator : estimators) {
         const std::vector<float> base = principal(mesh, estimator, 1);

@@ -1,5 +1,5 @@
 // Smoothing to a radius against what the heat equation says: the heat kernel of the plane, harmonics of the
-// sphere, the conservation of mass.
+// sphere, the conservation of the sum of values.
 #include <algorithm>
 #include <random>
 
@@ -95,7 +95,8 @@ TEST(CurvatureHeat, APointSpreadsAsTheHeatKernelOfThePlane) {
 }
 
 TEST(CurvatureHeat, IrregularLatticesSpreadAsFarAsRegularOnes) {
-    // Vertices moved within the plane by up to `jitter` of an edge; the variance that a point has gained, along both axes.
+    // Vertices moved within the plane by up to `jitter` of an edge; the variance that a point has gained,
+    // along both axes.
     for (float jitter : {0.2f, 0.3f, 0.4f})
         for (auto weights : bothWeights) {
             const int half = 32;
@@ -113,7 +114,8 @@ TEST(CurvatureHeat, IrregularLatticesSpreadAsFarAsRegularOnes) {
                 for (size_t v = 0; v < values.size(); ++v) {
                     const double m = areas[v] * values[v], x = mesh.positions[3 * v],
                                  y = mesh.positions[3 * v + 1];
-                    sums[0] += m, sums[1] += m * x, sums[2] += m * x * x, sums[3] += m * y, sums[4] += m * y * y;
+                    sums[0] += m, sums[1] += m * x, sums[2] += m * x * x, sums[3] += m * y,
+                        sums[4] += m * y * y;
                 }
                 const double x = sums[1] / sums[0], y = sums[3] / sums[0];
                 return std::pair(sums[2] / sums[0] - x * x, sums[4] / sums[0] - y * y);
@@ -132,14 +134,14 @@ TEST(CurvatureHeat, AreaWeightsKeepMass) {
     addNoise(exact, 0.1, 3);
     const Mesh mesh = pairOf(exact).mesh;
     const std::vector<double> areas = areasOf(mesh);
-    const auto mass = [&](const std::vector<float>& values) {
+    const auto total = [&](const std::vector<float>& values) {
         double sum = 0;
         for (size_t v = 0; v < values.size(); ++v) sum += areas[v] * values[v];
         return sum;
     };
-    const double before = mass(run(mesh, 0, PEL_SMOOTHING_AREA));
+    const double before = total(run(mesh, 0, PEL_SMOOTHING_AREA));
     for (float radius : {0.02f, 0.1f, 0.4f})
-        EXPECT_NEAR(mass(run(mesh, radius, PEL_SMOOTHING_AREA)) / before, 1, tolerance::heatMass) << radius;
+        EXPECT_NEAR(total(run(mesh, radius, PEL_SMOOTHING_AREA)) / before, 1, tolerance::heatMass) << radius;
 }
 
 TEST(CurvatureHeat, HarmonicsOfASphereDecay) {

@@ -41,7 +41,8 @@ TEST(CurvatureOracle, EdgeAndSmoothingFromNoneToEightPasses) {
             if (name.starts_with("plane"))
                 EXPECT_EQ(actual, std::vector<float>(expected.size())) << name;
             else
-                EXPECT_LE(relativeError(actual, expected), tolerance::edgeCurvature) << name << ", " << passes;
+                EXPECT_LE(relativeError(actual, expected), tolerance::edgeCurvature)
+                    << name << ", " << passes;
         }
 }
 

@@ -104,7 +104,8 @@ std::vector<std::pair<std::string, reference::Mesh>> meshes() {
     add("cone, open", coneSurface(0.5, 1, 4), irregular, 200);
     add("cylinder, open", cylinderSurface(2, 6), valenceVarying);
     all.emplace_back("ball", icosphere(1, 1.5, 2, sized(3, 1)).mesh);
-    all.emplace_back("noisy torus", tessellate(torusSurface(3, 1), sized(40, 12), sized(20, 8), irregular).mesh);
+    all.emplace_back("noisy torus",
+                     tessellate(torusSurface(3, 1), sized(40, 12), sized(20, 8), irregular).mesh);
     orient(all.back().second);
     addNoise(all.back().second, 0.05, 5);
     const FlatMesh scattered = delaunay(uniformPoints(sized(600, 120), 3)),
@@ -203,18 +204,20 @@ TEST(CurvatureQuadricOracle, AllQuantities) {
     EXPECT_GT(lowOfAll, 50u);
 }
 
-// Neither does a result depend on where the tangent frame's axes point: the ridge that decides at borders weighs all
-// directions alike.
+// Neither does a result depend on where the tangent frame's axes point: the ridge that decides at borders
+// weighs all directions alike.
 TEST(CurvatureQuadricOracle, TurnedMeshesCurveAlike) {
     const double axis[3] = {1 / std::sqrt(14.0), 2 / std::sqrt(14.0), 3 / std::sqrt(14.0)}, c = std::cos(0.9),
                  s = std::sin(0.9);
     const auto turn = [&](std::vector<float>& vectors) {
         for (size_t i = 0; i < vectors.size(); i += 3) {
             float* v = &vectors[i];
-            const double along = axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2], old[3] = {v[0], v[1], v[2]};
+            const double along = axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2],
+                         old[3] = {v[0], v[1], v[2]};
             for (int k = 0; k < 3; ++k) {
                 const int l = (k + 1) % 3, m = (k + 2) % 3;
-                v[k] = float(c * old[k] + s * (axis[l] * old[m] - axis[m] * old[l]) + (1 - c) * along * axis[k]);
+                v[k] =
+                    float(c * old[k] + s * (axis[l] * old[m] - axis[m] * old[l]) + (1 - c) * along * axis[k]);
             }
         }
     };

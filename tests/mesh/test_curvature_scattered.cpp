@@ -60,7 +60,8 @@ void expectAccurate(const char* name, const FlatMesh& flat, bool alsoMade = true
             if (made) mesh.mesh.normals = estimatedNormals(mesh.mesh);
             const Errors errors = errorsOf(mesh, 0, &flat);
             EXPECT_LE(errors.rms, tolerance::scatteredRms) << name << ", " << surface << ", made " << made;
-            EXPECT_LE(errors.worst, tolerance::scatteredWorst) << name << ", " << surface << ", made " << made;
+            EXPECT_LE(errors.worst, tolerance::scatteredWorst)
+                << name << ", " << surface << ", made " << made;
         }
 }
 
@@ -102,13 +103,14 @@ TEST(CurvatureScattered, FitsOfLowerDegreeAreCounted) {
     fixture::Mesh closed = torus(60, 40);
     EXPECT_EQ(curvature(closed, topologyDesc(closed), meanParams(PEL_CURVATURE_QUADRIC)).report.lowDegreeFits,
               0u);
-    // Eight triangles: no vertex has nine points. With made normals, and once more, to see that the counts begin at 0.
+    // Eight triangles: no vertex has nine points. Measured twice, because each count must begin at 0.
     closed.positions = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
     closed.normals = closed.positions;
     closed.indices = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
     for (int again = 0; again < 2; ++again)
         EXPECT_EQ(
-            curvature(closed, topologyDesc(closed), meanParams(PEL_CURVATURE_QUADRIC)).report.lowDegreeFits, 6u);
+            curvature(closed, topologyDesc(closed), meanParams(PEL_CURVATURE_QUADRIC)).report.lowDegreeFits,
+            6u);
     for (auto other : {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR})
         EXPECT_EQ(curvature(closed, topologyDesc(closed), meanParams(other)).report.lowDegreeFits, 0u);
     // Vertices that were split are one position.
@@ -116,19 +118,21 @@ TEST(CurvatureScattered, FitsOfLowerDegreeAreCounted) {
     closed.positions.insert(closed.positions.end(), whole.positions.begin(), whole.positions.end());
     closed.normals.insert(closed.normals.end(), whole.normals.begin(), whole.normals.end());
     for (size_t i = 12; i < 24; ++i) closed.indices[i] += 6;
-    EXPECT_EQ(curvature(closed, weldedDesc(closed), meanParams(PEL_CURVATURE_QUADRIC)).report.lowDegreeFits, 6u);
+    EXPECT_EQ(curvature(closed, weldedDesc(closed), meanParams(PEL_CURVATURE_QUADRIC)).report.lowDegreeFits,
+              6u);
     // The points of a strip lie on two curves, which leaves the bending across it undetermined.
     EXPECT_EQ(low(flatGrid(24, 1)), 50u);
     EXPECT_LT(low(flatGrid(24, 24)), 50u);
 }
 
 TEST(CurvatureScattered, TheDefaultIsNearTheTruth) {
-    // Two passes take a value from where its neighbours stand in the mean, which on random triangles is elsewhere: all that they add
-    // to an estimate's own error, measured against the surface itself. Docs: guide/curvature.md, "Accuracy".
-    const std::pair<const char*, FlatMesh> meshes[] = {{"Delaunay", delaunay(uniformPoints(20000, 1))},
-                                                       {"Poisson disks", delaunay(poissonDiskPoints(20000, 1))},
-                                                       {"poked", poked(flatGrid(140, 140), 0.2, 2, 3)},
-                                                       {"red and green", redGreen(flatGrid(90, 90), 0.3, 1)}};
+    // The error of the default, two uniform passes, against the surface itself. On random triangles the mean
+    // position of the neighbours is not that of the vertex, so that the passes add an error of their own.
+    const std::pair<const char*, FlatMesh> meshes[] = {
+        {"Delaunay", delaunay(uniformPoints(20000, 1))},
+        {"Poisson disks", delaunay(poissonDiskPoints(20000, 1))},
+        {"poked", poked(flatGrid(140, 140), 0.2, 2, 3)},
+        {"red and green", redGreen(flatGrid(90, 90), 0.3, 1)}};
     for (const auto& [name, flat] : meshes)
         for (const auto& [surface, shape] : surfaces) {
             const Errors errors = errorsOf(lifted(flat, shape), 2, &flat);
@@ -138,8 +142,9 @@ TEST(CurvatureScattered, TheDefaultIsNearTheTruth) {
 }
 
 TEST(CurvatureScattered, UniformPassesMoveValuesByWhatTheyMustOnly) {
-    // Two passes take a value from where its neighbours stand in the mean; on random triangles that is not
-    // where the vertex stands. The truth is smoothed in the same way; compared with that, they may add next to nothing.
+    // A pass moves a value to the mean position of the neighbours, which on random triangles is not
+    // where the vertex stands. The truth is smoothed in the same way; compared with that, they may add next
+    // to nothing.
     const FlatMesh flat = delaunay(uniformPoints(20000, 1));
     for (const auto& [surface, shape] : surfaces) {
         AnalyticMesh mesh = lifted(flat, shape);
@@ -170,8 +175,8 @@ TEST(CurvatureScattered, SlenderCellsOfATorus) {
 }
 
 TEST(CurvatureHub, AFanOfManyTrianglesIsQuickAndRight) {
-    // A sphere whose poles have 30,000 neighbours each: an estimate, smoothing and updates that cost the square of that would take
-    // minutes instead of a fraction of a second.
+    // A sphere whose poles have 30,000 neighbours each: an estimate, smoothing and updates that cost the
+    // square of that would take minutes instead of a fraction of a second.
     const fixture::Mesh mesh = latLongSphere(4, 30000, 1);
     const auto begin = std::chrono::steady_clock::now();
     for (auto estimator : {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}) {
@@ -185,7 +190,8 @@ TEST(CurvatureHub, AFanOfManyTrianglesIsQuickAndRight) {
         const uint32_t n = mesh.vertices();
         const pellucid::Buffer positions(device(), mesh.positions), out(device(), n * sizeof(float));
         live.update(vertexView(positions, n), nullptr, vertexView(out, n));
-        live.update(vertexView(positions, n), nullptr, vertexView(out, n), std::vector<PelVertexRange>{{0, 1}});
+        live.update(vertexView(positions, n), nullptr, vertexView(out, n),
+                    std::vector<PelVertexRange>{{0, 1}});
         expectFinite(out.readAll<float>());
     }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
@@ -193,7 +199,8 @@ TEST(CurvatureHub, AFanOfManyTrianglesIsQuickAndRight) {
 }
 
 TEST(CurvatureHub, LaunchesAreThoseOfOtherMeshesAndMemoryGrowsAsTheTriangles) {
-    // Of a fan of 4 n triangles against one of n, and a polygon of as many corners, which comes as a fan round its first one.
+    // Of a fan of 4 n triangles against one of n, and a polygon of as many corners, which comes as a fan
+    // round its first one.
     const auto work = [](uint32_t n, bool polygon) {
         fixture::Mesh mesh;
         for (uint32_t i = 0; i < n; ++i) {
@@ -210,7 +217,8 @@ TEST(CurvatureHub, LaunchesAreThoseOfOtherMeshesAndMemoryGrowsAsTheTriangles) {
         const PelDeviceStats before = device().stats();
         expectFinite(curvature(mesh, topologyDesc(mesh), meanParams(PEL_CURVATURE_QUADRIC)).values);
         const PelDeviceStats after = device().stats();
-        return std::pair(after.launches - before.launches, double(after.bytesAllocated - before.bytesAllocated));
+        return std::pair(after.launches - before.launches,
+                         double(after.bytesAllocated - before.bytesAllocated));
     };
     for (bool polygon : {false, true}) {
         const auto [launches, bytes] = work(2000, polygon);

@@ -61,7 +61,8 @@ TEST(CurvatureDiffusion, BlursACosineByWhatTheHeatEquationSays) {
             for (auto [radius, weights] : {std::pair(0.25f, PEL_SMOOTHING_COTANGENT),
                                            {0.5f, PEL_SMOOTHING_COTANGENT},
                                            {0.5f, PEL_SMOOTHING_AREA}}) {
-                const std::vector<float> after = run(sampled, smoothed(radius, PEL_CURVATURE_QUADRIC, weights));
+                const std::vector<float> after =
+                    run(sampled, smoothed(radius, PEL_CURVATURE_QUADRIC, weights));
                 // Amplitudes by least squares, away from the borders.
                 const auto amplitude = [&](const std::vector<float>& values) {
                     double n = 0, c = 0, cc = 0, f = 0, fc = 0;
@@ -115,7 +116,8 @@ TEST(CurvatureDiffusion, TakesNoiseOut) {
     const double raw = rms(run(mesh, smoothed(0)), truth);
     EXPECT_GT(raw, 2 * tolerance::noisyTorus);
     for (auto weights : bothWeights)
-        EXPECT_LE(rms(run(mesh, smoothed(0.15f, PEL_CURVATURE_QUADRIC, weights)), truth), tolerance::noisyTorus)
+        EXPECT_LE(rms(run(mesh, smoothed(0.15f, PEL_CURVATURE_QUADRIC, weights)), truth),
+                  tolerance::noisyTorus)
             << int(weights);
 }
 
@@ -161,7 +163,8 @@ TEST(CurvatureDiffusion, MeshesTooSmallForTheirAreasStayFinite) {
         for (double size : {1e-9, 1e-11, 1e-13, 1e-16, 1e9, 1e13}) {
             const AnalyticMesh torus =
                 tessellate(reference::torusSurface(3 * size, size), 24, 12, Tessellation::irregular);
-            for (float value : run(pairOf(torus.mesh).mesh, smoothed(float(size), PEL_CURVATURE_EDGE, weights)))
+            for (float value :
+                 run(pairOf(torus.mesh).mesh, smoothed(float(size), PEL_CURVATURE_EDGE, weights)))
                 ASSERT_TRUE(std::isfinite(value)) << size << ", " << int(weights);
         }
 }
@@ -205,10 +208,10 @@ TEST(CurvatureDiffusion, KeepsWhatLiesBeyondACrease) {
 }
 
 TEST(CurvatureDiffusion, SpreadsNoNaNAndNamesWrongParameters) {
-    Mesh mesh =
-        pairOf(
-            tessellate(reference::torusSurface(3, 1), sized(40, 20), sized(20, 16), Tessellation::irregular).mesh)
-            .mesh;
+    Mesh mesh = pairOf(tessellate(reference::torusSurface(3, 1), sized(40, 20), sized(20, 16),
+                                  Tessellation::irregular)
+                           .mesh)
+                    .mesh;
     mesh.positions[300] = NAN;
     mesh.normals[900] = INFINITY;
     const std::vector<float> values = run(mesh, smoothed(0.5f));

@@ -10,7 +10,8 @@ namespace {
 Mesh soup(const Mesh& mesh) {
     Mesh split;
     for (uint32_t index : mesh.indices) {
-        split.positions.insert(split.positions.end(), &mesh.positions[3 * index], &mesh.positions[3 * index] + 3);
+        split.positions.insert(split.positions.end(), &mesh.positions[3 * index],
+                               &mesh.positions[3 * index] + 3);
         split.normals.insert(split.normals.end(), &mesh.normals[3 * index], &mesh.normals[3 * index] + 3);
         split.indices.push_back(uint32_t(split.indices.size()));
     }
@@ -84,7 +85,8 @@ TEST(Weld, WrongUseIsNamed) {
     const Mesh mesh = torus(4, 4);
     const auto error = [](const PelMeshTopologyDesc& desc) {
         PelMeshTopology topology = nullptr;
-        EXPECT_EQ(pelMeshTopologyCreate(device().get(), &desc, &topology, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+        EXPECT_EQ(pelMeshTopologyCreate(device().get(), &desc, &topology, nullptr),
+                  PEL_ERROR_INVALID_ARGUMENT);
         return std::string(pelGetErrorMessage());
     };
     PelMeshTopologyDesc desc = weldedDesc(mesh);

@@ -81,7 +81,8 @@ TEST(MeshFuzz, EveryEstimatorStaysFiniteOnBrokenData) {
         params.smoothingRadius = seed % 4 == 0 ? 0.3f : 0.0f;
         params.smoothingStages = 12;
         params.smoothingWeights = PelSmoothingWeights(seed % 8 == 0);
-        PelMeshTopologyDesc desc = seed % 2 ? weldedDesc(mesh, seed % 4 == 1 ? 0.2f : 0.0f) : topologyDesc(mesh);
+        PelMeshTopologyDesc desc =
+            seed % 2 ? weldedDesc(mesh, seed % 4 == 1 ? 0.2f : 0.0f) : topologyDesc(mesh);
         const std::vector<float> values =
             curvature(mesh, desc, params, params.quantity == PEL_QUANTITY_FRAME ? 8 : 1).values;
         for (float value : values) ASSERT_TRUE(std::isfinite(value)) << "seed " << seed;

@@ -159,7 +159,8 @@ TEST(MeshTopologyFile, DamageIsRefused) {
         bytes[at] = char(bytes[at] ^ (1 << random() % 8));
         // The other counts of the report are shown only; no size is derived from them.
         PelMeshTopology topology = nullptr;
-        if (pelMeshTopologyLoad(device().get(), bytes.data(), bytes.size(), &topology, nullptr) == PEL_SUCCESS) {
+        if (pelMeshTopologyLoad(device().get(), bytes.data(), bytes.size(), &topology, nullptr) ==
+            PEL_SUCCESS) {
             EXPECT_LT(at, 200u) << "damage behind the header";
             pelMeshTopologyRelease(topology);
         }

@@ -96,7 +96,8 @@ TEST(MeshOrient, CountsEdgesWhoseTrianglesDisagree) {
         EXPECT_EQ(reported(mesh), inconsistent(mesh.indices)) << share;
         EXPECT_EQ(reported(mesh) > 0, share < 1) << share;
     }
-    // Where three triangles share an edge no two of them are compared; a triangle alone at an edge has none to compare with.
+    // Where three triangles share an edge no two of them are compared; a triangle alone at an edge has none
+    // to compare with.
     mesh = {};
     mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1};
     mesh.indices = {0, 1, 2, 0, 1, 3};
@@ -123,7 +124,7 @@ TEST(MeshOrient, OutsideOfAClosedPartIsFound) {
         EXPECT_EQ(o.found.partsTurned, 1u);
         EXPECT_EQ(o.found.partsByVolume, 1u);
         EXPECT_EQ(o.found.partsByNormals + o.found.partsByMajority + o.found.inconsistentEdges, 0u);
-        // Far from the origin, and without positions: then nothing but the majority is left.
+        // Far from the origin, and without positions: only the majority of the triangles decides.
         for (size_t i = 0; i < mesh.positions.size(); i += 3) mesh.positions[i] += 500;
         EXPECT_EQ(differing(orient(mesh, topologyDesc(mesh)).indices, sound.indices), 0u) << share;
         PelMeshTopologyDesc desc = topologyDesc(mesh);
@@ -160,15 +161,16 @@ TEST(MeshOrient, NormalsTellTheSideOfOpenParts) {
     EXPECT_EQ(differing(indices, torus(40, 30).indices), indices.size() / 3);
     // Normals that tell nothing, or are not finite, leave it to the volume.
     for (float bad : {0.0f, std::nanf("")}) {
-        found =
-            orientMesh(topologyDesc(mesh), indices.data(), std::vector<float>(mesh.normals.size(), bad).data());
+        found = orientMesh(topologyDesc(mesh), indices.data(),
+                           std::vector<float>(mesh.normals.size(), bad).data());
         EXPECT_EQ(found.partsByVolume, 1u);
         EXPECT_EQ(differing(indices, torus(40, 30).indices), 0u);
     }
 }
 
 TEST(MeshOrient, PartsAreJudgedByThemselves) {
-    // One that is sound and looks inwards, one that is not, a flat one, two triangles that face one another, and a degenerate one.
+    // One that is sound and looks inwards, one that is not, a flat one, two triangles that face one
+    // another, and a degenerate one.
     Mesh mesh = torus(20, 12);
     for (size_t t = 0; t < mesh.indices.size(); t += 3) std::swap(mesh.indices[t], mesh.indices[t + 1]);
     const auto add = [&](const Mesh& other, float dx) {
@@ -241,12 +243,12 @@ TEST(MeshOrient, MadeNormalsAreGoodAgain) {
     }
     const double before = errorOfMadeNormals(mesh, truth);
     mesh.indices = flipped(mesh.indices, 0.5, 1);
-    const double spoiled = errorOfMadeNormals(mesh, truth);
+    const double uncorrected = errorOfMadeNormals(mesh, truth);
     mesh.indices = orient(mesh, topologyDesc(mesh)).indices;
     const double after = errorOfMadeNormals(mesh, truth);
-    RecordProperty("spoiled", std::to_string(spoiled));
+    RecordProperty("uncorrected", std::to_string(uncorrected));
     RecordProperty("after", std::to_string(after));
-    EXPECT_GT(spoiled, 0.5);
+    EXPECT_GT(uncorrected, 0.5);
     EXPECT_LE(after, before * 1.001);
 }
 

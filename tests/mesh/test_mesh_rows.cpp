@@ -19,8 +19,8 @@ class Fenced {
     explicit Fenced(const std::vector<float>& values) : page_(size_t(sysconf(_SC_PAGESIZE))) {
         const size_t bytes = values.size() * sizeof(float);
         size_ = (bytes + page_ - 1) / page_ * page_ + page_;
-        map_ =
-            static_cast<char*>(mmap(nullptr, size_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+        map_ = static_cast<char*>(
+            mmap(nullptr, size_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
         if (map_ == MAP_FAILED) throw std::runtime_error("mmap");
         data_ = map_ + (size_ - page_ - bytes);
         std::memcpy(data_, values.data(), bytes);
@@ -62,7 +62,8 @@ std::vector<float> everything(const MeshTopology& topology, const Buffer& positi
             if (made)
                 topology.curvature(params, vertexView(positions, n), vertexView(out, n));
             else
-                topology.curvature(params, vertexView(positions, n), vertexView(normals, n), vertexView(out, n));
+                topology.curvature(params, vertexView(positions, n), vertexView(normals, n),
+                                   vertexView(out, n));
             const std::vector<float> values = out.readAll<float>();
             all.insert(all.end(), values.begin(), values.begin() + count);
         }
@@ -93,7 +94,8 @@ TEST(MeshRows, NothingBehindTheLastVertexIsRead) {
             Mesh mesh = torus(5, sized(sides, sides - 32));
             if (shuffled) mesh = shuffleVertices(mesh, sides).mesh;
             const uint32_t n = mesh.vertices();
-            Mesh longer = mesh;  // by a vertex without triangles: the others' last one is not the last of the memory
+            Mesh longer =
+                mesh;  // by a vertex without triangles: the others' last one is not the last of the memory
             longer.positions.insert(longer.positions.end(), {1, 2, 3});
             longer.normals.insert(longer.normals.end(), {0, 0, 1});
             const std::vector<float> expected = everything(longer, n);

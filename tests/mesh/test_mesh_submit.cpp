@@ -1,4 +1,5 @@
-// Submissions behind an event that their caller sets later, on topologies that nothing was measured on before.
+// Submissions behind an event that their caller sets later, on topologies that nothing was measured on
+// before.
 #include "held_queue.h"
 #include "mesh_fixture.h"
 
@@ -33,10 +34,12 @@ struct Pose {
 };
 
 TEST(MeshSubmit, TheFirstCurvatureReturns) {
-    for (PelCurvatureEstimator estimator : {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}) {
+    for (PelCurvatureEstimator estimator :
+         {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}) {
         const Pose pose;
         PelCurvatureParams params = paramsOf(estimator);
-        params.smoothingRadius = 0.5f, params.smoothingStages = 4;  // without a number the call measures the mesh
+        params.smoothingRadius = 0.5f,
+        params.smoothingStages = 4;  // without a number the call measures the mesh
         expectReturns(device(), "pelMeshCurvature", [&](const PelSubmit* submit) {
             pose.topology.curvature(params, pose.at(), pose.result(), nullptr, submit);
         });
@@ -52,18 +55,21 @@ TEST(MeshSubmit, TheFirstNormalsReturn) {
 }
 
 TEST(MeshSubmit, TheFirstUpdatesOfALiveMeshReturn) {
-    for (PelCurvatureEstimator estimator : {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}) {
+    for (PelCurvatureEstimator estimator :
+         {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}) {
         Pose pose;
         const PelCurvatureParams params = paramsOf(estimator);
         const LiveMesh live(pose.topology, params);
-        expectReturns(device(), "the first pelLiveMeshUpdate",
-                      [&](const PelSubmit* submit) { live.update(pose.at(), nullptr, pose.result(), submit); });
+        expectReturns(device(), "the first pelLiveMeshUpdate", [&](const PelSubmit* submit) {
+            live.update(pose.at(), nullptr, pose.result(), submit);
+        });
         EXPECT_EQ(pose.written(), pose.measured(params)) << int(estimator);
         for (uint32_t first : {7u, 100u}) {
             pose.mesh.positions[3 * first] += 0.05f;
             pose.positions.write(&pose.mesh.positions[3 * first], 12, 12 * first);
             expectReturns(device(), "pelLiveMeshUpdate with `changed`", [&](const PelSubmit* submit) {
-                live.update(pose.at(), nullptr, pose.result(), std::vector<PelVertexRange>{{first, 1}}, submit);
+                live.update(pose.at(), nullptr, pose.result(), std::vector<PelVertexRange>{{first, 1}},
+                            submit);
             });
             EXPECT_EQ(pose.written(), pose.measured(params)) << int(estimator);
         }

@@ -52,7 +52,8 @@ struct Pose {
 };
 
 Mesh irregularTorus(int columns, int rows) {
-    return pairOf(tessellate(reference::torusSurface(3, 1), columns, rows, Tessellation::irregular).mesh).mesh;
+    return pairOf(tessellate(reference::torusSurface(3, 1), columns, rows, Tessellation::irregular).mesh)
+        .mesh;
 }
 
 PelCurvatureParams paramsOf(PelCurvatureEstimator estimator, PelCurvatureQuantity quantity) {
@@ -87,7 +88,8 @@ TEST(LiveMesh, APartGivesTheBitsOfTheWhole) {
         params.smoothingCrease = c.radius > 0 ? 0.5f : 0;
         params.smoothingWeights = c.given ? PEL_SMOOTHING_COTANGENT : PEL_SMOOTHING_AREA;
         Pose pose(c.welded ? shuffleVertices(mesh, 4).mesh : mesh, c.given, c.floats);
-        const MeshTopology topology(device(), c.welded ? weldedDesc(pose.mesh, 0.04f) : topologyDesc(pose.mesh));
+        const MeshTopology topology(device(),
+                                    c.welded ? weldedDesc(pose.mesh, 0.04f) : topologyDesc(pose.mesh));
         const LiveMesh live(topology, params);
         pose.update(live, nullptr);
         EXPECT_EQ(pose.result.readAll<float>(), pose.anew(topology, params));
@@ -168,7 +170,8 @@ TEST(LiveMesh, NothingChangedCostsNothing) {
     const LiveMesh live(topology, pelCurvatureParamsDefaults());
     const std::vector<PelVertexRange> none, empty{{5, 0}};
     pose.update(live, &none);
-    EXPECT_EQ(live.stats().rowsStored, pose.n) << "the first update measures everything whatever it is told";
+    EXPECT_EQ(live.stats().rowsStored, pose.n)
+        << "the first update measures everything, whatever its ranges are";
     const std::vector<float> values = pose.result.readAll<float>();
     const PelDeviceStats before = device().stats();
     const spy::Counts asked = spy::counts();
@@ -228,7 +231,8 @@ TEST(LiveMesh, NamesWhatIsWrong) {
     Pose pose(torus(8, 6), false, 1);
     const MeshTopology topology(device(), topologyDesc(pose.mesh));
     const LiveMesh live(topology, pelCurvatureParamsDefaults());
-    for (PelVertexRange range : {PelVertexRange{48, 1}, PelVertexRange{40, 9}, PelVertexRange{1, UINT32_MAX}}) {
+    for (PelVertexRange range :
+         {PelVertexRange{48, 1}, PelVertexRange{40, 9}, PelVertexRange{1, UINT32_MAX}}) {
         const std::vector<PelVertexRange> changed{{0, 1}, range};
         try {
             pose.update(live, &changed);

@@ -34,7 +34,8 @@ double relativeError(const AnalyticMesh& m, const std::vector<PrincipalCurvature
     for (size_t v = 0; v < m.truth.size(); ++v) {
         if (edges[v] != corners[v]) continue;  // on the border
         const auto& truth = m.truth[v].curvature;
-        error += std::pow(estimate[v].first - truth.first, 2) + std::pow(estimate[v].second - truth.second, 2);
+        error +=
+            std::pow(estimate[v].first - truth.first, 2) + std::pow(estimate[v].second - truth.second, 2);
         size += truth.first * truth.first + truth.second * truth.second;
     }
     return std::sqrt(error / size);
@@ -148,7 +149,8 @@ TEST(ReferenceCurvature, TensorIsExactOnTheSphereAndConvergesElsewhere) {
     }
     for (const auto& [name, surface] : allSurfaces()) {
         if (std::string(name) == "plane") continue;
-        for (Tessellation kind : {Tessellation::regular, Tessellation::irregular, Tessellation::valenceVarying}) {
+        for (Tessellation kind :
+             {Tessellation::regular, Tessellation::irregular, Tessellation::valenceVarying}) {
             const auto coarse = tessellate(surface, 24, 12, kind), fine = tessellate(surface, 96, 48, kind);
             const double before = relativeError(coarse, tensorCurvature(coarse.mesh));
             const double after = relativeError(fine, tensorCurvature(fine.mesh));

@@ -37,7 +37,8 @@ struct RadiusSmoothing {
     int stages = 1;
     bool byArea = false;
 };
-std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> values, const RadiusSmoothing& how);
+std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> values,
+                                     const RadiusSmoothing& how);
 
 // Principal curvatures, first >= second, 1/length; positive where the surface bends away from the normal (a
 // sphere with outward normals has two positive ones).

@@ -45,9 +45,9 @@ std::set<int> nearOf(const Neighbourhood& n, int vertex) {
     return near;
 }
 
-// The neighbours of `b` away from its neighbour `vertex`: all others or, where the ring of `b` is closed, without
-// the two neighbours that both share and without the corner on the other side of the edge (b, next). That corner
-// is left to the neighbour `next` of `vertex`, except where it is the only one.
+// The neighbours of `b` away from its neighbour `vertex`: all others or, where the ring of `b` is closed,
+// without the two neighbours that both share and without the corner on the other side of the edge (b,
+// next). That corner is left to the neighbour `next` of `vertex`, except where it is the only one.
 std::set<int> beyond(const std::vector<Neighbourhood>& all, int b, int vertex) {
     std::set<int> further = nearOf(all[b], vertex);
     further.erase(vertex);
@@ -84,7 +84,8 @@ struct Frame {
 // [Duff et al., Building an Orthonormal Basis, Revisited, JCGT 2017]
 Frame frameOf(Vec3 n) {
     const double s = std::copysign(1.0, n.z), a = -1 / (s + n.z);
-    return {{1 + s * n.x * n.x * a, s * n.x * n.y * a, -s * n.x}, {n.x * n.y * a, s + n.y * n.y * a, -n.y}, n};
+    return {
+        {1 + s * n.x * n.x * a, s * n.x * n.y * a, -s * n.x}, {n.x * n.y * a, s + n.y * n.y * a, -n.y}, n};
 }
 
 // The coordinates of the fit, from the one-ring.
@@ -179,7 +180,8 @@ void shape(Chart& chart, const Mesh& mesh, const std::map<int, int>& points, int
         const double u = dot(p, chart.frame.u), v = dot(p, chart.frame.v);
         const double n = dot(p, chart.frame.n) - chart.slopeU * u - chart.slopeV * v;
         const double weight = count / (0.05 + dot(p, p));
-        uu += weight * u * u, uv += weight * u * v, vv += weight * v * v, nn += weight * n * n, total += weight;
+        uu += weight * u * u, uv += weight * u * v, vv += weight * v * v, nn += weight * n * n,
+            total += weight;
     }
     const double unit2 = (uu + vv) / total / 0.72, part = 1 / (total * unit2);
     const double least = std::max(1e-6 * 0.72, replaced ? part * nn : 0);

@@ -4,7 +4,8 @@
 
 namespace reference {
 
-std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> values, const RadiusSmoothing& how) {
+std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> values,
+                                     const RadiusSmoothing& how) {
     const size_t count = values.size();
     struct Edge {
         int to;

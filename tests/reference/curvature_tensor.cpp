@@ -16,7 +16,8 @@ struct TangentForm {
 // Solves the symmetric 3x3 system by Cramer's rule.
 Vec3 solve(Vec3 row0, Vec3 row1, Vec3 row2, Vec3 right) {
     const double determinant = dot(row0, cross(row1, row2));
-    return (right.x * cross(row1, row2) + right.y * cross(row2, row0) + right.z * cross(row0, row1)) / determinant;
+    return (right.x * cross(row1, row2) + right.y * cross(row2, row0) + right.z * cross(row0, row1)) /
+           determinant;
 }
 
 TangentForm faceForm(const Vec3 (&p)[3], const Vec3 (&n)[3]) {
@@ -91,7 +92,8 @@ std::vector<PrincipalCurvatures> tensorCurvature(const Mesh& mesh) {
         forms[i].v = normalized(cross(n, forms[i].u));
     }
     for (const Triangle& triangle : mesh.triangles) {
-        const Vec3 p[3] = {mesh.positions[triangle[0]], mesh.positions[triangle[1]], mesh.positions[triangle[2]]};
+        const Vec3 p[3] = {mesh.positions[triangle[0]], mesh.positions[triangle[1]],
+                           mesh.positions[triangle[2]]};
         const Vec3 n[3] = {mesh.normals[triangle[0]], mesh.normals[triangle[1]], mesh.normals[triangle[2]]};
         const Vec3 across = cross(p[1] - p[0], p[2] - p[0]);
         if (!(length(across) > 0)) continue;
@@ -110,7 +112,8 @@ std::vector<PrincipalCurvatures> tensorCurvature(const Mesh& mesh) {
     std::vector<PrincipalCurvatures> curvatures(count);
     for (size_t i = 0; i < count; ++i) {
         if (!(weights[i] > 0)) continue;
-        const double uu = forms[i].uu / weights[i], uv = forms[i].uv / weights[i], vv = forms[i].vv / weights[i];
+        const double uu = forms[i].uu / weights[i], uv = forms[i].uv / weights[i],
+                     vv = forms[i].vv / weights[i];
         const double mean = 0.5 * (uu + vv), radius = std::hypot(0.5 * (uu - vv), uv);
         curvatures[i] = {mean + radius, mean - radius};
     }
