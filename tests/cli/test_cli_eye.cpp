@@ -118,7 +118,7 @@ TEST_F(CliEye, WrongScenesAreRefused) {
                              const std::function<void(io::SceneFile&)>& change) {
         io::SceneFile scene = scene_;
         change(scene);
-        io::writeScene(path(name), scene);
+        write(name, io::sceneText(scene));
         expectRefused(command(name), 3, message);
     };
     refused("a.toml", "[[material]]", [](io::SceneFile& s) { s.eyes[0].material = 9; });

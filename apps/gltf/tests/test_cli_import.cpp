@@ -155,7 +155,7 @@ TEST_F(Import, LightsCamerasAndProfilesOfOnesOwn) {
 // Each camera is drawn, or left out with a warning; what is written can be shaded.
 TEST_F(Import, CamerasFarAwayAndBentOutOfShape) {
     for (const char* place :
-         {R"("translation":[0,0,1e12])", R"("translation":[1e30,0,0])",
+         {R"("translation":[0,0,1e12])", R"("translation":[-1e12,0,0])",
           R"("translation":[0,0,5],)"
           R"("scale":[0,0,0])",
           R"("matrix":[1,0,0,0, 0,0,1,0, 0,0,1,0, 0,0,3,1])", R"("translation":[0.5,0.5,99000])"}) {
