@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-CODE = {".cpp", ".h", ".hpp", ".c", ".cl", ".clh", ".py", ".pyi", ".cmake"}
+CODE = {".cpp", ".h", ".hpp", ".c", ".cl", ".clh", ".py", ".pyi"}
 SKIPPED = {"tests/words.txt", "tests/plain_english.py"}
 
 
@@ -18,11 +18,6 @@ def tracked(places):
     names = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "--", *places], cwd=ROOT, check=True,
                            capture_output=True, text=True).stdout.split("\n")
     return sorted({name for name in names if name and name not in SKIPPED and (ROOT / name).is_file()})
-
-
-def is_script(path):
-    with path.open("rb") as file:
-        return not path.suffix and file.read(2) == b"#!"
 
 
 def rules():
@@ -37,12 +32,12 @@ def main():
     for name in tracked([str(pathlib.Path(a).resolve()) for a in sys.argv[1:]] or ["."]):
         path = ROOT / name
         prose = path.suffix == ".md"
-        if not prose and path.suffix not in CODE and path.name != "CMakeLists.txt" and not is_script(path):
+        if not prose and path.suffix not in CODE:
             continue
         limit, block = 120 if prose else 110, False
         for number, line in enumerate(path.read_text(errors="replace").splitlines(), 1):
             block ^= prose and line.lstrip().startswith("```")
-            free = prose and (block or line.lstrip().startswith(("|", "#", "    ")) or re.match(r"\W*!?\[[^]]*\]\(\S+\)\W*$", line))
+            free = prose and (block or line.startswith("    ") or line.lstrip().startswith(("|", "#")) or re.match(r"\W*!?\[[^]]*\]\(\S+\)\W*$", line))
             if len(line) > limit and not free and not re.search(r"https?://\S{60}", line):
                 print(f"{name}:{number}: {len(line)} columns, at most {limit}")
                 found += 1

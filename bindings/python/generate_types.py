@@ -39,7 +39,8 @@ def comment_before(text, position):
 
 def comments_behind(body):
     """The body of a structure or enumeration with each comment that stands above a member moved behind it."""
-    return re.sub(r"^[ ]*/\*((?:(?!\*/).)*)\*/[ ]*\n([ ]*\w[^;,/\n]*(?:[;,]|(?=\n)))[ ]*$", r"\2 /*\1*/", body, flags=re.S | re.M)
+    comment, member = r"^[ ]*/\*((?:(?!\*/).)*)\*/[ ]*\n", r"([ ]*\w[^;,/\n]*(?:[;,]|(?=\n)))[ ]*$"
+    return re.sub(comment + member, r"\2 /*\1*/", body, flags=re.S | re.M)
 
 
 def parse_enums(text):

@@ -1,4 +1,5 @@
 """Errors of both native modules come as the kinds that are documented: each module of a wheel has a C++ library of its own."""
+
 import base64
 import json
 import struct
@@ -8,14 +9,30 @@ from pellucid import files
 
 corners = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
 with open("triangle.gltf", "w") as out:
-    json.dump({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-               "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + base64.b64encode(corners).decode()}],
-               "bufferViews": [{"buffer": 0, "byteLength": 36}], "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}]}, out)
+    json.dump(
+        {
+            "asset": {"version": "2.0"},
+            "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "buffers": [
+                {
+                    "byteLength": 36,
+                    "uri": "data:application/octet-stream;base64," + base64.b64encode(corners).decode(),
+                }
+            ],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        },
+        out,
+    )
 assert len(pellucid.load_gltf("triangle.gltf").mesh.triangles) == 1
-for kind, call in [(ValueError, lambda: pellucid.load_gltf("triangle.gltf", profiles={"Nobody": "skin"})),
-                   (ValueError, lambda: files.tonemap([[0, 0, 0]], curve="x")),
-                   (files.FileError, lambda: files.load_mesh("none.obj")),
-                   (pellucid.PellucidError, lambda: pellucid.Profile.burley(-1, 0.5))]:
+for kind, call in [
+    (ValueError, lambda: pellucid.load_gltf("triangle.gltf", profiles={"Nobody": "skin"})),
+    (ValueError, lambda: files.tonemap([[0, 0, 0]], curve="x")),
+    (files.FileError, lambda: files.load_mesh("none.obj")),
+    (pellucid.PellucidError, lambda: pellucid.Profile.burley(-1, 0.5)),
+]:
     try:
         call()
     except kind:

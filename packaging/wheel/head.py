@@ -3,6 +3,7 @@
 What a renderer would draw is made here by marking the pixel of each vertex of the finely divided head. Ends with 1 if scattering
 does not carry red light past the terminator.
 """
+
 import sys
 
 import numpy as np
@@ -30,14 +31,24 @@ material = np.zeros((SIZE, SIZE), np.uint8)
 normals[pixel], curvatures[pixel], material[pixel] = mesh.normals[order], curvature[order], 1
 
 pictures = []
-for skin in (pel.Material(albedo=(0.76, 0.54, 0.44), scattering="none"), pel.Material(albedo=(0.76, 0.54, 0.44), profile="skin")):
+for skin in (
+    pel.Material(albedo=(0.76, 0.54, 0.44), scattering="none"),
+    pel.Material(albedo=(0.76, 0.54, 0.44), profile="skin"),
+):
     radiance = np.zeros((SIZE, SIZE, 3), np.float32)
-    shader = pel.Shader(device).set_options(millimetres_per_unit=mm).set_image("radiance", radiance).set_image("normal_shading", normals)
+    shader = (
+        pel.Shader(device)
+        .set_options(millimetres_per_unit=mm)
+        .set_image("radiance", radiance)
+        .set_image("normal_shading", normals)
+    )
     shader.set_image("curvature", curvatures).set_image("material", material).set_material(1, skin)
     shader.set_lights([pel.Light(to_light=(-0.96, 0.0, 0.28))]).commit().execute()
     pictures.append(radiance)
 files.write_image(sys.argv[1], np.hstack(pictures), exposure=1.5)
 again = files.read_image(sys.argv[1])
 gain = (pictures[1] - pictures[0])[(material == 1) & (pictures[0].max(-1) < 0.02)].mean(0)
-print(f"{device.info.name} ({device.info.platform}): {int(material.sum())} pixels; light past the terminator: {gain.round(5)}")
+print(
+    f"{device.info.name} ({device.info.platform}): {int(material.sum())} pixels; light past the terminator: {gain.round(5)}"
+)
 sys.exit(not (gain[0] > 2 * gain[2] > 0 and again["R"].shape == (SIZE, 2 * SIZE)))
