@@ -104,7 +104,7 @@ def test_reference_by_a_random_walk(tmp_path):
     (tmp_path / "cube.off").write_text(f"OFF\n8 {len(triangles)} 0\n" + "\n".join(" ".join(map(str, c)) for c in corners) + "\n"
                                        + "\n".join("3 " + " ".join(map(str, t)) for t in triangles) + "\n")
     (tmp_path / "burley.toml").write_text('name = "b"\nsource = "test"\nunit = "mm"\nkind = "burley"\ndistance = [1, 0.5, 0.25]\n')
-    (tmp_path / "scene.toml").write_text('version = 2\n[channels]\nposition = ["X", "Y", "Z"]\n[ambient]\nconstant = [1, 1, 1]\n'
+    (tmp_path / "scene.toml").write_text('version = 2\n[channels]\nposition = ["X", "Y", "Z"]\nnormal_shading = ["X", "Y", "Z"]\n[ambient]\nconstant = [1, 1, 1]\n'
                                          '[[material]]\nid = 1\nprofile = "burley.toml"\n')
     files.write_image(tmp_path / "g.exr", np.zeros((4, 5, 3), np.float32), channels=["X", "Y", "Z"])
     inputs = tmp_path / "cube.off", tmp_path / "scene.toml", tmp_path / "g.exr"

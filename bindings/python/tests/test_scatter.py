@@ -50,10 +50,12 @@ def test_materials_controls_and_images(device):
     out = np.ones_like(irradiance)
     scatter.execute(irradiance, positions, ids=ids, out=out, params=pel.ScatterParams(accumulate=1))
     assert np.allclose(out, 1 + half, atol=1e-6)
-    scatter.set_material(1, None)
     with pytest.raises(pel.PellucidError, match="none that a PelScatter keeps"):
         scatter.set_image("curvature", np.ones(ids.shape, np.float32))
     with pytest.raises(pel.PellucidError, match="1 to 255"):
         scatter.set_material(300, pel.Profile.skin())
     with pytest.raises(pel.PellucidError, match="scatterTaps is 3"):
         scatter.set_controls(1, scatter_taps=3)
+    scatter.set_material(1, None)
+    with pytest.raises(pel.PellucidError, match="is not set"):
+        scatter.set_controls(1, scatter_taps=8)
