@@ -288,7 +288,7 @@ def test_ctrl_c_ends_it_quietly(tmp_path):
 
 def test_bad_entries_are_reported_and_the_others_made(tmp_path):
     (tmp_path / "m.toml").write_text('[[lut]]\nsize = 8\n\n[[lut]]\nsize = -3\n\n[[lut]]\nsize = '
-                                     '16384\n[[lut]]\nsize = 9\n')
+                                     '8192\n[[lut]]\nsize = 9\n')
     result = subprocess.run([sys.executable, "-m", "pellucid.batch", tmp_path / "m.toml", "--out",
                              tmp_path / "out", "--json"],
                             capture_output=True, text=True, timeout=120,

@@ -53,7 +53,7 @@ def test_half_and_bytes(device, view):
     ("normal_shading", np.zeros((4, 4, 3), np.float32)[::-1], "normal_shading has a negative stride"),
     ("albedo", np.broadcast_to(np.float32(1), (4, 4, 3)), "albedo is broadcast"),
     ("albedo", np.zeros((3, 4, 4), np.float16).transpose(1, 2, 0), "components that lie apart"),
-    ("albdo", np.zeros((4, 4, 3), np.float32), "slot is 'albdo'; it must be one of radiance"),
+    ("albdo", np.zeros((4, 4, 3), np.float32), "slot is 'albdo'; did you mean 'albedo'"),
     ("normal_shading", np.zeros((4, 4, 3), ">f4"),
      "normal_shading has the byte order of another machine .*big-endian"),
     ("albedo", np.zeros((4, 4, 3), ">f2"), "albedo has the byte order of another machine"),
