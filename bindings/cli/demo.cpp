@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "demo_pictures.h"
-#include "demo_reference.h"
 #include "demo_view.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
@@ -48,7 +47,7 @@ struct Arguments {
     uint32_t smoothing = 2;
     std::optional<int> subdivide;
     float height = headHeight;
-    bool orient = false, noReference = false;
+    bool orient = false;
 };
 
 // Most OBJ files have y up, most scans in the other formats z.
@@ -118,7 +117,7 @@ std::array<io::SceneFile, 3> scenesOf(const DemoView& view) {
     return {withoutScattering(view.scene), byTables(view.scene), view.scene};
 }
 
-// The pictures of a view rendered at twice the size.
+// The pictures of a view rendered at twice the size, or none of a view that is large already.
 std::vector<io::Picture> finePictures(Run& run, io::LutStore& luts, const sample::Scene& scene,
                                       const DemoHead& head, DemoViewRequest request) {
     constexpr uint64_t most = uint64_t(4096) * 2304;  // pixels; a G-buffer of them takes 1 GB
@@ -135,7 +134,7 @@ std::vector<io::Picture> finePictures(Run& run, io::LutStore& luts, const sample
     return pictures;
 }
 
-// One view: G-buffer, shadings, reference, files.
+// One view: G-buffer, shadings, files.
 ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample::Scene& scene,
                      const DemoHead& head, const DemoViewRequest& request, const Arguments& a) {
     Stages::begin(request.name + ": G-buffer and shadow maps (sample host)");
@@ -160,14 +159,6 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
     shaded.complete = shadeAs(run, stages, luts, view, "auto", scenes[2]);
     stages.measure(view.name + ": pictures at twice the size", 4 * pixels, "pixels", 0,
                    [&] { shaded.fine = finePictures(run, luts, scene, head, request); });
-    if (!a.noReference) {
-        io::SceneFrame smooth(run.device(), view.gbuffer, smoothAndDull(view.scene), luts, view.shadowMaps);
-        smooth.shade();
-        stages.measure(
-            view.name + ": reference", pixels / (referenceStride * referenceStride), "pixels", 0,
-            [&] { shaded.reference = demoReference(run.device(), scene, head, view, smooth.radiance()); });
-        run.report["rms_against_reference"][view.name] = shaded.reference->rms;
-    }
     const std::string& folder = a.output;
     const auto path = [&](const std::string& suffix) { return folder + "/" + view.name + suffix; };
     io::writeExr(path("_gbuffer.exr"), view.gbuffer, io::ExrCompression::Rle);
@@ -176,6 +167,8 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
     io::writeScene(path(".toml"), view.scene);
     io::writeRadiance(path(".exr"), view.gbuffer.width, view.gbuffer.height, shaded.complete);
     shaded.view = std::move(view);
+    run.report["pictures"].push_back(writePicture(folder, shaded));
+    run.note("picture: " + run.report["pictures"].back().get<std::string>());
     return shaded;
 }
 
@@ -231,7 +224,8 @@ void run(Arguments a) {
     }
     stages.addPreparation();
 
-    std::vector<std::string> files = writePictures(a.output, views, materials, curvatureLut, shadowLut);
+    nlohmann::ordered_json& files = run.report["pictures"];
+    files.push_back(writeSheet(a.output, views, materials, curvatureLut, shadowLut));
     const DemoView& backlit = views.back().view;
     // By tables, for thickness and transmission are parts of theirs alone.
     io::SceneFrame parts(
@@ -241,7 +235,6 @@ void run(Arguments a) {
     parts.shade();
     files.push_back(writeParts(a.output, backlit, parts));
     run.report["output"] = a.output;
-    run.report["pictures"] = files;
     run.report["stages"] = stages.json();
     run.finish();
 }
@@ -275,8 +268,6 @@ void addDemo(Command& app) {
     command->addOption("--smooth", a->smoothing, "smoothing passes of the curvature")
         ->check(inRange(0, 1000))
         ->showDefault();
-    command->addFlag("--no-reference", a->noReference,
-                     "leave the surface integral out, which takes longer than all the rest");
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });
 }

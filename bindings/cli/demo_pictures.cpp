@@ -25,8 +25,8 @@ io::Picture developed(const DemoView& view, std::vector<float> radiance) {
 
 namespace {
 
-constexpr int sheetShrink = referenceStride;  // of pictures, so that the sheet fits a screen
-constexpr int lutSize = 200;                  // pixels a side on the sheet
+constexpr int sheetShrink = 2;  // of pictures, so that the sheet fits a screen
+constexpr int lutSize = 200;    // pixels a side on the sheet
 
 // The table as a picture, nearest texel, with values as linear radiance.
 io::Picture lutPicture(const Lut& lut) {
@@ -70,41 +70,12 @@ io::Picture cropped(const io::Picture& picture, const Crop& c) {
     return part;
 }
 
-Crop shrunk(const Crop& c) {
-    return {c.left / sheetShrink, c.top / sheetShrink, c.right / sheetShrink, c.bottom / sheetShrink};
-}
-
-// Grey where a difference is nothing, and its colour where it is something.
-io::Picture amplified(int width, int height, std::vector<float> difference, float times) {
-    for (float& v : difference) v = 0.2f + times * v;
-    return {width, height, io::toSrgb8(difference, {1.0f, 1.0f, io::ToneCurve::none})};
-}
-
+// What scattering changes: grey where that is nothing, elsewhere its colour.
 io::Picture difference(const ShadedView& view, float times) {
     std::vector<float> d(view.complete);
-    for (size_t i = 0; i < d.size(); ++i) d[i] -= view.lambert[i];
-    return amplified(view.view.gbuffer.width, view.view.gbuffer.height, std::move(d), times);
-}
-
-// The reference before the same backdrop as the others, and with their eyes and teeth.
-io::Picture small(const ShadedView& shaded) {
-    const DemoReference& reference = *shaded.reference;
-    const std::vector<float>& all = shaded.view.gbuffer.channel("Material.I").pixels;
-    DemoView view;
-    view.gbuffer.width = reference.width;
-    view.gbuffer.height = reference.height;
-    std::vector<float> ids(reference.radiance.size() / 3), radiance(reference.radiance);
-    for (int y = 0; y < reference.height; ++y)
-        for (int x = 0; x < reference.width; ++x) {
-            const size_t to = size_t(y) * reference.width + x,
-                         from = size_t(y) * referenceStride * shaded.view.gbuffer.width +
-                                size_t(x) * referenceStride;
-            ids[to] = all[from];
-            if (all[from] != float(demo::DEMO_SKIN))
-                std::copy_n(&shaded.complete[3 * from], 3, &radiance[3 * to]);
-        }
-    view.gbuffer.channels.push_back({"Material.I", io::ChannelType::Float, std::move(ids)});
-    return developed(view, std::move(radiance));
+    for (size_t i = 0; i < d.size(); ++i) d[i] = 0.2f + times * (d[i] - view.lambert[i]);
+    return {view.view.gbuffer.width, view.view.gbuffer.height,
+            io::toSrgb8(d, {1.0f, 1.0f, io::ToneCurve::none})};
 }
 
 // The part of a head where scattering and transmission add most red light: a backlit ear.
@@ -162,6 +133,11 @@ io::Picture smooth(const ShadedView& view, const Crop& part) {
     return io::shrunk(cropped(view.fine[2], timesTwo(part)), 2);
 }
 
+std::string write(const std::string& file, const io::Picture& p) {
+    io::writeImage8(file, p.width, p.height, 3, p.rgb);
+    return file;
+}
+
 }  // namespace
 
 std::string writeParts(const std::string& folder, const DemoView& view, const io::SceneFrame& frame) {
@@ -179,22 +155,18 @@ std::string writeParts(const std::string& folder, const DemoView& view, const io
         io::colored(view.gbuffer.width, view.gbuffer.height, frame.output(PEL_SLOT_OUT_THICKNESS), 0, longest,
                     view.gbuffer.channel("Material.I").pixels));
     tiles.back().picture = io::withColorBar(tiles.back().picture, 0, longest, "mm", 1);
-    const io::Picture sheet = io::contactSheet(tiles, int(tiles.size()));
-    const std::string file = folder + "/" + view.name + "_parts.png";
-    io::writeImage8(file, sheet.width, sheet.height, 3, sheet.rgb);
-    return file;
+    return write(folder + "/" + view.name + "_parts.png", io::contactSheet(tiles, int(tiles.size())));
 }
 
-std::vector<std::string> writePictures(const std::string& folder, const std::vector<ShadedView>& views,
-                                       const std::vector<ShadedPicture>& materials, const Lut& curvatureLut,
-                                       const Lut& shadowLut) {
-    std::vector<std::string> files;
-    const auto write = [&](const std::string& name, const io::Picture& p) {
-        files.push_back(folder + "/" + name);
-        io::writeImage8(files.back(), p.width, p.height, 3, p.rgb);
-    };
+std::string writePicture(const std::string& folder, const ShadedView& view) {
+    return write(folder + "/" + view.view.name + ".png", smooth(view, coveredPart(view.view)));
+}
+
+std::string writeSheet(const std::string& folder, const std::vector<ShadedView>& views,
+                       const std::vector<ShadedPicture>& materials, const Lut& curvatureLut,
+                       const Lut& shadowLut) {
+    constexpr size_t columns = 4;
     std::vector<io::Tile> tiles;
-    const size_t columns = views.front().reference ? 6 : 4;
     const auto fill = [&] {  // the rest of a row
         while (tiles.size() % columns) tiles.push_back({"", io::Picture(1, 1, io::Srgb8{20, 20, 20})});
     };
@@ -205,17 +177,10 @@ std::vector<std::string> writePictures(const std::string& folder, const std::vec
             tiles.push_back({name + ": " + title,
                              io::shrunk(cropped(developed(view.view, radiance), part), sheetShrink)});
         };
-        write(name + ".png", smooth(view, part));
         add("Lambert", view.lambert);
         add("by tables", view.tables);
         add("auto", view.complete);
-        if (view.reference) tiles.push_back({name + ": reference", cropped(small(view), shrunk(part))});
         tiles.push_back({"auto - Lambert, x 4", io::shrunk(cropped(difference(view, 4), part), sheetShrink)});
-        if (view.reference)
-            tiles.push_back(
-                {"auto - reference, x 10",
-                 cropped(amplified(view.reference->width, view.reference->height, view.reference->error, 10),
-                         shrunk(part))});
     }
     const ShadedView& lit = views.back();
     const Crop glow = brightestChange(lit);
@@ -228,7 +193,6 @@ std::vector<std::string> writePictures(const std::string& folder, const std::vec
     close("by tables", lit.tables, 1);
     close("auto", lit.complete, 2);
     tiles.push_back({"curvature", curvatureMap(views.front().view)});
-    if (columns == 4) fill();
     tiles.push_back({"curvature LUT: N.L across", lutPicture(curvatureLut)});
     tiles.push_back({"shadow LUT: shadow across", lutPicture(shadowLut)});
     fill();
@@ -236,8 +200,7 @@ std::vector<std::string> writePictures(const std::string& folder, const std::vec
         tiles.push_back({m.title, io::shrunk(cropped(developed(views.front().view, m.radiance),
                                                      coveredPart(views.front().view)),
                                              sheetShrink)});
-    write("demo.png", io::contactSheet(tiles, int(columns)));
-    return files;
+    return write(folder + "/demo.png", io::contactSheet(tiles, int(columns)));
 }
 
 }  // namespace pellucid::cli

@@ -211,13 +211,6 @@ io::SceneFile byTables(io::SceneFile scene) {
     return scene;
 }
 
-io::SceneFile smoothAndDull(io::SceneFile scene) {
-    for (io::SceneMaterial& m : scene.materials) m.material.specular = 0;
-    scene.channels[PEL_SLOT_NORMAL_BLURRED].clear();
-    scene.channels[PEL_SLOT_NORMAL_SHADING] = scene.channels[PEL_SLOT_NORMAL_GEOMETRIC];
-    return scene;
-}
-
 DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3]) {
     view.scene.materials[0].profile = profile;
     view.scene.materials[0].material.shadowFilterWidth = 0;  // the profile's own

@@ -44,8 +44,6 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
 // The same scene shaded plainly, by Lambert, or by tables.
 io::SceneFile withoutScattering(io::SceneFile scene);
 io::SceneFile byTables(io::SceneFile scene);
-// By the mesh's own normals and without gloss, to be compared with the reference.
-io::SceneFile smoothAndDull(io::SceneFile scene);
 // The view with its skin made of another material of the library, and its albedo multiplied by a tint.
 DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3]);
 

@@ -10,7 +10,7 @@ using DemoPictures = CommandTest;
 TEST_F(DemoPictures, AreThoseThatSomebodyLookedAt) {
     namespace fs = std::filesystem;
     const fs::path kept = fs::path(PELLUCID_SOURCE_DIR) / "tests/cli/pictures";
-    const Result demo = run({"demo", "-o", path("demo"), "--size", "192x108", "--no-reference"});
+    const Result demo = run({"demo", "-o", path("demo"), "--size", "192x108"});
     ASSERT_EQ(demo.exitCode, 0) << demo.err;
     const char* keep = std::getenv("PELLUCID_KEEP_PICTURES");
     // 0.0003 is one bit in each 170th value, which other roundings may change; a backdrop or a sky that is a
