@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "pass_scene.h"
-#include "shadow_form_scene.h"
+#include "shadow_forms.h"
 #include "tolerances.h"
 
 using namespace shade_test;

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "shader_ready.h"
-#include "shadow_form_truth.h"
+#include "shadow_forms.h"
 #include "tolerances.h"
 
 using namespace shade_test;

@@ -1,5 +1,5 @@
-// Frames lit through shadow maps of every form, and what the shader makes of them: wide shadow and thickness
-// per pixel.
+// Frames lit through shadow maps of every form: wide shadow and thickness per pixel, of the shader and of the
+// oracle.
 #pragma once
 #include <functional>
 
@@ -184,6 +184,26 @@ inline CubeLight cubeLight(uint32_t size, bool radial, Turn turn, Vec3 position,
     return out;
 }
 
+// --- parallel and perspective maps ---
+
+// What texels hold of a surface at this distance.
+inline double depthOf(const MapLight& from, double distance) {
+    const auto& d = from.view.decoding;
+    return d.perspective ? (1 / distance - d.b) / d.a : distance / d.range;
+}
+inline void setDepth(MapLight& from, size_t texel, double distance) {
+    from.light.map.values[texel] = float(depthOf(from, distance));
+    from.map.depth[texel] = from.light.map.values[texel];
+}
+
+// Makes a reversed parallel map go from 1 at the light to 0.
+inline void startAtOne(MapLight& from) {
+    from.light.params.worldToShadow[11] += 1;
+    from.view.origin = from.view.origin + 300.0 * from.view.forward;
+    for (float& z : from.light.map.values) z += 1;
+    from.map.depth.assign(from.light.map.values.begin(), from.light.map.values.end());
+}
+
 // --- cascades ---
 
 // Maps of these extents about one axis, each with its own size, shifted a little against each other.
@@ -200,12 +220,7 @@ inline CascadeLight cascadeLight(const std::vector<double>& extents, bool revers
         out.maps.push_back(mapLight(i, false, reversed, {0.3, 0.1, 0.9},
                                     Vec3{24 + 1.5 * i, 10 - double(i), 5}, extent, texels));
         MapLight& map = out.maps.back();
-        if (reversed) {  // from 1 at the light to 0
-            map.light.params.worldToShadow[11] += 1;
-            map.view.origin = map.view.origin + 300.0 * map.view.forward;
-            for (float& z : map.light.map.values) z += 1;
-            map.map.depth.assign(map.light.map.values.begin(), map.light.map.values.end());
-        }
+        if (reversed) startAtOne(map);
         const PelLight& l = map.light.params;
         if (i == 0) {
             out.light.params = l;
@@ -235,22 +250,13 @@ inline ContentLight contentLight(PelShadowContent content, bool perspective, boo
                                  bool flat = false) {
     ContentLight out;
     out.from = mapLight(size, perspective, reversed, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 2 * size);
-    auto& view = out.from.view;
     auto& depth = out.from.map.depth;
+    if (reversed && !perspective) startAtOne(out.from);
     Light& l = out.light;
     l.params = out.from.light.params;
-    if (reversed && !perspective) {  // from 1 at the light to 0
-        l.params.worldToShadow[11] += 1;
-        view.origin = view.origin + 300.0 * view.forward;
-        for (double& z : depth) z += 1;
-    }
-    if (flat) {
-        const double distance = 130;
-        for (double& z : depth)
-            z = perspective ? (1 / distance - view.decoding.b) / view.decoding.a
-                : reversed  ? 1 - distance / 300
-                            : distance / 300;
-    }
+    if (flat)
+        std::fill(depth.begin(), depth.end(),
+                  perspective || !reversed ? depthOf(out.from, 130) : 1 - 130 / 300.0);
     l.params.shadowContent = content;
     l.params.shadowExponent = reversed ? -80 : 80;
     const uint32_t components = content == PEL_SHADOW_CONTENT_MOMENTS ? 2 : 1;
@@ -271,6 +277,117 @@ inline ContentLight contentLight(PelShadowContent content, bool perspective, boo
             out.second.push_back(float(sum[1]));
         }
     return out;
+}
+
+// --- the oracle ---
+
+// At a place with its geometric normal. Refers to the light that it was made of.
+struct FormTruth {
+    std::function<double(const PelMaterial&, Vec3, Vec3)> wide;
+    std::function<double(const PelMaterial&, Vec3, Vec3, const std::vector<reference::Vec2>& taps)> thickness;
+};
+
+inline reference::WideFilterParams filterOf(const PelLight& l, const PelMaterial& m) {
+    return {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope,
+            int(l.shadowFilterTexels)};
+}
+inline Vec3 insetOf(const PelMaterial& m, Vec3 p, Vec3 n) {
+    return p - double(m.deepScatterNormalOffset) * n;
+}
+
+inline FormTruth truthOf(const MapLight& from) {
+    const PelLight& l = from.light.params;
+    return {[&](const PelMaterial& m, Vec3 p, Vec3 n) {
+                return reference::wideShadow(from.map, from.view, p, n, filterOf(l, m));
+            },
+            [&](const PelMaterial& m, Vec3 p, Vec3 n, const auto& taps) {
+                return reference::thickness(
+                    from.map,
+                    reference::shadowCoordinates(matrixOf(l.worldToShadow), p, n, m.deepScatterNormalOffset),
+                    taps, m.thicknessFilterRadius, from.view.decoding, reference::MapFilter::bilinear);
+            }};
+}
+
+inline FormTruth truthOf(const CubeLight& from) {
+    return {[&](const PelMaterial& m, Vec3 p, Vec3 n) {
+                return reference::cubeWideShadow(from.map, from.turn(p - from.position), from.turn(n),
+                                                 filterOf(from.light.params, m));
+            },
+            [&](const PelMaterial& m, Vec3 p, Vec3 n, const auto& taps) {
+                return reference::cubeThickness(from.map, from.turn(insetOf(m, p, n) - from.position), taps,
+                                                m.thicknessFilterRadius);
+            }};
+}
+
+inline std::vector<reference::Matrix4> matricesOf(const CascadeLight& from) {
+    const PelLight& l = from.light.params;
+    std::vector<reference::Matrix4> matrices{matrixOf(l.worldToShadow)};
+    for (uint32_t i = 1; i < l.shadowCascades; ++i) matrices.push_back(matrixOf(l.cascadeToShadow[i - 1]));
+    return matrices;
+}
+
+inline FormTruth truthOf(const CascadeLight& from) {
+    const std::vector<reference::Matrix4> matrices = matricesOf(from);
+    return {[&from, matrices](const PelMaterial& m, Vec3 p, Vec3 n) {
+                const int k = reference::cascadeOf(matrices, p, m.shadowFilterWidth / 2);
+                return k < 0 ? 1
+                             : reference::wideShadow(from.maps[size_t(k)].map, from.maps[size_t(k)].view, p,
+                                                     n, filterOf(from.light.params, m));
+            },
+            [&from, matrices](const PelMaterial& m, Vec3 p, Vec3 n, const auto& taps) {
+                const Vec3 inside = insetOf(m, p, n);
+                const double radius = m.thicknessFilterRadius / reference::uvPerLength(matrices[0], 0);
+                const int k = reference::cascadeOf(matrices, inside, radius);
+                if (k < 0) return 0.0;
+                const auto& matrix = matrices[size_t(k)];
+                return reference::thickness(
+                    from.maps[size_t(k)].map, reference::shadowCoordinates(matrix, inside, {0, 0, 0}, 0),
+                    taps, radius * reference::uvPerLength(matrix, 0), from.maps[size_t(k)].view.decoding,
+                    reference::MapFilter::bilinear);
+            }};
+}
+
+inline FormTruth truthOf(const ContentLight& from) {
+    const PelLight& l = from.light.params;
+    const bool moments = l.shadowContent == PEL_SHADOW_CONTENT_MOMENTS;
+    return {[&from, &l, moments](const PelMaterial& m, Vec3 p, Vec3 n) {
+                return moments
+                           ? reference::momentShadow(from.first, from.second, from.from.view, p, n,
+                                                     filterOf(l, m), {l.shadowMinDeviation, l.shadowBleeding})
+                           : reference::exponentialShadow(from.first, l.shadowExponent, from.from.view, p, n,
+                                                          filterOf(l, m));
+            },
+            [&from, &l, moments](const PelMaterial& m, Vec3 p, Vec3 n, const auto& taps) {
+                const Vec3 uvz =
+                    reference::shadowCoordinates(matrixOf(l.worldToShadow), p, n, m.deepScatterNormalOffset);
+                return moments ? reference::thickness(from.first, uvz, taps, m.thicknessFilterRadius,
+                                                      from.from.view.decoding, reference::MapFilter::bilinear)
+                               : reference::exponentialThickness(from.first, l.shadowExponent, uvz, taps,
+                                                                 m.thicknessFilterRadius,
+                                                                 from.from.view.decoding);
+            }};
+}
+
+// From the oracle, and how many pixels are lit, dark and in between, or thick: there is something to see.
+struct Worst {
+    double wide = 0, thickness = 0;
+    size_t lit = 0, dark = 0, between = 0, thick = 0;
+};
+// Leaves out pixels for which `counts`, if given, is false.
+inline Worst worstOf(const Frame& f, const Seen& seen, const FormTruth& truth,
+                     const std::function<bool(const PelMaterial&, Vec3, Vec3)>& counts = {}) {
+    Worst worst;
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        const PelMaterial* m = materialAt(f, i);
+        const Vec3 p = f.slots[PEL_SLOT_POSITION].vec(i), n = f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i);
+        if (!m || (counts && !counts(*m, p, n))) continue;
+        const double wide = truth.wide(*m, p, n), thickness = truth.thickness(*m, p, n, tapsOf(f, *m, i));
+        worst.wide = std::max(worst.wide, std::abs(wide - seen.wide[i]));
+        worst.thickness = std::max(worst.thickness, std::abs(thickness - seen.thickness[i]));
+        ++(wide < 0.01 ? worst.dark : wide > 0.99 ? worst.lit : worst.between);
+        worst.thick += thickness > 1;
+    }
+    return worst;
 }
 
 }  // namespace shade_test

@@ -1,0 +1,602 @@
+// Shadow maps of every content and projection: wide shadow and thickness against the oracle and without
+// bounds and skipping, what the forms have in common, and what is refused.
+#include <limits>
+
+#include "shader_ready.h"
+#include "shadow_forms.h"
+#include "tolerances.h"
+
+using namespace shade_test;
+
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN(),
+                infinity = std::numeric_limits<float>::infinity();
+constexpr PelShadowContent filtered[] = {PEL_SHADOW_CONTENT_MOMENTS, PEL_SHADOW_CONTENT_EXPONENTIAL};
+const Vec3 lamp{24, 10, 70}, down{0, 0, -1}, slanted{0.5, 0.2, 0.9};
+// A face in the middle of the picture, an edge, a corner of three faces.
+const Vec3 aims[] = {{0, 0, 1}, {1, 0, 1}, {-1, 1, 1}};
+
+// Bumps on open ground, in cells of texels: nothing that a mistaken texel would leave as it is.
+double bumps(Vec3 d, int texel) {
+    const double ground = d.z < -1e-3 ? (lamp.z + 8) / -d.z : 500;
+    const int cell = texel / 7 * 31;
+    return std::min(ground, 500.0) - (cell % 3 ? 9 + cell % 23 : 0) / reference::length(d);
+}
+
+struct Check {
+    double wide = tolerance::wideShadow, thickness = tolerance::mapThickness;
+    bool atlas = false;
+    std::function<bool(const PelMaterial&, Vec3, Vec3)> counts = {};
+};
+constexpr double any = INFINITY;
+
+struct Compared : Worst {
+    uint64_t filtered = 0, read = 0;  // pixels, and those whose filters bounds of blocks did not decide
+};
+
+// Against the oracle; filters that bounds decide, and what is skipped, give what texels would, to the bit.
+template <class From>
+Compared expectOracle(const std::string& what, Frame f, const From& from, const Check& check = {}) {
+    SCOPED_TRACE(what);
+    f.options.countPixels = 1;
+    const Seen seen = shadeForms(f, {from.light}, check.atlas);
+    f.options.disableSkipping = 1;
+    const Seen all = shadeForms(f, {from.light}, check.atlas);
+    EXPECT_EQ(seen.wide, all.wide);
+    EXPECT_EQ(seen.thickness, all.thickness);
+    EXPECT_LE(seen.stats.pixelsWideShadow, all.stats.pixelsWideShadow);
+    EXPECT_EQ(all.stats.pixelsShadowTexels, all.stats.pixelsWideShadow);
+    const Worst worst = worstOf(f, seen, truthOf(from), check.counts);
+    EXPECT_LE(worst.wide, check.wide);
+    EXPECT_LE(worst.thickness, check.thickness);
+    for (const float t : seen.thickness) EXPECT_TRUE(std::isfinite(t));
+    const uint64_t decided = seen.stats.pixelsWideShadow - seen.stats.pixelsShadowTexels;
+    EXPECT_LE(decided, size_t(std::ranges::count_if(seen.wide, [](float w) { return w == 0 || w == 1; })));
+    return {worst, seen.stats.pixelsWideShadow, seen.stats.pixelsShadowTexels};
+}
+
+// Texels that throw no shadow: each fifth is one of `bad`.
+void spoil(std::vector<float>& texels, std::vector<double>& truth, std::initializer_list<float> bad,
+           uint32_t components = 1) {
+    for (size_t i = 0; i < truth.size(); i += 5) {
+        const float value = bad.begin()[i % bad.size()];
+        texels[components * i] = value;
+        truth[i] = std::isfinite(value) ? value : NAN;
+    }
+}
+
+std::string nameOf(const char* form, bool perspective, bool reversed, double number) {
+    return form + std::string(perspective ? ", perspective" : "") + (reversed ? ", reversed " : " ") +
+           std::to_string(number);
+}
+
+TEST(ShadowMaps, OfDepthMatchTheOracle) {
+    const Frame f = formFrame();
+    double decided = 0, all = 0;
+    for (const bool perspective : {false, true})
+        for (const bool reversed : {false, true}) {
+            for (const uint32_t size : {61u, 90u, 300u}) {
+                MapLight from = mapLight(size, perspective, reversed, slanted, {24, 10, 5}, 70, size);
+                const bool spoilt = size == 90;
+                if (spoilt) spoil(from.light.map.values, from.map.depth, {nan, infinity, -infinity});
+                const Compared seen = expectOracle(nameOf("depth", perspective, reversed, size), f, from,
+                                                   {.thickness = spoilt ? any : tolerance::mapThickness});
+                EXPECT_GT(seen.between, f.pixels() / 20);
+                EXPECT_GT(seen.read, 0u);
+                decided += double(seen.filtered - seen.read), all += double(seen.filtered);
+            }
+            // A matrix of homogeneous coordinates may have any factor.
+            MapLight from = mapLight(5, perspective, reversed, slanted, {24, 10, 5}, 70, 90);
+            const Seen first = shadeForms(f, {from.light});
+            for (const float factor : {0.25f, 16.0f}) {
+                for (float& m : from.light.params.worldToShadow) m *= factor;
+                EXPECT_EQ(shadeForms(f, {from.light}).wide, first.wide) << factor << perspective << reversed;
+            }
+        }
+    EXPECT_GT(decided / all, 0.2);
+    for (const auto& [width, height, size] : {std::tuple{1u, 1u, 1u}, {1u, 7u, 2u}, {131u, 3u, 5u}})
+        expectOracle("a small frame", formFrame(1, width, height),
+                     mapLight(3, false, false, slanted, {0, 0, 0}, 70, size));
+}
+
+TEST(ShadowMaps, OfMomentsAndExponentialsMatchTheOracle) {
+    const Frame f = formFrame();
+    for (const auto content : filtered)
+        for (const bool perspective : {false, true})
+            for (const bool reversed : {false, true})
+                for (const bool spoilt : {false, true}) {
+                    ContentLight from = contentLight(content, perspective, reversed, 131);
+                    MapImage& map = from.light.maps[0];
+                    if (spoilt && content == PEL_SHADOW_CONTENT_MOMENTS)
+                        spoil(map.values, from.first.depth, {nan, infinity}, 2);
+                    else if (spoilt)
+                        spoil(map.values, from.first.depth, {nan, infinity, -1, 0});
+                    const Compared seen =
+                        expectOracle(nameOf("content", perspective, reversed, content), f, from,
+                                     {tolerance::contentShadow, spoilt ? any : tolerance::contentThickness});
+                    EXPECT_GT(seen.between, f.pixels() / 50);
+                    EXPECT_GT(seen.thick, f.pixels() / (spoilt ? 50 : 20));
+                }
+}
+
+TEST(ShadowMaps, CubesMatchTheOracle) {
+    Frame f = formFrame();
+    for (const bool radial : {false, true})
+        for (const Vec3 aim : aims)
+            for (const uint32_t size : {16u, 64u, 128u}) {
+                CubeLight from = cubeLight(size, radial, turnTo(down, aim), lamp, bumps);
+                if (size == 64) spoil(from.light.maps[0].values, from.map.depth, {nan});
+                f.options.rotateTaps = radial && size == 16;
+                const Compared seen = expectOracle(nameOf("cube", !radial, false, size), f, from,
+                                                   {.thickness = tolerance::cubeThickness});
+                EXPECT_GT(seen.between, f.pixels() / 50);
+                EXPECT_TRUE(size == 64 || seen.thick > f.pixels() / 20);
+                from.light.params.range = 71;  // reaches the middle only
+                const Compared middle = expectOracle("range", f, from, {any, any});
+                EXPECT_GT(middle.filtered, 0u);
+                EXPECT_LT(middle.filtered, seen.filtered);
+            }
+    expectOracle("the smallest of cubes", formFrame(1, 9, 3),
+                 cubeLight(1, true, turnTo(down, aims[1]), lamp, bumps),
+                 {.thickness = tolerance::cubeThickness});
+}
+
+// Without pixels near the line where another cascade is taken.
+TEST(ShadowMaps, CascadesMatchTheOracle) {
+    Frame f = formFrame();
+    for (const bool reversed : {false, true})
+        for (const bool atlas : {false, true})
+            for (const bool spoilt : {false, true}) {
+                CascadeLight from = cascadeLight({14, 24, 36, 52}, reversed, 97, atlas);
+                for (size_t k = 0; spoilt && k < 4; ++k)
+                    spoil(from.light.maps[k].values, from.maps[k].map.depth, {nan});
+                f.options.rotateTaps = reversed && atlas;
+                const auto matrices = matricesOf(from);
+                const double perUv = 1 / reference::uvPerLength(matrices[0], 0);
+                const auto sure = [&](Vec3 at, double radius) {
+                    const int chosen = reference::cascadeOf(matrices, at, radius);
+                    return chosen == reference::cascadeOf(matrices, at, radius - 1e-4) &&
+                           chosen == reference::cascadeOf(matrices, at, radius + 1e-4);
+                };
+                size_t taken[5] = {};  // none, and each
+                Check check{.thickness = spoilt ? any : tolerance::mapThickness, .atlas = atlas};
+                check.counts = [&](const PelMaterial& m, Vec3 p, Vec3 n) {
+                    const double half = m.shadowFilterWidth / 2;
+                    if (!sure(p, half) || !sure(insetOf(m, p, n), m.thicknessFilterRadius * perUv))
+                        return false;
+                    ++taken[1 + reference::cascadeOf(matrices, p, half)];
+                    return true;
+                };
+                const Compared seen =
+                    expectOracle(nameOf("cascades", atlas, reversed, spoilt), f, from, check);
+                for (const size_t pixels : taken) EXPECT_GT(pixels, 100u);
+                EXPECT_GT(seen.between, f.pixels() / 50);
+                EXPECT_TRUE(spoilt || seen.thick > f.pixels() / 20);
+                EXPECT_LT(seen.filtered, seen.lit + seen.dark + seen.between) << "outside of all: none";
+            }
+}
+
+// --- the filter: its softness, the borders of the map, and which texels are read ---
+
+Frame filterFrame(uint32_t seed = 1, float factor = 1) {
+    Frame f = formFrame(seed, 130, 60);
+    f.materials[2].shadowFilterWidth = 3;
+    for (auto& [id, material] : f.materials) material.shadowFilterWidth *= factor;
+    return f;
+}
+// Makes the frame a plane.
+Frame flattened(Frame f) {
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        f.slots[PEL_SLOT_POSITION].values[3 * i + 2] = 0;
+        for (size_t c = 0; c < 3; ++c) f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values[3 * i + c] = c == 2;
+    }
+    return f;
+}
+
+// Softness from hard to wider than the filter; over open ground, and under a closed roof that comes down into
+// it: everything is in shadow but for where the roof is nearer than the softness, or below.
+TEST(ShadowFilter, OfAnySoftness) {
+    for (const float softness : {0.01f, 0.25f, 1.0f, 1.7f, 5.0f, 40.0f})
+        for (const bool perspective : {false, true})
+            for (const bool reversed : {false, true})
+                for (const bool roof : {false, true}) {
+                    MapLight from = mapLight(7, perspective, reversed, roof ? Vec3{0.1, 0.2, 0.9} : slanted,
+                                             {26, 12, roof ? 0.0 : 5.0}, roof ? 90 : 70, 200);
+                    from.light.params.shadowSoftness = softness;
+                    for (size_t i = 0; roof && i < from.light.map.values.size(); ++i)
+                        setDepth(from, i, 168 - 0.2 * double(i % 200) + 0.01 * double(i / 200));
+                    const std::string what =
+                        nameOf(roof ? "softness under a roof" : "softness", perspective, reversed, softness);
+                    // Of a hard shadow float depths are a larger part.
+                    const Compared seen = expectOracle(
+                        what, filterFrame(1, 0.4f), from,
+                        {softness < 0.1f ? tolerance::wideShadowAnywhere : tolerance::wideShadow, any});
+                    EXPECT_LT(seen.read, seen.filtered) << what << ": bounds decide some";
+                    EXPECT_GT(seen.between, roof ? 20u : 100u) << what;
+                    EXPECT_GE(seen.dark, roof && softness < 2 ? 51u : 0u) << what;
+                }
+}
+
+// A roof that is the whole map: beyond each of its four borders light comes in, although the outermost texels
+// are near the light. With bias and slope, and with filters of which the map is a small part.
+TEST(ShadowFilter, OutsideOfTheMapEverythingIsLit) {
+    for (const bool perspective : {false, true})
+        for (const bool reversed : {false, true})
+            for (const uint32_t size : {1u, 2u, 7u, 8u, 9u, 16u, 17u, 40u, 129u}) {
+                MapLight from = mapLight(3, perspective, reversed, {0.2, 0.1, 0.9}, {26, 12, 0}, 16, size);
+                for (size_t i = 0; i < from.light.map.values.size(); ++i) setDepth(from, i, 100);
+                from.light.params.shadowFilterTexels = 256;
+                const std::string what = nameOf("map of", perspective, reversed, size);
+                const Compared seen = expectOracle(what, filterFrame(2), from, {.thickness = any});
+                EXPECT_GT(seen.between, 200u) << what;
+                EXPECT_GE(seen.lit, size > 2 ? 501u : 0u) << what;
+                EXPECT_GE(seen.dark, size > 16 ? 51u : 0u) << what;
+            }
+}
+
+// The map of a plane alone, lit at a slant: the bounds know its slope, so that hardly a filter reads texels.
+TEST(ShadowFilter, ASlantedPlaneIsDecidedByItsSlope) {
+    MapLight from = mapLight(7, false, false, {0.8, 0.3, 0.5}, {26, 12, 0}, 120, 200);
+    const auto& v = from.view;
+    for (size_t i = 0; i < from.light.map.values.size(); ++i) {
+        const double right = (double(i % 200) + 0.5) / 200 - 0.5, below = (double(i / 200) + 0.5) / 200 - 0.5;
+        const Vec3 p = v.origin + right * v.extent * v.right + below * v.extent * v.down;
+        setDepth(from, i, -p.z / v.forward.z);
+    }
+    from.light.params.shadowBias = 1;  // the plane itself is not its own shadow's border
+    const Compared seen = expectOracle("plane", flattened(filterFrame(1, 0.4f)), from, {.thickness = any});
+    EXPECT_GT(seen.filtered, 1000u);
+    EXPECT_LT(double(seen.read), 0.05 * double(seen.filtered));
+}
+
+// A straight edge between two blocks of the map: filters that overlap blocks of both sides read texels, and
+// no others do.
+TEST(ShadowFilter, TexelsAreReadAcrossAnEdgeAlone) {
+    for (const bool nearIsLeft : {true, false}) {
+        MapLight from = mapLight(3, false, false, {0, 0, 1}, {24, 10, 0}, 128, 128);
+        for (size_t i = 0; i < from.light.map.values.size(); ++i)
+            setDepth(from, i, (i % 128 < 64) == nearIsLeft ? 50 : 250);
+        const Frame f = flattened(filterFrame(2));
+        uint64_t skin = 0, across = 0, doubtful = 0;
+        for (size_t i = 0; i < f.pixels(); ++i) {
+            const PelMaterial* m = materialAt(f, i);
+            if (!m) continue;
+            ++skin;
+            const Vec3 offset = f.slots[PEL_SLOT_POSITION].vec(i) - from.view.origin;
+            const double x = reference::dot(from.view.right, offset) / from.view.extent * 128 + 63.5;
+            const double radius = std::max(0.5 * m->shadowFilterWidth, 2.0);  // texels, at least two
+            across += x - radius <= 63 && x + radius >= 64;
+            doubtful += std::abs(x - radius - 63) < 1e-3 || std::abs(x + radius - 64) < 1e-3;
+        }
+        const Compared seen = expectOracle("edge", f, from, {.thickness = any});
+        EXPECT_EQ(seen.filtered, skin);
+        EXPECT_NEAR(double(seen.read), double(across), double(doubtful));
+        EXPECT_GT(across, 500u);
+        EXPECT_LT(across, skin / 2);
+        EXPECT_LT(doubtful, across / 20);
+    }
+}
+
+// A straight edge high over a plane gives w = (1 + q sqrt(2 - q^2)) / 2 at q from -1 to 1 across it: the
+// profile by which the shadow table reads its columns.
+TEST(ShadowFilter, AStraightEdgeHasTheTablesProfile) {
+    MapLight from = mapLight(1, false, false, {0, 0, 1}, {24, 10, 0}, 64, 640);
+    for (size_t i = 0; i < from.light.map.values.size(); ++i) setDepth(from, i, i % 640 < 320 ? 100 : 200);
+    from.light.params.shadowFilterTexels = 256;
+    Frame f = flattened(formFrame());
+    f.slots[PEL_SLOT_MATERIAL].values.assign(f.pixels(), 1.0f);
+    const Seen seen = shadeForms(f, {from.light});
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        const double across =
+            reference::dot(f.slots[PEL_SLOT_POSITION].vec(i) - Vec3{24, 10, 0}, from.view.right);
+        const double q = std::clamp(across / 4, -1.0, 1.0);
+        EXPECT_NEAR(seen.wide[i], (1 + q * std::sqrt(2 - q * q)) / 2, tolerance::wideShadowEdge) << across;
+    }
+}
+
+// The bounds of a map are of what its texels say, in whatever format.
+TEST(ShadowFilter, AMapOfIntegersIsTheMapOfItsFloats) {
+    MapLight from = mapLight(7, false, false, slanted, {26, 12, 5}, 70, 200);
+    std::vector<uint16_t> integers;
+    for (size_t i = 0; i < from.light.map.values.size(); ++i) {
+        integers.push_back(uint16_t(std::lround(65535 * std::clamp(from.light.map.values[i], 0.0f, 1.0f))));
+        setDepth(from, i, from.view.decoding.range * integers.back() / 65535.0);
+    }
+    Frame f = filterFrame();
+    f.lights = {from.light};
+    showWideShadow(f);
+    const std::vector<float> expected = shade(device(), f, tables());
+    const std::vector<float> shown = shade(device(), f, tables(), nullptr, [&](pellucid::Shader& shader) {
+        const pellucid::Buffer map(device(), integers);
+        shader.set(0, PEL_LIGHT_SHADOW_MAP, pellucid::imageDesc(map, PEL_FORMAT_R16_UNORM, 200, 200));
+    });
+    EXPECT_GT(*std::max_element(shown.begin(), shown.end()), 0.1f);
+    for (size_t i = 0; i < shown.size(); ++i) ASSERT_NEAR(shown[i], expected[i], tolerance::wideShadow) << i;
+}
+
+// --- when a map is filtered ---
+
+Frame litFrame() {
+    Frame f = formFrame();
+    f.lights = {mapLight(3, false, false, slanted, {24, 10, 5}, 70, 61).light};
+    f.options.countPixels = 1;
+    for (auto& [id, m] : f.materials) std::fill_n(m.deepScatterColor, 3, 0.0f);
+    showWideShadow(f);
+    return f;
+}
+
+TEST(ShadowFilter, OffCostsNothingAndAnImageGoesFirst) {
+    Frame f = litFrame();
+    PelShaderStats off = pelShaderStatsDefaults(), on = off, given = off;
+    shade(device(), f, tables(), &on);
+    EXPECT_EQ(on.features, uint32_t(PEL_FEATURE_SHADOW | PEL_FEATURE_FILTER_SHADOW));
+    EXPECT_EQ(on.launches, 4u);
+    EXPECT_EQ(on.pixelsWideShadow, on.pixelsShaded);
+    f.lights[0].params.shadowFilterTexels = 0;
+    shade(device(), f, tables(), &off);
+    EXPECT_EQ(off.features, 0u);
+    EXPECT_EQ(off.launches, 2u);
+    EXPECT_GE(on.scratchBytes, off.scratchBytes + 4 * f.pixels());
+    EXPECT_EQ(off.pixelsWideShadow, 0u);
+    f.lights[0].params.shadowFilterTexels = 24;
+    f.lights[0].wide = {1, std::vector<float>(f.pixels(), 0.5f)};
+    EXPECT_EQ(shade(device(), f, tables(), &given)[3 * (f.pixels() - 1)], 0.5f);
+    EXPECT_EQ(given.launches, off.launches);
+}
+
+// Pre-integrated materials are shadowed by a map whatever the light says of its filter, unless it turns the
+// filter off.
+TEST(ShadowFilter, IsUsedByDefault) {
+    for (const bool besideScreen : {false, true})
+        for (const bool on : {true, false}) {
+            Frame f = litFrame();
+            f.lights[0].params.shadowFilterTexels = on ? pelLightDefaults().shadowFilterTexels : 0;
+            if (besideScreen) f.materials[2].scattering = PEL_SCATTERING_NONE;
+            pellucid::Shader shader(device());
+            setFrame(device(), shader, f, tables());
+            const auto target = setTarget(device(), shader, f);
+            shader.commit().execute();
+            const auto shown = target.readAll<float>();
+            size_t dark = 0;
+            for (size_t i = 0; i < f.pixels(); ++i)
+                dark += f.slots[PEL_SLOT_MATERIAL].at(i) == 1 && shown[3 * i] < 0.5f;
+            EXPECT_EQ(dark > f.pixels() / 50, on);
+            EXPECT_EQ(dark == 0, !on);
+            EXPECT_EQ(shader.warnings().find("gets no shadow from the map of light 0") == std::string::npos,
+                      on)
+                << shader.warnings();
+        }
+}
+
+// --- what the forms have in common ---
+
+TEST(ShadowForms, OfAFlatOccluderAllContentsAreAlike) {
+    const Frame f = formFrame();
+    for (const int form : {0, 1, 2, 3}) {
+        const auto seen = [&](PelShadowContent content) {
+            return shadeForms(f, {contentLight(content, form & 1, form & 2, 131, true).light});
+        };
+        const Seen depth = seen(PEL_SHADOW_CONTENT_DEPTH);
+        for (const auto content : filtered) {
+            const Seen as = seen(content);
+            size_t dark = 0;
+            for (size_t i = 0; i < f.pixels(); ++i) {
+                if (!materialAt(f, i)) continue;
+                EXPECT_NEAR(as.thickness[i], depth.thickness[i], tolerance::contentThickness) << i;
+                if (depth.wide[i] == 1) {
+                    EXPECT_GE(as.wide[i], 1 - tolerance::contentShadow);
+                } else if (depth.thickness[i] > 15) {
+                    ++dark;
+                    EXPECT_LE(as.wide[i], tolerance::contentBehind) << "15 mm behind an occluder";
+                }
+            }
+            EXPECT_GT(dark, 200u);
+        }
+    }
+}
+
+// What lies in front of a cube's face is seen alike in every content.
+TEST(ShadowForms, CubesHoldAllContents) {
+    const Frame f = formFrame();
+    const auto shelf = [&](Vec3 d, int) {
+        return d.z < -1e-3 ? std::min((d.x * 40 < -d.z * 3 ? 30.0 : 78.0) / -d.z, 500.0) : 500;
+    };
+    for (const bool radial : {false, true}) {
+        const CubeLight cube = cubeLight(256, radial, turnTo(down, {-1, 1, 1}), lamp, shelf);
+        const Seen depth = shadeForms(f, {cube.light});
+        for (const auto content : filtered) {
+            const bool moments = content == PEL_SHADOW_CONTENT_MOMENTS;
+            Light other = cube.light;
+            other.params.shadowContent = content;
+            other.params.shadowExponent = 80;
+            MapImage& map = other.maps[0];
+            map.components = moments ? 2 : 1;
+            map.values.clear();
+            for (const double z : cube.map.depth) {
+                map.values.push_back(float(moments ? z : std::exp(80 * z)));
+                if (moments) map.values.push_back(float(z * z));
+            }
+            const Seen as = shadeForms(f, {other});
+            double wide = 0;
+            for (size_t i = 0; i < f.pixels(); ++i) {
+                if (!materialAt(f, i)) continue;
+                EXPECT_NEAR(as.thickness[i], depth.thickness[i],
+                            tolerance::contentInCubeThickness + 0.02 * depth.thickness[i])
+                    << i << " radial " << radial;
+                wide += std::abs(as.wide[i] - depth.wide[i]) / double(f.pixels());
+            }
+            EXPECT_LE(wide, tolerance::contentInCube) << "mean; content " << content << ", radial " << radial;
+        }
+    }
+}
+
+TEST(ShadowForms, OneCascadeIsTheParallelMapToTheBit) {
+    const Frame f = formFrame();
+    const auto expectSame = [&](Light light) {
+        light.params.shadowCascades = 1;
+        const Seen as = shadeForms(f, {light});
+        light.params.shadowCascades = 0;
+        const Seen is = shadeForms(f, {light});
+        EXPECT_EQ(as.wide, is.wide);
+        EXPECT_EQ(as.thickness, is.thickness);
+        EXPECT_GT(*std::max_element(is.thickness.begin(), is.thickness.end()), 1);
+    };
+    for (const bool reversed : {false, true}) expectSame(cascadeLight({70}, reversed).light);
+    expectSame(contentLight(PEL_SHADOW_CONTENT_MOMENTS, false, false, 131).light);
+}
+
+// Before cascades a map that began inside its buffer was read from the buffer's start.
+TEST(ShadowForms, MapsMayBeginInsideTheirBuffer) {
+    const Frame f = formFrame();
+    const Light two = cascadeLight({70, 70}, false, 97, true).light;
+    EXPECT_EQ(shadeForms(f, {two}).thickness, shadeForms(f, {two}, true).thickness);
+    Light second = two;  // the second of the atlas as a plain map
+    second.params.shadowCascades = 0;
+    std::copy_n(two.params.cascadeToShadow[0], 16, second.params.worldToShadow);
+    std::swap(second.maps[0].slot, second.maps[1].slot);
+    Light plain = second;
+    plain.maps = {second.maps[1]};
+    EXPECT_EQ(shadeForms(f, {plain}).thickness, shadeForms(f, {second}, true).thickness);
+}
+
+// A ball over open ground, seen by cubes that are turned, and by one whose face looks down.
+TEST(ShadowForms, TurningACubeChangesNothingAndFacesMeetWithoutASeam) {
+    const auto ball = [](Vec3 d, int) {
+        const Vec3 centre = Vec3{24, 10, 30} - lamp;
+        const double along = reference::dot(d, centre), d2 = reference::dot(d, d),
+                     root = along * along - d2 * (reference::dot(centre, centre) - 8 * 8);
+        if (root > 0 && along > 0) return (along - std::sqrt(root)) / d2;
+        return d.z < -1e-3 ? std::min((lamp.z + 8) / -d.z, 500.0) : 500;
+    };
+    const Frame f = formFrame();
+    const auto seenBy = [&](bool radial, Vec3 aim) {
+        return shadeForms(f, {cubeLight(512, radial, turnTo(down, aim), lamp, ball).light});
+    };
+    const Seen straight = seenBy(false, aims[0]);
+    for (const Vec3 aim : {aims[1], aims[2]})
+        for (const bool radial : {false, true}) {
+            const Seen turned = seenBy(radial, aim);
+            double wide = 0, thickness = 0;
+            for (size_t i = 0; i < f.pixels(); ++i) {
+                if (!materialAt(f, i)) continue;
+                EXPECT_NEAR(turned.wide[i], straight.wide[i], tolerance::cubeTurned) << i;
+                wide += std::abs(turned.wide[i] - straight.wide[i]);
+                // Taps lie elsewhere in the disk: only the mean of thickness can stay.
+                thickness += turned.thickness[i] - straight.thickness[i];
+            }
+            EXPECT_LE(wide / double(f.pixels()), tolerance::cubeTurned / 10);
+            EXPECT_NEAR(thickness / double(f.pixels()), 0, tolerance::cubeTurnedThickness);
+        }
+}
+
+// Places that are no numbers, far away or at the light are their own pixel's affair.
+TEST(ShadowForms, BadPlaces) {
+    const Light lights[] = {mapLight(3, true, false, slanted, {24, 10, 5}, 70, 61).light,
+                            cascadeLight({24, 70}).light,
+                            contentLight(PEL_SHADOW_CONTENT_EXPONENTIAL, true, false, 61).light,
+                            cubeLight(64, false, turnTo(down, aims[2]), lamp, bumps).light};
+    for (const Light& light : lights) {
+        Frame f = formFrame();
+        const Seen before = shadeForms(f, {light});
+        const size_t bad = f.pixels() / 4 + 20;
+        float* places = &f.slots[PEL_SLOT_POSITION].values[3 * bad];
+        places[0] = nan;
+        for (int c = 0; c < 3; ++c) places[9 + c] = 1e30f, places[18 + c] = float(lamp[c]);
+        f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values[3 * (bad + 9)] = nan;
+        const Seen after = shadeForms(f, {light});
+        for (size_t i = 0; i < f.pixels(); ++i) {
+            ASSERT_TRUE(std::isfinite(after.thickness[i])) << i;
+            if (i == bad || i == bad + 3 || i == bad + 6 || i == bad + 9) continue;
+            ASSERT_EQ(after.wide[i], before.wide[i]) << i;
+            ASSERT_EQ(after.thickness[i], before.thickness[i]) << i;
+        }
+        if (light.params.type != PEL_LIGHT_DIRECTIONAL) continue;
+        EXPECT_EQ(after.wide[bad + 3], 1) << "far outside of the map: no shadow";
+        EXPECT_EQ(after.thickness[bad + 3], 0) << "and no thickness";
+    }
+}
+
+TEST(ShadowForms, WhatIsRefused) {
+    const Light plain = mapLight(3, false, false, slanted, {24, 10, 5}, 70, 31).light,
+                cube = cubeLight(16, false, turnTo(down, aims[0]), lamp, bumps).light,
+                cascades = cascadeLight({24, 70}).light,
+                moments = contentLight(PEL_SHADOW_CONTENT_MOMENTS, false, false, 31).light,
+                exponential = contentLight(PEL_SHADOW_CONTENT_EXPONENTIAL, false, false, 31).light;
+    const struct {
+        const Light& from;
+        const char* word;
+        std::function<void(PelLight&, Light&)> change;
+    } rows[] = {
+        {plain, "singular", [](auto& p, Light&) { std::copy_n(p.worldToShadow, 4, p.worldToShadow + 4); }},
+        {plain, "singular", [](auto& p, Light&) { std::fill_n(p.worldToShadow, 4, 0.0f); }},
+        {exponential, "two components",
+         [](auto& p, Light&) { p.shadowContent = PEL_SHADOW_CONTENT_MOMENTS; }},
+        {exponential, "shadowExponent", [](auto& p, Light&) { p.shadowExponent = 0; }},
+        {exponential, "shadowExponent", [](auto& p, Light&) { p.shadowExponent = -80; }},
+        {exponential, "shadowExponent", [](auto& p, Light&) { p.shadowExponent = nan; }},
+        {exponential, "shadowExponent", [](auto& p, Light&) { p.shadowExponent = 1e5f; }},
+        {exponential, "below 0", [](auto& p, Light&) { p.shadowDepthRange *= -1; }},
+        {moments, "PelShadowContent", [](auto& p, Light&) { p.shadowContent = PelShadowContent(3); }},
+        {cube, "16 x 96", [](auto&, Light& l) { l.maps[0].height = 95; }},
+        {cube, "directional", [](auto& p, Light&) { p.type = PEL_LIGHT_DIRECTIONAL; }},
+        {cube, "shadowDepthA is 0", [](auto& p, Light&) { p.shadowDepthA = 0; }},
+        {cube, "shadowDepthRange",
+         [](auto& p, Light&) { p.shadowProjection = PEL_SHADOW_CUBE_RADIAL, p.shadowDepthRange = -1; }},
+        {cube, "origin", [](auto& p, Light&) { p.worldToShadow[3] += 1; }},
+        {cube, "rotation",
+         [](auto& p, Light&) {
+             for (int c = 0; c < 4; ++c) p.worldToShadow[c] *= 2;
+         }},
+        {cube, "rotation", [](auto& p, Light&) { std::fill_n(p.worldToShadow, 16, 0.0f); }},
+        {cube, "finite", [](auto& p, Light&) { p.worldToShadow[5] = nan; }},
+        {cube, "PelShadowProjection", [](auto& p, Light&) { p.shadowProjection = PelShadowProjection(4); }},
+        {cube, "cascades", [](auto& p, Light&) { p.shadowCascades = 1; }},
+        {cascades, "cascade 2 is not set", [](auto& p, Light&) { p.shadowCascades = 3; }},
+        {cascades, "directional", [](auto& p, Light&) { p.type = PEL_LIGHT_SPOT; }},
+        {cascades, "directional", [](auto& p, Light&) { p.shadowProjection = PEL_SHADOW_PERSPECTIVE; }},
+        {cascades, "cascadeToShadow[0] is singular",
+         [](auto& p, Light&) { std::fill_n(p.cascadeToShadow[0], 4, 0.0f); }},
+        {cascades, "worldToShadow is singular",
+         [](auto& p, Light&) { std::fill_n(p.worldToShadow, 16, 0.0f); }},
+        {cascades, "cascadeToShadow[0]", [](auto& p, Light&) { p.cascadeToShadow[0][3] = nan; }},
+        {cascades, "cascadeDepthRange[0] is 0", [](auto& p, Light&) { p.cascadeDepthRange[0] = 0; }},
+        {cascades, "one sign", [](auto& p, Light&) { p.cascadeDepthRange[0] *= -1; }},
+    };
+    const auto refused = [](PelError code, const char* word, const std::vector<Light>& lights) {
+        expectError(code, {word}, [&] { shadeForms(formFrame(1, 9, 3), lights); });
+    };
+    for (size_t i = 0; i < std::size(rows); ++i) {
+        SCOPED_TRACE("row " + std::to_string(i));
+        Light light = rows[i].from;
+        rows[i].change(light.params, light);
+        refused(PEL_ERROR_INVALID_ARGUMENT, rows[i].word, {light});
+    }
+    Light other = cascades;
+    other.maps[1].components = 2;
+    other.maps[1].values.resize(2 * other.maps[1].values.size());
+    refused(PEL_ERROR_UNSUPPORTED, "cascade has format", {other});
+    other = exponential;
+    other.params.shadowContent = PEL_SHADOW_CONTENT_DEPTH;
+    refused(PEL_ERROR_UNSUPPORTED, "shadowContent", {exponential, other});
+    // Without places; and beside a filtered shadow, images of the host have its format.
+    Frame f = litFrame();
+    f.slots[PEL_SLOT_POSITION] = {};
+    expectError(PEL_ERROR_INVALID_ARGUMENT, {"position image"}, [&] { shade(device(), f, tables()); });
+    f = litFrame();
+    f.lights.push_back(f.lights[0]);
+    for (const PelFormat format : {PEL_FORMAT_R8_UNORM, PEL_FORMAT_R32F}) {
+        const auto run = [&] {
+            shade(device(), f, tables(), nullptr, [&](pellucid::Shader& shader) {
+                const pellucid::Buffer wide(device(), f.pixels() * 4);
+                shader.set(1, PEL_LIGHT_WIDE_SHADOW, pellucid::imageDesc(wide, format, f.width, f.height));
+            });
+        };
+        if (format == PEL_FORMAT_R32F)
+            run();
+        else
+            expectError(PEL_ERROR_UNSUPPORTED, {"R32F"}, run);
+    }
+}
+
+}  // namespace
