@@ -13,6 +13,7 @@ import shlex
 import subprocess
 import sys
 import tempfile
+import textwrap
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -38,9 +39,8 @@ def promises(include):
         lines = [f'printf("value {v} %lld\\n", (long long){v});' for v in values]
         lines += [f'printf("size {s} %lld\\n", (long long)sizeof({s}));' for s in sizes]
         source = Path(work, "list.c")
-        source.write_text("#include <pellucid/pellucid.h>\n#include <stdio.h>\nint main(void) {\n"
-                          + "\n".join(lines) +
-                          "\nreturn 0; }\n")
+        source.write_text("\n".join(["#include <pellucid/pellucid.h>", "#include <stdio.h>",
+                                     "int main(void) {", *lines, "return 0; }"]))
         run(*CC, "-I", include, source, "-o", Path(work, "list"))
         measured = [line.rsplit(" ", 1) for line in run(Path(work, "list")).splitlines()]
     return {f"function {f}": 0 for f in functions} | {name: int(number) for name, number in measured}
@@ -91,12 +91,16 @@ def main(what, include, library=None):
     include = Path(include).resolve()
     now = promises(include)
     if what == "list":
-        print("\n".join(f"{name} {number}" if number or not name.startswith("function") else name
-                        for name, number in now.items()))
+        for kind in ("function", "value", "size"):
+            names = [f"{name.split()[1]}={number}" if kind != "function" else name.split()[1]
+                     for name, number in now.items() if name.startswith(kind)]
+            print(textwrap.fill(" ".join(names), 110, initial_indent=f"{kind} ", subsequent_indent=f"{kind} ",
+                                break_on_hyphens=False))
         return
-    lines = [line.split() for line in (HERE / "promises.txt").read_text().splitlines()
-             if not line.startswith("#")]
-    then = {" ".join(words[:2]): int(words[2]) if len(words) > 2 else 0 for words in lines}
+    then = {}
+    for line in (HERE / "promises.txt").read_text().splitlines()[1:]:
+        kind, *names = line.split()
+        then |= {f"{kind} {name}": int(number or 0) for name, _, number in (n.partition("=") for n in names)}
     library = Path(library).resolve()
     exported = set(re.findall(r" T (pel\w+)$", run("nm", "-D", "--defined-only", library), re.M))
     wrong = list(broken_promises(then, now))

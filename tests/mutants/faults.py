@@ -5,14 +5,8 @@ A fault is found in the text with comments, strings, preprocessor lines and mess
 each one changes what runs.
 """
 import hashlib
-import io
 import re
-import sys
-import tokenize
 from dataclasses import dataclass
-
-import meanings
-from meanings import closing
 
 COMPARISON = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "=="}
 
@@ -28,6 +22,11 @@ OPERATOR = {"*": "/", "/": "*", "%": "/", "*=": "/=", "/=": "*=",
 WORD = both_ways("true/false True/False min/max fmin/fmax minw/maxw floor/ceil sin/cos any/all front/back "
                  "any_of/all_of continue/break")
 MESSAGE = r"\b(?:fail|invalidArgument|badFile|warn|note|printf|fprintf|print|throw [\w:]+|raise [\w.]+)\("
+# Comments, the texts of literals (not a quote between digits), and preprocessor lines.
+HIDDEN_C = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|(?P<text>"(?:\\.|[^"\\\n])*"'
+                      r"|(?<!\d)'(?:\\.|[^'\\\n])+')|^[ \t]*#(?:\\\n|[^\n])*", re.S | re.M)
+HIDDEN_PYTHON = re.compile(r"""#[^\n]*|(?P<text>(?<!\w)[a-zA-Z]{0,2}(?P<q>\"\"\"|'''|"|')"""
+                           r"(?:\\.|(?!(?P=q)).)*(?P=q))", re.S)
 
 
 @dataclass(frozen=True)
@@ -43,46 +42,29 @@ class Fault:
     def apply(self, text):
         return text[:self.start] + self.new + text[self.end:]
 
-
-def blank(text):
-    return re.sub(r"[^\n]", " ", text)
-
-
-def masked_c(text):
-    pattern = re.compile(
-        r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\''
-        r"|^[ \t]*#(?:\\\n|[^\n])*",
-        re.S | re.M)
-
-    def keep(match):
-        found = match[0]
-        # A quote between digits is no literal.
-        if found[0] == "'" and match.start() and text[match.start() - 1].isdigit():
-            return found
-        return '"' + blank(found[1:-1]) + '"' if found[0] in "\"'" else blank(found)
-
-    return pattern.sub(keep, text)
+    def is_python(self):
+        """Whether tests in Python notice it."""
+        return self.path.startswith("bindings/python") or self.path.endswith(".py")
 
 
-def masked_python(text):
-    lines = text.splitlines(keepends=True)
-    offsets = [0]
-    for line in lines:
-        offsets.append(offsets[-1] + len(line))
-    out = list(text)
-    for token in tokenize.generate_tokens(io.StringIO(text).readline):
-        if token.type in (tokenize.COMMENT, tokenize.STRING):
-            begin, end = (offsets[row - 1] + column for row, column in (token.start, token.end))
-            for i in range(begin, end):
-                if out[i] != "\n":
-                    out[i] = " "
-            if token.type == tokenize.STRING:
-                out[begin] = out[end - 1] = '"'
-    return "".join(out)
+def closing(text, opening):
+    """The index of the bracket that closes the one at `opening`, or -1."""
+    depth = 0
+    for i in range(opening, len(text)):
+        depth += (text[i] in "([{") - (text[i] in ")]}")
+        if depth == 0:
+            return i
+    return -1
 
 
 def masked(path, text):
-    out = masked_python(text) if path.endswith(".py") else masked_c(text)
+    def blank(hidden):
+        return re.sub(r"[^\n]", " ", hidden)
+
+    def keep(match):
+        return '"' + blank(match[0][1:-1]) + '"' if match["text"] else blank(match[0])
+
+    out = (HIDDEN_PYTHON if path.endswith(".py") else HIDDEN_C).sub(keep, text)
     for match in re.finditer(MESSAGE, out):
         end = closing(out, match.end() - 1)
         if end > 0:
@@ -108,14 +90,13 @@ def operand(text, at):
     return at
 
 
-def number(text):
-    """Another constant than `text`, or nothing."""
-    digits, suffix = re.fullmatch(r"(0[xX][0-9a-fA-F]+|[\d.]+(?:[eE][-+]?\d+)?)(\w*)", text).groups()
+def number(match):
+    """Another constant, or nothing."""
+    digits, suffix = re.fullmatch(r"(0[xX][0-9a-fA-F]+|[\d.]+(?:[eE][-+]?\d+)?)(\w*)", match[0]).groups()
     if digits[:2] in ("0x", "0X"):
         return f"{hex(int(digits, 16) ^ 1)}{suffix}"
     if digits.isdigit():
-        value = int(digits)
-        return f"{value + 1 if value != 1 else 2}{suffix}"
+        return f"{int(digits) + 1 if int(digits) != 1 else 2}{suffix}"
     value = float(digits)
     if 0 < abs(value) < 1e-15:
         return None  # a guard against 0, whatever its size
@@ -131,25 +112,45 @@ def term_end(m, at, sign):
     return end
 
 
+def each(m, kind, pattern, new):
+    """A fault for each match: `new`, or what it returns, in place of group 1, or of all without one."""
+    for match in re.finditer(pattern, m, re.M):
+        changed = new(match) if callable(new) else new
+        if changed is not None:
+            yield *match.span(match.re.groups and 1), changed, kind
+
+
+def brackets(m, pattern):
+    """(match, index of the closing bracket); the opening one ends the match."""
+    for match in re.finditer(pattern, m, re.M):
+        end = closing(m, match.end() - 1)
+        if end > 0:
+            yield match, end
+
+
+def whole_statement(new):
+    """Of a line whose brackets are closed on it."""
+    return lambda match: new if match[1].count("(") == match[1].count(")") else None
+
+
 def candidates(path, text, m):
-    """(start, end, new, kind) of every fault."""
-    python = path.endswith(".py")
-    for match in re.finditer(r"(?<![\w.'])(?:0[xX][0-9a-fA-F]+|(?:\d+\.\d*|\d+)(?:[eE][-+]?\d+)?|\.\d+)"
-                             r"[fFuUlL]*(?![\w.'])", m):
-        if changed := number(match[0]):
-            yield *match.span(), changed, "constant"
+    """(start, end, new, kind) of every fault. `m`: the text with strings and comments blanked out."""
+    def line(match, end):
+        return m[m.rfind("\n", 0, match.start()) + 1:end]
+
+    yield from each(m, "constant", r"(?<![\w.'])(?:0[xX][0-9a-fA-F]+|(?:\d+\.\d*|\d+)(?:[eE][-+]?\d+)?|\.\d+)"
+                    r"[fFuUlL]*(?![\w.'])", number)
     for match in re.finditer(r" (<=|>=|==|!=|<|>)(?= )", m):
-        line = m[m.rfind("\n", 0, match.start()) + 1:match.start()]
         # A loop ends one too early: one too late would be undefined, and often unseen.
-        early = match[1] == "<" and re.search(r"\bfor \([^;]*;[^;]*$", line)
+        early = match[1] == "<" and re.search(r"\bfor \([^;]*;[^;]*$", line(match, match.start()))
         yield *match.span(1), "+ 1 <" if early else COMPARISON[match[1]], "comparison"
     for match in re.finditer(r" (\+=|-=|\*=|/=|\|=|&=|&&|\|\||and|or|%|&|\||<<|>>)(?=\s)", m):
-        line = m[m.rfind("\n", 0, match.start()) + 1:m.find("\n", match.end())]
-        if match[1] not in ("<<", ">>") or not (line.count(match[1]) > 1 or '"' in line):
+        around = line(match, m.find("\n", match.end()))
+        if match[1] not in ("<<", ">>") or not (around.count(match[1]) > 1 or '"' in around):
             yield *match.span(1), OPERATOR[match[1]], "operator"
     for match in re.finditer(r"(?<=[\w)\]]) ([-+*/]) (?=[^\s\"])", m):
         # Texts are joined with + as well, and know no other operator.
-        if match[1] == "+" and '"' in m[m.rfind("\n", 0, match.start()) + 1:m.find("\n", match.end())]:
+        if match[1] == "+" and '"' in line(match, m.find("\n", match.end())):
             continue
         end = term_end(m, match.end(), match[1])
         yield *match.span(1), OPERATOR[match[1]], "operator"
@@ -158,45 +159,99 @@ def candidates(path, text, m):
         left = re.search(r"(?<![\w.>\])])[\w.]+$", m[max(0, match.start() - 40):match.start()])
         right = re.compile(r"[\w.]+(?![\w.(\[]|->)").match(m, match.end())
         if match[1] in "-/" and left and right:
-            begin = match.start() - len(left[0])
-            yield begin, right.end(), f"{right[0]} {match[1]} {left[0]}", "swapped operands"
-    for match in re.finditer(r"(?<![\w.])(\w+)(?=\()|\b(true|false|True|False|continue|break)\b", m):
-        if match[0] in WORD:
-            yield *match.span(), WORD[match[0]], "other word"
-    for match in re.finditer(r"(?<=[\w\])]\.)[xyz]\b(?!\()", m):
-        yield *match.span(), "xyz"["xyz".index(match[0]) - 2], "other component"
+            yield (match.start() - len(left[0]), right.end(), f"{right[0]} {match[1]} {left[0]}",
+                   "swapped operands")
+    yield from each(m, "other word", r"(?<![\w.])\w+(?=\()|\b(?:true|false|True|False|continue|break)\b",
+                    lambda match: WORD.get(match[0]))
+    yield from each(m, "other component", r"(?<=[\w\])]\.)[xyz]\b(?!\()",
+                    lambda match: "xyz"["xyz".index(match[0]) - 2])
     for match in re.finditer(r"(?<![\w.])[\w.:]+\(([\w.\[\]]+), ([\w.\[\]]+)\)", m):
         if match[1] != match[2]:
             yield match.start(1), match.end(2), f"{match[2]}, {match[1]}", "swapped arguments"
     for match in re.finditer(r"\? ([\w.\"]+) : ([\w.\"]+)(?=[;,)\s])", m):
         one, other = text[slice(*match.span(1))], text[slice(*match.span(2))]
         yield match.start(1), match.end(2), f"{other} : {one}", "swapped arguments"
-    if python:
-        for match in re.finditer(r"\bnot (?=\w|\()", m):
-            yield *match.span(), "", "dropped negation"
-        for match in re.finditer(r"\bif ([^\n:]+):\s", m):
-            yield *match.span(1), "False", "removed check"
-        for match in re.finditer(r"^ +((?!return|raise|yield|pass|import|from|assert|def|class|del|if|for|while"
-                                 r"|with|else)[\w.]+(?:\([^\n]*\)| [-+*|&/]?= [^\n(]+))$", m, re.M):
-            if '("' not in match[1][:3] and match[1].count("(") == match[1].count(")"):
-                yield *match.span(1), "pass", "dropped statement"
+    if path.endswith(".py"):
+        yield from each(m, "dropped negation", r"\bnot (?=\w|\()", "")
+        yield from each(m, "removed check", r"\bif ([^\n:]+):\s", "False")
+        yield from each(m, "dropped statement", r"^ +((?!return|raise|yield|pass|import|from|assert|def|class"
+                        r"|del|if|for|while|with|else)[\w.]+(?:\([^\n]*\)| [-+*|&/]?= [^\n(]+))$",
+                        whole_statement("pass"))
         return
-    for match in re.finditer(r"(?<![\w)\]=!<>])!(?=[\w(:])", m):
-        yield *match.span(), "", "dropped negation"
-    for match in re.finditer(r"\bif \(", m):
-        end = closing(m, match.end() - 1)
-        if end > 0 and ";" not in m[match.start():end]:
+    yield from each(m, "dropped negation", r"(?<![\w)\]=!<>])!(?=[\w(:])", "")
+    for match, end in brackets(m, r"\bif \("):
+        if ";" not in m[match.start():end]:
             yield match.end(), end, "false", "removed check"
             yield match.end(), end, "true", "forced branch"
-    for match in re.finditer(r"^ +(?!return|throw|if|for|while|else|case|using|static|const|delete|break"
-                             r"|continue|fail|invalidArgument)"
-                             r"([A-Za-z_][\w.:>\[\]-]*(?:\([^\n]*\)| [-+*|&/]?= [^\n]+);)$", m, re.M):
-        if match[1].count("(") == match[1].count(")"):
-            yield *match.span(1), ";", "dropped statement"
-    for match in re.finditer(r"\b(?:cl::)?check\(", m):
-        end = closing(m, match.end() - 1)
-        if end > 0 and (comma := m.rfind(",", match.end(), end)) > 0:
+    yield from each(m, "dropped statement", r"^ +(?!return|throw|if|for|while|else|case|using|static|const"
+                    r"|delete|break|continue|fail|invalidArgument)"
+                    r"([A-Za-z_][\w.:>\[\]-]*(?:\([^\n]*\)| [-+*|&/]?= [^\n]+);)$", whole_statement(";"))
+    for match, end in brackets(m, r"\b(?:cl::)?check\("):
+        if (comma := m.rfind(",", match.end(), end)) > 0:
             yield match.start(), end + 1, f"(void)({text[match.end():comma]})", "unchecked return"
+
+
+def end_of_operand(m, at):
+    """Where an operand of && or || ends."""
+    while at < len(m) and not re.compile(r"&&|\|\||[;,?)\]}]").match(m, at):
+        at = closing(m, at) + 1 if m[at] in "([{" else at + 1
+        if at == 0:
+            return -1
+    return at
+
+
+def begin_of_operand(m, at):
+    """Where the operand of && or || that ends at `at` begins."""
+    depth = 0
+    while at > 0:
+        depth += (m[at - 1] in ")]}") - (m[at - 1] in "([{")
+        if depth < 0 or (depth == 0 and re.search(r"(?:&&|\|\||[;,?]|(?<![!<>=])=|\breturn) ?$",
+                                                  m[max(0, at - 8):at])):
+            return at
+        at -= 1
+    return -1
+
+
+def end_of_argument(m, at):
+    while m[at] not in ",)":
+        at = closing(m, at) + 1 if m[at] in "([{" else at + 1
+    return at
+
+
+def meanings(path, text, m):
+    """Faults of a larger kind than an expression, which somebody forgets, or deletes as superfluous."""
+    if path.endswith(".py"):
+        yield from each(m, "dropped early return", r"\bif ([^\n:]+):\s+(?:return|continue|break)\b", "False")
+        yield from each(m, "dropped clear", r"^ +([\w.]+\.clear\(\))$", "pass")
+        yield from each(m, "dropped part", r" (?:and|or) [\w.]+(?=[:)\n])", "")
+        return
+    for match, end in brackets(m, r"^ +([^\n;{}=]*\b(?:fill|clear|reset|memset)\()"):
+        if m[end + 1:end + 2] == ";":
+            yield match.start(1), end + 2, ";", "dropped clear"
+    yield from each(m, "dropped clear", r"\ballocateZeros\(", "allocate(")
+    for match, end in brackets(m, r"\bif \("):
+        if re.compile(r"\)\s+\{?\s*(?:return|continue|break)\b").match(m, end):
+            yield match.end(), end, "false", "dropped early return"
+    for match in re.finditer(r" (?:&&|\|\|)(?=\s)", m):
+        end, begin = end_of_operand(m, match.end()), begin_of_operand(m, match.start())
+        if end > 0:
+            yield match.start(), end, "", "dropped part"
+        if begin > 0:
+            yield begin, match.end() + 1, "", "dropped part"
+    for match, end in brackets(m, r"\.addPart\("):
+        yield match.start(), end + 1, "", "dropped part"
+    for match in re.finditer(r',?\s*\{"[^"\n]*", ', m):
+        end = closing(m, m.index("{", match.start()))
+        if end > 0 and (match[0][0] == "," or m[end + 1:end + 2] == ","):
+            yield match.start(), end + (1 if match[0][0] == "," else 2), "", "dropped part"
+    yield from each(m, "neighbour left out", r"= (-\w+); \w+ <= \w+;", "0")
+    yield from each(m, "neighbour left out", r"= -\w+; \w+ <= (\w+);", "0")
+    for match, end in brackets(m, r"\b(?:std::)?f?(?:min|max)w?\("):
+        middle = end_of_argument(m, match.end())
+        if m[middle] == "," and end_of_argument(m, middle + 1) == end:
+            yield match.start(), end + 1, text[match.end():middle], "neighbour left out"
+            yield match.start(), end + 1, text[middle + 2:end], "neighbour left out"
+    yield from each(m, "neighbour left out", r"(?<=[\w)]) [-+] 1(?=\])", "")
 
 
 NOTHING_CHANGES = re.compile(r"\breserve\(|static_assert|\btemplate\b|__attribute__|PEL_API|\boperator\b"
@@ -204,15 +259,12 @@ NOTHING_CHANGES = re.compile(r"\breserve\(|static_assert|\btemplate\b|__attribut
 
 
 def faults(path, text, meaning=False):
-    """One fault for each line of `text` that has any; with `meaning` of meanings.py."""
+    """One fault for each line of `text` that has any; with `meaning` of the larger kind."""
     m = masked(path, text)
-    lines, shown = text.split("\n"), {}
-    starts = [0]
+    lines, starts, shown, by_line, row = text.split("\n"), [0], {}, {}, 0
     for line in lines:
         starts.append(starts[-1] + len(line) + 1)
-    by_line = {}
-    row = 0
-    for found in sorted(set((meanings if meaning else sys.modules[__name__]).candidates(path, text, m))):
+    for found in sorted(set((meanings if meaning else candidates)(path, text, m))):
         while starts[row + 1] <= found[0]:
             row += 1
         if not NOTHING_CHANGES.search(lines[row]) and text[found[0]:found[1]] != found[2]:

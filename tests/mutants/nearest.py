@@ -1,43 +1,14 @@
 """Which tests could notice a fault: those that share most words with its file, and those that launch its
 kernels."""
 import collections
-import contextlib
 import json
 import math
-import os
 import re
-import threading
 from pathlib import Path
 
 from workplace import PASSED, TREE, WORK, say
 
 SAME_SUBJECT = 3  # factor for a test in the folder of the file's subject
-
-
-@contextlib.contextmanager
-def launched(kernels):
-    """A pipe for PoCL's tracing; the names of kernels go into the set."""
-    pipe = WORK / "trace"
-    pipe.unlink(missing_ok=True)
-    os.mkfifo(pipe)
-    stream = os.open(pipe, os.O_RDWR)
-
-    def read():
-        with os.fdopen(stream, errors="replace") as lines:
-            for line in lines:
-                if line == "end\n":
-                    return
-                if found := re.search(r"ndrange_kernel .* name=(\w+)", line):
-                    kernels.add(found[1])
-
-    reader = threading.Thread(target=read)
-    reader.start()
-    try:
-        yield pipe
-    finally:
-        with open(pipe, "w") as out:
-            out.write("\nend\n")
-        reader.join()
 
 
 def words_of(text):
@@ -49,28 +20,28 @@ class Tests:
     def __init__(self, place):
         self.place, self.file = place, WORK / "tests.json"
         self.measured = json.loads(self.file.read_text()) if self.file.exists() else {}
-        programs = {p.stem: p for folder in ("tests/*", "apps/*/tests") for p in TREE.glob(f"{folder}/test_*.cpp")}
-        scripts = {str(p.relative_to(TREE)): p for folder in ("bindings/python", "apps/*")
-                   for p in TREE.glob(f"{folder}/tests/test_*.py")}
-        self.programs, self.scripts = sorted(programs), sorted(scripts)
-        self.folders = {name: path.parent.name for name, path in programs.items()}
-        self.words = {name: words_of(p.stem) * 5 + words_of(p.parent.name) * 5 + words_of(p.read_text())
-                      for name, p in {**programs, **scripts}.items()}
-        known = [set(words) for words in self.words.values()]
-        self.rarity = {word: math.log(len(known) / sum(word in k for k in known)) for word
-                       in set().union(*known)}
+        self.programs = {p.stem: p for folder in ("tests/*", "apps/*/tests")
+                         for p in TREE.glob(f"{folder}/test_*.cpp")}
+        self.scripts = {str(p.relative_to(TREE)): p for folder in ("bindings/python", "apps/*")
+                        for p in TREE.glob(f"{folder}/tests/test_*.py")}
+        self.words = {name: words_of(f"{p.stem} {p.parent.name} " * 5 + p.read_text())
+                      for name, p in {**self.programs, **self.scripts}.items()}
+        known = collections.Counter(word for words in self.words.values() for word in set(words))
+        self.rarity = {word: math.log(len(self.words) / count) for word, count in known.items()}
 
     def measure(self, name):
         """A test without any fault, once: whether it passes, its processor seconds, the kernels that it
         launches."""
         if name not in self.measured:
-            kernels, log = set(), WORK / "test.log"
-            if self.place.python() if name.endswith(".py") else self.place.build(name):
-                with launched(kernels) as trace:
-                    status, seconds = self.place.test(name, 900, log, POCL_TRACING="text",
-                                                      POCL_TRACING_OPT=trace)
-            else:
-                status, seconds = "does not build", 0
+            status, seconds, kernels, trace = "does not build", 0, set(), WORK / "trace"
+            if self.place.python() if name in self.scripts else self.place.build(name):
+                trace.touch()
+                status, seconds = self.place.test(name, 900, WORK / "test.log", POCL_TRACING="text",
+                                                  POCL_TRACING_OPT=trace)
+                with trace.open(errors="replace") as lines:
+                    kernels = {found[1] for line in lines
+                               if (found := re.search(r"ndrange_kernel .* name=(\w+)", line))}
+                trace.unlink()
             self.measured[name] = {"good": status in PASSED, "seconds": seconds, "kernels": sorted(kernels)}
             self.file.write_text(json.dumps(self.measured))
             failed = "" if status in PASSED else f" fails without any fault ({status})"
@@ -92,34 +63,33 @@ class Tests:
 
     def by_words(self, fault):
         path = Path(fault.path)
-        own = self.weighed(words_of(str(path.with_suffix(""))) * 5 + words_of((TREE / path).read_text()))
+        own = self.weighed(words_of(f"{path.with_suffix('')} " * 5 + (TREE / path).read_text()))
 
         def distance(name):
             other = self.weighed(self.words[name])
             near = sum(weight * other.get(word, 0) for word, weight in own.items())
-            if self.folders.get(name) in path.parts:
+            if name in self.programs and self.programs[name].parent.name in path.parts:
                 near *= SAME_SUBJECT
             return -near / (1 + self.measured.get(name, {}).get("seconds", 10) / 20) ** 0.5, name
 
-        python = fault.path.startswith("bindings/python") or fault.path.endswith(".py")
-        return sorted(self.scripts if python else self.programs, key=distance)
+        return sorted(self.scripts if fault.is_python() else self.programs, key=distance)
 
     def weighed(self, words):
         """{word: weight}, of length 1: rare words count most, and the tenth of a kind little more than the
         first."""
-        row = {word: (1 + math.log(n)) * self.rarity.get(word, 0) for word, n
-               in collections.Counter(words).items()}
-        length = math.sqrt(sum(w * w for w in row.values())) or 1
+        row = {word: (1 + math.log(n)) * self.rarity.get(word, 0)
+               for word, n in collections.Counter(words).items()}
+        length = math.hypot(*row.values()) or 1
         return {word: w / length for word, w in row.items()}
 
 
 def kernels_with(path):
     """The kernels whose source includes this file."""
-    texts = {str(p.relative_to(TREE / "kernels")): p.read_text() for p in (TREE / "kernels").rglob("*")
-             if p.is_file()}
-    inside = {path[len("kernels/"):]}
-    while more := {name for name, text in texts.items() if any(f'#include "{i}"' in text for i
-                                                               in inside)} - inside:
+    texts = {str(p.relative_to(TREE / "kernels")): p.read_text()
+             for p in (TREE / "kernels").rglob("*") if p.is_file()}
+    inside, more = set(), {path[len("kernels/"):]}
+    while more:
         inside |= more
+        more = {name for name, text in texts.items() if any(f'#include "{i}"' in text for i in more)} - inside
     return {kernel for name in inside
             for kernel in re.findall(r"__kernel\b[^{;]*?\bvoid\s+(\w+)\s*\(", texts.get(name, ""))}

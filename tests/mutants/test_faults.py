@@ -3,7 +3,6 @@ import unittest
 from pathlib import Path
 
 import faults
-import meanings
 
 ROOT = Path(__file__).resolve().parents[2]
 CODE = """// a comment: 1 + 2 < 3
@@ -21,18 +20,19 @@ float mean(const float* v, int n) {
 
 
 class Faults(unittest.TestCase):
-    def every(self, path, text):
-        return [text[:start] + new + text[end:]
-                for start, end, new, kind in faults.candidates(path, text, faults.masked(path, text))]
+    def every(self, path, text, wanted, candidates=faults.candidates):
+        """The text with each of its faults, among which are those that hold `wanted`."""
+        made = [text[:start] + new + text[end:]
+                for start, end, new, _ in candidates(path, text, faults.masked(path, text))]
+        self.assertEqual([w for w in wanted if not any(w in text for text in made)], [])
+        return made
 
     def test_every_kind(self):
-        made = self.every("a.cpp", CODE)
-        for wanted in ("if (n < 0) fail", "if (false) fail", "if (true) fail", "sum = 0.55f;", "i + 1 < n;",
-                       "sum -= v[i]", "v[i] / scale",
-                       "+= v[i];", "scale(v, n)", "= even(n)", "|| n > 3", "&& n >= 3", "(void)(launch(n));",
-                       "    ;\n    return",
-                       "std::min(", "max(n - sum,", "max(sum + n,", "max(sum,", "odd ? b : a", "* 3.0f;"):
-            self.assertTrue(any(wanted in text for text in made), wanted)
+        made = self.every("a.cpp", CODE, (
+            "if (n < 0) fail", "if (false) fail", "if (true) fail", "sum = 0.55f;", "i + 1 < n;",
+            "sum -= v[i]", "v[i] / scale", "+= v[i];", "scale(v, n)", "= even(n)", "|| n > 3", "&& n >= 3",
+            "(void)(launch(n));", "    ;\n    return", "std::min(", "max(n - sum,", "max(sum + n,",
+            "max(sum,", "odd ? b : a", "* 3.0f;"))
         for text in made:
             self.assertNotEqual(text, CODE)
             for kept in ("// a comment: 1 + 2 < 3\n#define LEFT_ALONE 0.5f\n", '"launch"'):
@@ -52,24 +52,17 @@ class Faults(unittest.TestCase):
     for (int j = -1; j <= 1; ++j) low = min(size[0], min(left, at[x + 1]));
 }
 """
-        made = [code[:start] + new + code[end:]
-                for start, end, new, _ in meanings.candidates("a.cpp", code, faults.masked("a.cpp", code))]
-        for wanted in ("if (false) return;", "    ;\n    sums_", "device_->allocate(bytes)",
-                       "if (bytes != bytes_)\n",
-                       "if (!std::equal(", "key.addPart(options);", "key.addPart(name);",
-                       '{{"PEL_A", text(1)}};',
-                       '{ {"PEL_B", f(x, 2)}};', "int j = 0; j <= 1", "j <= 0;", "low = size[0];",
-                       "low = min(left, at[x + 1]);",
-                       "min(size[0], left)", "min(size[0], at[x + 1])", "at[x]"):
-            self.assertTrue(any(wanted in text for text in made), wanted)
+        self.every("a.cpp", code, (
+            "if (false) return;", "    ;\n    sums_", "device_->allocate(bytes)", "if (bytes != bytes_)\n",
+            "if (!std::equal(", "key.addPart(options);", "key.addPart(name);", '{{"PEL_A", text(1)}};',
+            '{ {"PEL_B", f(x, 2)}};', "int j = 0; j <= 1", "j <= 0;", "low = size[0];",
+            "low = min(left, at[x + 1]);", "min(size[0], left)", "min(size[0], at[x + 1])", "at[x]"),
+            faults.meanings)
 
     def test_python(self):
         code = ('def f(a, b):\n    """1 + 2"""\n    if not a:  # 3 < 4\n        raise ValueError("5 + 6")\n'
                 '    g(a, b)\n    return a and b is None\n')
-        made = self.every("a.py", code)
-        for wanted in ("if a:", "if False:", "    pass\n", "g(b, a)", "a or b"):
-            self.assertTrue(any(wanted in text for text in made), wanted)
-        for text in made:
+        for text in self.every("a.py", code, ("if a:", "if False:", "    pass\n", "g(b, a)", "a or b")):
             compile(text, "a.py", "exec")
             self.assertTrue(all(kept in text for kept in ('"""1 + 2"""', "# 3 < 4", '"5 + 6"')), text)
 
@@ -82,16 +75,14 @@ class Faults(unittest.TestCase):
 
     def test_the_tree(self):
         count = names = 0
-        for path in [*ROOT.glob("kernels/**/*.cl*"), *ROOT.glob("host/**/*.cpp"),
-                     *ROOT.glob("bindings/python/pellucid/**/*.py"), *ROOT.glob("apps/*/*/*.py")]:
-            text = path.read_text()
-            found = list(faults.faults(str(path.relative_to(ROOT)), text))
-            for fault in faults.faults(str(path.relative_to(ROOT)), text, True):
-                self.assertNotEqual(fault.apply(text), text)
-            count, names = count + len(found), names + len({f.name for f in found})
-            for fault in found:
-                self.assertNotEqual(fault.apply(text), text)
-                self.assertEqual(fault.apply(text).count("\n") <= text.count("\n"), True)
+        for folder in ("kernels/**/*.cl*", "host/**/*.cpp", "bindings/python/pellucid/*.py", "apps/*/*/*.py"):
+            for path in ROOT.glob(folder):
+                text = path.read_text()
+                found, larger = (list(faults.faults(str(path.relative_to(ROOT)), text, meaning))
+                                 for meaning in (False, True))
+                count, names = count + len(found), names + len({f.name for f in found})
+                for fault in found + larger:
+                    self.assertNotEqual(fault.apply(text), text)
         self.assertGreater(count, 3000)
         self.assertGreater(names, 0.995 * count)
 

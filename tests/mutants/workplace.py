@@ -1,4 +1,5 @@
 """A copy of the tree in build/mutants, its build, and its Python environment: where faults are put in."""
+import contextlib
 import json
 import os
 import resource
@@ -24,20 +25,16 @@ def command(words, limit, log, **environment):
     counts as failed."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     with open(log, "wb") as out:
-        process = subprocess.Popen([str(w) for w in words], cwd=BUILD, stdin=subprocess.DEVNULL, stdout=out,
-                                   stderr=subprocess.STDOUT,
-                                   start_new_session=True, env={**os.environ, **{k: str(v) for k, v
-                                                                                 in environment.items()}})
+        process = subprocess.Popen(list(map(str, words)), cwd=BUILD, stdin=subprocess.DEVNULL, stdout=out,
+                                   stderr=subprocess.STDOUT, start_new_session=True,
+                                   env={**os.environ, **{k: str(v) for k, v in environment.items()}})
         try:
             status = process.wait(limit)
         except subprocess.TimeoutExpired:
             status = "took too long"
         finally:
-            # Children of a test that crashed or hangs.
-            try:
+            with contextlib.suppress(ProcessLookupError):  # children of a test that crashed or hangs
                 os.killpg(process.pid, signal.SIGKILL)
-            except ProcessLookupError:
-                pass
             process.wait()
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return status, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
@@ -47,13 +44,8 @@ class Workplace:
     """The copy of the tree, its build, and its Python environment."""
 
     def __init__(self, as_is):
-        for folder in ("tmp", "pocl", "cache"):
-            (WORK / folder).mkdir(parents=True, exist_ok=True)
-        BUILD.mkdir(parents=True, exist_ok=True)
-        self.scratch = WORK / "tmp"
-        self.environment = {"TMPDIR": self.scratch, "XDG_CACHE_HOME": WORK / "cache",
-                            "PELLUCID_COMMAND": BUILD / "bin/pellucid",
-                            "GTEST_COLOR": "no"}
+        for folder in (WORK / "tmp", WORK / "pocl", WORK / "cache", BUILD):
+            folder.mkdir(parents=True, exist_ok=True)
         if self.applied.exists():  # a run was killed
             path, text = json.loads(self.applied.read_text())
             self.restore(path, text)
@@ -86,33 +78,30 @@ class Workplace:
 
     def build(self, *targets):
         if not (BUILD / "build.ninja").exists():
-            launcher = ["-DCMAKE_C_COMPILER_LAUNCHER=ccache",
-                        "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+            launcher = [f"-DCMAKE_{language}_COMPILER_LAUNCHER=ccache" for language in ("C", "CXX")
+                        if shutil.which("ccache")]
             status, _ = command(["cmake", "-G", "Ninja", "-S", TREE, "-B", BUILD,
-                                 "-DCMAKE_BUILD_TYPE=Release", *launcher],
-                                600, WORK / "build.log")
+                                 "-DCMAKE_BUILD_TYPE=Release", *launcher], 600, WORK / "build.log")
             if status:
                 sys.exit((WORK / "build.log").read_text())
         return command(["ninja", "-C", BUILD, *targets], 3000, WORK / "build.log")[0] == 0
 
     def test(self, name, limit, log, **extra):
         """A test program, or a file of Python tests."""
-        environment = {"POCL_CACHE_DIR": WORK / "pocl", **self.environment, **extra}
+        environment = {"POCL_CACHE_DIR": WORK / "pocl", "XDG_CACHE_HOME": WORK / "cache",
+                       "TMPDIR": WORK / "tmp", "PELLUCID_COMMAND": BUILD / "bin/pellucid", **extra}
+        words = [BUILD / "bin" / name, "--gtest_fail_fast", "--gtest_brief=1", "--gtest_color=no"]
         if name.endswith(".py"):
             environment["PYTHONPATH"] = BUILD / "python"
             words = [WORK / "python-environment/bin/python", "-m", "pytest", "-x", "-q", "-p",
-                     "no:cacheprovider", "--tb=short",
-                     "--rootdir", TREE, TREE / name]
-        else:
-            words = [BUILD / "bin" / name, "--gtest_fail_fast", "--gtest_brief=1"]
+                     "no:cacheprovider", "--tb=short", "--rootdir", TREE, TREE / name]
         result = command(words, limit, log, **environment)
-        shutil.rmtree(self.scratch, ignore_errors=True)
-        self.scratch.mkdir()
+        shutil.rmtree(WORK / "tmp", ignore_errors=True)
+        (WORK / "tmp").mkdir()
         return result
 
     def python(self):
         """The package as the build lays it out, and the environment of its tests."""
-        status, _ = command([sys.executable, TREE / "bindings/python/tests/run_tests.py", "--prepare",
-                             WORK / "python-environment"],
-                            3000, WORK / "build.log")
-        return not status and self.build("python_package")
+        words = [sys.executable, TREE / "bindings/python/tests/run_tests.py", "--prepare",
+                 WORK / "python-environment"]
+        return command(words, 3000, WORK / "build.log")[0] == 0 and self.build("python_package")
