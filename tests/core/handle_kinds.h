@@ -52,6 +52,20 @@ Kind kind(const char* name, void (*retain)(H), void (*release)(H), std::function
             [hold](Handle h) { return hold(static_cast<H>(h)); }};
 }
 
+// Reads its statistics or the like.
+template <class H, class S>
+auto reading(S (*defaults)(), PelError (*get)(H, S*)) {
+    return [=](H h) {
+        S values = defaults();
+        return get(h, &values);
+    };
+}
+
+// Of objects that no other holds.
+inline std::function<bool()> held(void*) {
+    return [] { return true; };
+}
+
 inline pellucid::Lut smallTable(PelProfile profile = nullptr) {
     PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.width = desc.height = 4;
@@ -132,17 +146,10 @@ inline const std::vector<Kind>& kinds() {
         kind<PelLiveMesh>(
             "PelLiveMesh", pelLiveMeshRetain, pelLiveMeshRelease,
             [] { return taken(LiveMesh(triangle(), pelCurvatureParamsDefaults()), pelLiveMeshRetain); },
-            [](PelLiveMesh h) {
-                PelLiveMeshStats stats = pelLiveMeshStatsDefaults();
-                return pelLiveMeshGetStats(h, &stats);
-            },
-            [](PelLiveMesh) { return [] { return true; }; }),  // nothing holds these
+            reading(pelLiveMeshStatsDefaults, pelLiveMeshGetStats), held),
         kind<PelLut>(
             "PelLut", pelLutRetain, pelLutRelease, [] { return taken(smallTable(), pelLutRetain); },
-            [](PelLut h) {
-                PelLutInfo info = pelLutInfoDefaults();
-                return pelLutGetInfo(h, &info);
-            },
+            reading(pelLutInfoDefaults, pelLutGetInfo),
             [](PelLut h) {
                 Shader shader(device());
                 const PelMaterial material = pelMaterialDefaults();
@@ -155,19 +162,11 @@ inline const std::vector<Kind>& kinds() {
         kind<PelShader>(
             "PelShader", pelShaderRetain, pelShaderRelease,
             [] { return taken(Shader(device()), pelShaderRetain); },
-            [](PelShader h) {
-                PelShaderStats stats = pelShaderStatsDefaults();
-                return pelShaderGetStats(h, &stats);
-            },
-            [](PelShader) { return [] { return true; }; }),  // nor these
+            reading(pelShaderStatsDefaults, pelShaderGetStats), held),
         kind<PelScatter>(
             "PelScatter", pelScatterRetain, pelScatterRelease,
             [] { return taken(Scatter(device()), pelScatterRetain); },
-            [](PelScatter h) {
-                PelScatterStats stats = pelScatterStatsDefaults();
-                return pelScatterGetStats(h, &stats);
-            },
-            [](PelScatter) { return [] { return true; }; }),
+            reading(pelScatterStatsDefaults, pelScatterGetStats), held),
         kind<PelTextureScatter>(
             "PelTextureScatter", pelTextureScatterRetain, pelTextureScatterRelease,
             [] {
@@ -175,18 +174,11 @@ inline const std::vector<Kind>& kinds() {
                 desc.width = desc.height = 1;
                 return taken(TextureScatter(device(), desc), pelTextureScatterRetain);
             },
-            [](PelTextureScatter h) {
-                PelTextureScatterStats stats = pelTextureScatterStatsDefaults();
-                return pelTextureScatterGetStats(h, &stats);
-            },
-            [](PelTextureScatter) { return [] { return true; }; }),
+            reading(pelTextureScatterStatsDefaults, pelTextureScatterGetStats), held),
         kind<PelProfile>(
             "PelProfile", pelProfileRetain, pelProfileRelease,
             [] { return taken(Profile::skin(), pelProfileRetain); },
-            [](PelProfile h) {
-                PelProfileInfo info = pelProfileInfoDefaults();
-                return pelProfileGetInfo(h, &info);
-            },
+            reading(pelProfileInfoDefaults, pelProfileGetInfo),
             [](PelProfile h) {
                 return [table = smallTable(h)] { return table.read<float>(PEL_LUT_FLOAT).size() == 48; };
             }),

@@ -19,19 +19,16 @@ struct Change {
 // What `work` changes. Reading the counters waits, and asks the driver for nothing that is counted.
 template <class Work>
 Change changeBy(const Device& device, const Work& work) {
-    const PelDeviceStats before = device.stats();
-    const spy::Counts asked = spy::counts();
+    const Change before{device.stats(), spy::counts()};
     work();
-    const spy::Counts then = spy::counts();
-    Change c{device.stats(), then};
-    c.stats.launches -= before.launches;
-    c.stats.bytesToDevice -= before.bytesToDevice;
-    c.stats.bytesToHost -= before.bytesToHost;
-    c.stats.bytesAllocated -= before.bytesAllocated;
-    c.asked.buffersMade -= asked.buffersMade;
-    c.asked.bytesCopied -= asked.bytesCopied;
-    c.asked.transfers -= asked.transfers;
-    c.asked.launches -= asked.launches;
+    const spy::Counts asked = spy::counts();
+    Change c{device.stats(), asked};
+    for (auto field : {&PelDeviceStats::launches, &PelDeviceStats::bytesToDevice,
+                       &PelDeviceStats::bytesToHost, &PelDeviceStats::bytesAllocated})
+        c.stats.*field -= before.stats.*field;
+    for (auto field : {&spy::Counts::buffersMade, &spy::Counts::bytesCopied, &spy::Counts::transfers,
+                       &spy::Counts::launches})
+        c.asked.*field -= before.asked.*field;
     return c;
 }
 
@@ -86,9 +83,9 @@ TEST_F(Counters, NothingIsCopiedOfAHostsFrame) {
     for (uint32_t i = 0; i < pixels; ++i) frame[3 * i + 2] = 1;
     Shader shader(device);
     PelMaterial material = pelMaterialDefaults();
-    for (float& c : material.albedo) c = 0.5f;
+    std::fill_n(material.albedo, 3, 0.5f);
     PelAmbient ambient = pelAmbientDefaults();
-    for (float& c : ambient.constant) c = 1;
+    std::fill_n(ambient.constant, 3, 1.0f);
     const Change made = changeBy(device, [&] {
         const Buffer memory = Buffer::fromHost(device, frame.data(), frame.size() * sizeof(float));
         shader.setMaterial(1, material).set(ambient);
@@ -134,10 +131,7 @@ TEST_F(Counters, NothingIsLeft) {
     for (int i = 0; i < 5; ++i) work();
     device.stats();  // forgets the events of finished launches
     const spy::Counts now = spy::counts();
-    EXPECT_EQ(now.events, before.events);
-    EXPECT_EQ(now.memory, before.memory);
-    EXPECT_EQ(now.kernels, before.kernels);
-    EXPECT_EQ(now.programs, before.programs);
-    EXPECT_EQ(now.queues, before.queues);
-    EXPECT_EQ(now.contexts, before.contexts);
+    for (auto field : {&spy::Counts::events, &spy::Counts::memory, &spy::Counts::kernels,
+                       &spy::Counts::programs, &spy::Counts::queues, &spy::Counts::contexts})
+        EXPECT_EQ(now.*field, before.*field);
 }

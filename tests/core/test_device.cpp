@@ -9,7 +9,27 @@
 #include <cstring>
 #include <set>
 
+#include "refusal.h"
+
 using namespace pellucid;
+
+namespace {
+
+// A variable of the environment for as long as this lives.
+class Variable {
+  public:
+    explicit Variable(const char* name)
+        : name_(name), before_(std::getenv(name)), saved_(before_ ? before_ : "") {}
+    Variable(const Variable&) = delete;
+    ~Variable() { before_ ? setenv(name_, saved_.c_str(), 1) : unsetenv(name_); }
+    void set(const char* value) const { setenv(name_, value, 1); }
+
+  private:
+    const char *name_, *before_;
+    std::string saved_;
+};
+
+}  // namespace
 
 TEST(Device, EnumeratesAndSelects) {
     const std::vector<PelDeviceInfo> all = Device::all();
@@ -24,45 +44,23 @@ TEST(Device, EnumeratesAndSelects) {
 }
 
 TEST(Device, UnknownSelectorListsWhatThereIs) {
-    try {
-        Device device("no such device");
-        FAIL();
-    } catch (const Error& e) {
-        EXPECT_EQ(e.code(), PEL_ERROR_NO_DEVICE);
-        EXPECT_NE(std::string(e.what()).find("no such device"), std::string::npos);
-        EXPECT_NE(std::string(e.what()).find(Device::all()[0].name), std::string::npos) << e.what();
-    }
+    const std::string first = Device::all()[0].name;
+    expectRefused(
+        {"no such device", first.c_str()}, [] { Device("no such device"); }, PEL_ERROR_NO_DEVICE);
     EXPECT_THROW(Device("4000000000"), Error);
 }
 
 TEST(Device, EnvironmentSelects) {
-    const char* before = std::getenv("PELLUCID_DEVICE");
-    const std::string saved = before ? before : "";
-    setenv("PELLUCID_DEVICE", "no such device", 1);
+    const Variable device("PELLUCID_DEVICE"), width("PELLUCID_MATH_WIDTH");
+    device.set("no such device");
     EXPECT_THROW(Device(std::string()), Error);
     EXPECT_NO_THROW(Device("0")) << "a selector goes before the environment";
-    setenv("PELLUCID_DEVICE", "0", 1);
+    device.set("0");
     EXPECT_EQ(Device(std::string()).info().index, 0u);
-    if (before)
-        setenv("PELLUCID_DEVICE", saved.c_str(), 1);
-    else
-        unsetenv("PELLUCID_DEVICE");
-}
-
-TEST(Device, MathWidthCanBeOverruled) {
-    const char* before = std::getenv("PELLUCID_MATH_WIDTH");
-    const std::string saved = before ? before : "";
-    setenv("PELLUCID_MATH_WIDTH", "1", 1);
+    width.set("1");
     EXPECT_EQ(Device(std::string()).info().mathWidth, 1u);
-    setenv("PELLUCID_MATH_WIDTH", "7", 1);
-    try {
-        Device device((std::string()));
-        ADD_FAILURE();
-    } catch (const Error& e) {
-        EXPECT_EQ(e.code(), PEL_ERROR_INVALID_ARGUMENT);
-        EXPECT_NE(std::string(e.what()).find("PELLUCID_MATH_WIDTH"), std::string::npos) << e.what();
-    }
-    before ? setenv("PELLUCID_MATH_WIDTH", saved.c_str(), 1) : unsetenv("PELLUCID_MATH_WIDTH");
+    width.set("7");
+    expectRefused("PELLUCID_MATH_WIDTH", [] { Device((std::string())); });
 }
 
 TEST(Device, CallersContextAndQueue) {
@@ -74,27 +72,6 @@ TEST(Device, CallersContextAndQueue) {
     EXPECT_EQ(buffer.readAll<float>(), (std::vector<float>{1, 2, 3}));
     EXPECT_EQ(second.info().index, UINT32_MAX);
     EXPECT_THROW(Device::fromCl(context, id, nullptr), Error);
-}
-
-TEST(Handles, WrongOnesAreErrorsNotCrashes) {
-    PelDeviceInfo info = pelDeviceInfoDefaults();
-    EXPECT_EQ(pelDeviceGetInfo(nullptr, &info), PEL_ERROR_INVALID_ARGUMENT);
-    EXPECT_NE(std::strstr(pelGetErrorMessage(), "PelDevice"), nullptr);
-
-    const Device device("");
-    const Buffer buffer(device, 16);
-    EXPECT_EQ(pelDeviceGetInfo(reinterpret_cast<PelDevice>(buffer.get()), &info), PEL_ERROR_INVALID_ARGUMENT);
-    EXPECT_NE(std::strstr(pelGetErrorMessage(), "PelBuffer"), nullptr) << pelGetErrorMessage();
-
-    PelBuffer released = nullptr;
-    check(pelBufferCreate(device.get(), 16, nullptr, &released));
-    pelBufferRelease(released);
-    pelBufferRelease(released);
-    size_t bytes = 0;
-    EXPECT_EQ(pelBufferGetSize(released, &bytes), PEL_ERROR_INVALID_ARGUMENT);
-    EXPECT_EQ(pelDeviceGetInfo(device.get(), nullptr), PEL_ERROR_INVALID_ARGUMENT);
-    info.structSize = 0;
-    EXPECT_EQ(pelDeviceGetInfo(device.get(), &info), PEL_ERROR_INVALID_ARGUMENT);
 }
 
 TEST(Handles, OlderCallersGetTheFieldsTheyKnow) {
@@ -192,13 +169,12 @@ TEST(Events, DoneAndWaits) {
     buffer.write(source.data(), source.size(), 0, &write);
     const PelSubmit then{&written, 1, &read};
     buffer.read(back.data(), back.size(), 0, &then);
-    check(pelEventWait(read));
+    Event(read).wait();
     int done = 0;
     check(pelEventIsDone(written, &done));
     EXPECT_EQ(done, 1);
     EXPECT_EQ(back, source);
     pelEventRelease(written);
-    pelEventRelease(read);
     const PelSubmit broken{nullptr, 2, nullptr};
     EXPECT_EQ(pelBufferRead(buffer.get(), 0, 4, back.data(), &broken), PEL_ERROR_INVALID_ARGUMENT);
 }
@@ -216,8 +192,9 @@ TEST(Events, WaitingForAFailedEventIsAnError) {
     ASSERT_EQ(clSetUserEventStatus(failed, -5), CL_SUCCESS);
     const PelSubmit after{&event, 1, nullptr};
     int back[2] = {};
-    EXPECT_EQ(pelBufferRead(buffer.get(), 0, sizeof back, back, &after), PEL_ERROR_OUT_OF_MEMORY);
-    EXPECT_NE(std::strstr(pelGetErrorMessage(), "PelSubmit.waits[0]"), nullptr) << pelGetErrorMessage();
+    expectRefused(
+        {"PelSubmit.waits[0]"}, [&] { return pelBufferRead(buffer.get(), 0, sizeof back, back, &after); },
+        PEL_ERROR_OUT_OF_MEMORY);
     int done = 7;
     EXPECT_NE(pelEventIsDone(event, &done), PEL_SUCCESS);
     EXPECT_NE(pelEventWait(event), PEL_SUCCESS);
@@ -226,15 +203,7 @@ TEST(Events, WaitingForAFailedEventIsAnError) {
     EXPECT_EQ(buffer.readAll<int>(), (std::vector<int>{1, 2}));
 }
 
-TEST(Errors, CallbackGetsTheMessage) {
-    std::string heard;
-    pelSetErrorCallback(
-        [](void* user, PelError, const char* message) { *static_cast<std::string*>(user) = message; },
-        &heard);
-    pelDeviceGetInfo(nullptr, nullptr);
-    pelSetErrorCallback(nullptr, nullptr);
-    EXPECT_EQ(heard, pelGetErrorMessage());
-    EXPECT_FALSE(heard.empty());
+TEST(Errors, HaveNames) {
     EXPECT_STREQ(pelErrorName(PEL_ERROR_NO_DEVICE), "PEL_ERROR_NO_DEVICE");
 }
 
@@ -265,13 +234,8 @@ TEST(Errors, ProgressCallbacksMayThrow) {
     desc.indices = triangle;
     device.setProgress([](void*, double, const char*) -> int { throw std::runtime_error("enough of it"); },
                        nullptr);
-    try {
-        pellucid::MeshTopology(device, desc);
-        ADD_FAILURE() << "the exception was lost";
-    } catch (const pellucid::Error& e) {
-        EXPECT_EQ(e.code(), PEL_ERROR_UNKNOWN);
-        EXPECT_STREQ(e.what(), "enough of it");
-    }
+    expectRefused(
+        {"enough of it"}, [&] { MeshTopology(device, desc); }, PEL_ERROR_UNKNOWN);
     device.setProgress(nullptr, nullptr);
-    pellucid::MeshTopology(device, desc);
+    MeshTopology(device, desc);
 }

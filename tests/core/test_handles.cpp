@@ -159,17 +159,6 @@ TEST(Handles, NullIsNoError) {
     EXPECT_EQ(heard.errors.size(), 0u);
 }
 
-// An error leaves no object behind that nobody can release.
-TEST(Handles, NothingIsMadeWithoutAPlaceForIt) {
-    const Device device("");
-    for (int i = 0; i < 3; ++i) {
-        EXPECT_EQ(pelBufferCreate(device.get(), 16, nullptr, nullptr), PEL_ERROR_INVALID_ARGUMENT);
-        EXPECT_EQ(pelShaderCreate(device.get(), nullptr), PEL_ERROR_INVALID_ARGUMENT);
-        EXPECT_EQ(pelProfileCreateSkin(nullptr), PEL_ERROR_INVALID_ARGUMENT);
-        EXPECT_EQ(pelDeviceCreate("", nullptr), PEL_ERROR_INVALID_ARGUMENT);
-    }
-}
-
 // More at a time than one piece of the table holds.
 TEST(Handles, ManyAtATime) {
     std::vector<Profile> all;

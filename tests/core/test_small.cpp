@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "lut/lut_cases.h"
-#include "mesh/mesh_calls.h"
+#include "mesh/mesh_fixture.h"
 #include "mesh/reference_meshes.h"
 #include "reference/screen.h"
 #include "shading/pass_scene.h"
@@ -12,72 +12,43 @@ using namespace pellucid;
 
 namespace {
 
-const Device& device() {
-    static const Device device("");
-    return device;
-}
+using fixture::device;
 
 struct SmallMesh {
     fixture::Pair both = fixture::pairOf(
         reference::tessellate(reference::torusSurface(30, 10), 11, 7, reference::Tessellation::irregular)
             .mesh);
     const reference::Mesh& truth = both.exact;
-    uint32_t vertices = both.mesh.vertices();
-    MeshTopology topology{device(), fixture::topologyDesc(both.mesh)};
-    Buffer positionBuffer{device(), both.mesh.positions}, normalBuffer{device(), both.mesh.normals};
-
-    PelVertexView view(const Buffer& buffer) const { return vertexView(buffer, vertices); }
-    std::vector<float> curvature(const PelCurvatureParams& params, uint32_t components = 1) const {
-        const Buffer out(device(), vertices * components * sizeof(float));
-        topology.curvature(params, view(positionBuffer), view(normalBuffer), view(out));
-        return out.readAll<float>();
-    }
 };
-
-double worst(const std::vector<float>& values, const std::vector<double>& truth) {
-    double difference = 0, largest = 0;
-    for (size_t i = 0; i < truth.size(); ++i) {
-        difference = std::max(difference, std::abs(values[i] - truth[i]));
-        largest = std::max(largest, std::abs(truth[i]));
-    }
-    return difference / largest;
-}
 
 }  // namespace
 
 TEST(Small, Curvature) {
     const SmallMesh m;
-    PelCurvatureParams params = fixture::edgeParams(2);
-    EXPECT_LT(worst(m.curvature(params), reference::smoothed(m.truth, reference::edgeCurvature(m.truth), 2)),
+    EXPECT_LT(fixture::relativeError(fixture::edgeCurvature(m.both.mesh, 2).values,
+                                     reference::smoothed(m.truth, reference::edgeCurvature(m.truth), 2)),
               tolerance::edgeCurvature);
-    params.estimator = PEL_CURVATURE_TENSOR;
-    params.smoothingPasses = 0;
-    params.quantity = PEL_QUANTITY_PRINCIPAL;
-    std::vector<double> principal;
+    std::vector<double> principal, normals;
     for (const auto& k : reference::tensorCurvature(m.truth))
         principal.insert(principal.end(), {k.first, k.second});
-    EXPECT_LT(worst(m.curvature(params, 2), principal), 1e-4);
+    EXPECT_LT(fixture::relativeError(
+                  fixture::valuesOf(m.both.mesh,
+                                    fixture::paramsOf(PEL_CURVATURE_TENSOR, 0, PEL_QUANTITY_PRINCIPAL), 2),
+                  principal),
+              1e-4);
     // A fit to eleven by seven vertices says little: finite, and of the right order.
     for (const PelCurvatureQuantity quantity :
          {PEL_QUANTITY_ABSOLUTE, PEL_QUANTITY_GAUSSIAN, PEL_QUANTITY_FRAME}) {
-        params.estimator = PEL_CURVATURE_QUADRIC;
-        params.quantity = quantity;
-        params.smoothingRadius = quantity == PEL_QUANTITY_FRAME ? 0.0f : 5.0f;
+        const bool frame = quantity == PEL_QUANTITY_FRAME;
+        PelCurvatureParams params = fixture::paramsOf(PEL_CURVATURE_QUADRIC, 0, quantity);
+        params.smoothingRadius = frame ? 0.0f : 5.0f;
         params.smoothingCrease = 1;
-        for (const float v : m.curvature(params, quantity == PEL_QUANTITY_FRAME ? 8 : 1))
+        for (const float v : fixture::valuesOf(m.both.mesh, params, frame ? 8 : 1))
             EXPECT_LE(std::abs(v), 1.0f + 1e-5f);
     }
-}
-
-TEST(Small, NormalsAndUvScale) {
-    const SmallMesh m;
-    const Buffer out(device(), m.vertices * 3 * sizeof(float)), uvs(device(), m.both.mesh.uvs);
-    m.topology.normals(m.view(m.positionBuffer), m.view(out));
-    std::vector<double> truth;
-    for (const auto& n : reference::estimatedNormals(m.truth)) truth.insert(truth.end(), {n.x, n.y, n.z});
-    EXPECT_LT(worst(out.readAll<float>(), truth), 1e-5);
-    const double scale = reference::uvScale(m.truth);
-    EXPECT_NEAR(m.topology.uvScale(m.view(m.positionBuffer), m.view(uvs)) / scale, 1, 1e-5);
+    for (const auto& n : reference::estimatedNormals(m.truth)) normals.insert(normals.end(), {n.x, n.y, n.z});
+    EXPECT_LT(fixture::relativeError(fixture::normalsOf(m.both.mesh), normals), 1e-5);
+    EXPECT_NEAR(fixture::uvScale(m.both.mesh) / reference::uvScale(m.truth), 1, 1e-5);
 }
 
 TEST(Small, CurvatureTables) {
@@ -184,22 +155,22 @@ TEST(Small, ScreenCurvature) {
                        objects = imageDesc(d, PEL_FORMAT_R32_UINT, width, height);
     screenCurvature(device(), params, imageDesc(n, PEL_FORMAT_RGB32F, width, height), &places, nullptr,
                     &objects, imageDesc(out, PEL_FORMAT_R32F, width, height));
-    EXPECT_LT(worst(out.readAll<float>(), reference::screenCurvature(image, params.edge)),
+    EXPECT_LT(fixture::relativeError(out.readAll<float>(), reference::screenCurvature(image, params.edge)),
               tolerance::screenSphere);
 }
 
 TEST(Small, APartOfALiveMesh) {
-    SmallMesh m;
-    PelCurvatureParams params = pelCurvatureParamsDefaults();
-    params.smoothingPasses = 1;
-    const LiveMesh live(m.topology, params);
-    const Buffer out(device(), m.vertices * sizeof(float));
-    live.update(m.view(m.positionBuffer), nullptr, m.view(out));
-    for (int i = 30; i < 36; ++i) m.both.mesh.positions[size_t(i)] *= 1.01f;
-    m.positionBuffer = Buffer(device(), m.both.mesh.positions);
-    live.update(m.view(m.positionBuffer), nullptr, m.view(out), {{10, 2}});
-    const Buffer whole(device(), m.vertices * sizeof(float));
-    m.topology.curvature(params, m.view(m.positionBuffer), m.view(whole));
+    fixture::Mesh mesh = SmallMesh().both.mesh;
+    const uint32_t n = mesh.vertices();
+    const PelCurvatureParams params = fixture::paramsOf(PEL_CURVATURE_QUADRIC, 1);
+    const MeshTopology topology(device(), fixture::topologyDesc(mesh));
+    const LiveMesh live(topology, params);
+    const Buffer out(device(), n * sizeof(float)), whole(device(), n * sizeof(float));
+    live.update(vertexView(Buffer(device(), mesh.positions), n), nullptr, vertexView(out, n));
+    for (int i = 30; i < 36; ++i) mesh.positions[size_t(i)] *= 1.01f;
+    const Buffer moved(device(), mesh.positions);
+    live.update(vertexView(moved, n), nullptr, vertexView(out, n), {{10, 2}});
+    topology.curvature(params, vertexView(moved, n), vertexView(whole, n));
     EXPECT_EQ(out.readAll<float>(), whole.readAll<float>());
 }
 

@@ -5,7 +5,6 @@
 #include <pellucid/pellucid.hpp>
 
 #include <cmath>
-#include <filesystem>
 #include <random>
 #include <utility>
 #include <vector>
@@ -52,42 +51,6 @@ inline PelShadowLutDesc shadowTable(const pellucid::Profile& profile, uint32_t w
     desc.widthMax = float(most * profile.info().radius);
     desc.sharpening = sharpening;
     return desc;
-}
-
-// D integrated over the light's directions is a quarter in each row of a sphere's table on the axis of roots:
-// no light is lost. u = s |s|, du/2 = |s| ds, which vanishes at the middle; trapezoids between texels.
-inline void expectMeansOfAQuarter(const std::vector<float>& texels, uint32_t width, const std::string& name) {
-    for (size_t row = 0; row < texels.size() / 3 / width; ++row)
-        for (size_t c = 0; c < 3; ++c) {
-            double mean = 0;
-            for (uint32_t x = 0; x < width; ++x) {
-                const double s = -1 + 2.0 * x / (width - 1), end = x == 0 || x + 1 == width ? 0.5 : 1;
-                mean += texels[(row * width + x) * 3 + c] * std::abs(s) * end * 2 / (width - 1);
-            }
-            EXPECT_NEAR(mean, 0.25, tolerance::sphereMean) << name << " row " << row << " channel " << c;
-        }
-}
-
-// RGBA bytes of a texel against the oracle's exact `steps`, wherever these are not about to round either way.
-inline void expectRounded(const uint8_t* bytes, const reference::Rgb& steps, int x, int y) {
-    EXPECT_EQ(bytes[3], 255);
-    for (int c = 0; c < 3; ++c) {
-        const double fromBoundary = std::abs(steps[c] - std::floor(steps[c]) - 0.5);
-        if (fromBoundary > tolerance::lutRoundingBoundary) {
-            EXPECT_EQ(bytes[c], reference::roundedSteps(steps)[c]) << x << ", " << y << ": " << steps[c];
-        }
-    }
-}
-
-// FaceWorks' own tables are sampled and clipped: near, but not the same.
-inline void expectNearFaceWorks(const pellucid::Lut& lut, const std::filesystem::path& file) {
-    const auto theirs = npy::read<uint8_t>(file);
-    const auto bytes = lut.read<uint8_t>(PEL_LUT_FACEWORKS8);
-    ASSERT_EQ(bytes.size(), theirs.data.size());
-    int furthest = 0;
-    for (size_t i = 0; i < bytes.size(); ++i)
-        furthest = std::max(furthest, std::abs(int(bytes[i]) - theirs.data[i]));
-    EXPECT_LE(furthest, int(tolerance::faceWorksBytes.value));
 }
 
 // The same profile in the library and in the oracle.

@@ -9,15 +9,20 @@ using fixture::ProfileCase;
 
 namespace {
 
-// Calls compare(x, y) for the corners and for random texels; each row is met before any is met again.
-template <class Compare>
-void eachTexel(uint32_t width, uint32_t height, int samples, Compare&& compare) {
+// The corners and random texels against truth(x, y); each row is met before any is met again.
+template <class Desc, class Truth>
+void compareTexels(const Lut& lut, const Desc& desc, const ProfileCase& profile, int samples, Truth&& truth) {
+    const std::vector<float> texels = lut.read<float>(PEL_LUT_FLOAT);
     std::mt19937 random(7);
     for (int i = 0; i < samples; ++i) {
         const bool corner = i < 4;
-        const int x = corner ? (i & 1) * (int(width) - 1) : int(random() % width),
-                  y = corner ? (i >> 1) * (int(height) - 1) : i % int(height);
-        compare(x, y);
+        const int x = corner ? (i & 1) * (int(desc.width) - 1) : int(random() % desc.width),
+                  y = corner ? (i >> 1) * (int(desc.height) - 1) : i % int(desc.height);
+        const reference::Rgb expected = truth(x, y);
+        for (int k = 0; k < 3; ++k)
+            EXPECT_NEAR(texels[(size_t(y) * desc.width + size_t(x)) * 3 + size_t(k)], expected[k],
+                        profile.tolerance)
+                << profile.name << " (" << x << ", " << y << ") channel " << k;
     }
 }
 
@@ -26,21 +31,17 @@ void compareCurvature(const Device& device, const ProfileCase& profile, const Pe
     const PelCurvatureLutDesc desc = sizedTable(usual);
     const Lut lut(device, desc);
     const PelCurvatureLutDesc made = lut.info().curvature;
-    const std::vector<float> texels = lut.read<float>(PEL_LUT_FLOAT);
+    SCOPED_TRACE("form " + std::to_string(desc.form) + " axis " + std::to_string(desc.axis));
     const auto truth = reference::profileForRadius(profile.truth, made.diffusionRadius);
     const double c0 = 1 / double(made.radiusMax), c1 = 1 / double(made.radiusMin);
-    eachTexel(desc.width, desc.height, samples, [&](int x, int y) {
+    compareTexels(lut, desc, profile, samples, [&](int x, int y) {
         double u = -1 + (x + 0.5) * 2 / desc.width, c = c0 + (y + 0.5) / desc.height * (c1 - c0);
         if (desc.axis == PEL_AXIS_ROOT) {
             const double s = -1 + 2.0 * x / (desc.width - 1);
             u = s * std::abs(s);
             c = std::pow(std::sqrt(c0) + y / (desc.height - 1.0) * (std::sqrt(c1) - std::sqrt(c0)), 2);
         }
-        const reference::Rgb D = reference::curvatureD(forms[desc.form].second, *truth, u, 1 / c);
-        for (int k = 0; k < 3; ++k)
-            EXPECT_NEAR(texels[(size_t(y) * desc.width + size_t(x)) * 3 + size_t(k)], D[k], profile.tolerance)
-                << profile.name << " form " << int(desc.form) << " axis " << int(desc.axis) << " u " << u
-                << " r " << 1 / c << " channel " << k;
+        return reference::curvatureD(forms[desc.form].second, *truth, u, 1 / c);
     });
 }
 
@@ -49,16 +50,12 @@ void compareShadow(const Device& device, const ProfileCase& profile, const PelSh
     const PelShadowLutDesc desc = sizedTable(usual);
     const Lut lut(device, desc);
     const PelShadowLutDesc made = lut.info().shadow;
-    const std::vector<float> texels = lut.read<float>(PEL_LUT_FLOAT);
+    SCOPED_TRACE("sharpening " + std::to_string(desc.sharpening) + ", widths " +
+                 std::to_string(desc.widthMin) + " to " + std::to_string(desc.widthMax));
     const reference::ShadowLutSpec spec{int(desc.width), int(desc.height),     desc.widthMin,
                                         desc.widthMax,   made.diffusionRadius, desc.sharpening};
-    eachTexel(desc.width, desc.height, samples, [&](int x, int y) {
-        const reference::Rgb T = reference::shadowTexel(spec, *profile.truth, x, y);
-        for (int k = 0; k < 3; ++k)
-            EXPECT_NEAR(texels[(size_t(y) * desc.width + size_t(x)) * 3 + size_t(k)], T[k], profile.tolerance)
-                << profile.name << " (" << x << ", " << y << ") sharpening " << desc.sharpening << " widths "
-                << desc.widthMin << " to " << desc.widthMax << " channel " << k;
-    });
+    compareTexels(lut, desc, profile, samples,
+                  [&](int x, int y) { return reference::shadowTexel(spec, *profile.truth, x, y); });
 }
 
 const ProfileCase& skin() {
@@ -144,13 +141,81 @@ TEST(LutIntegral, ShadowOfOtherSizesAndUnits) {
     }
 }
 
+// Some rows and columns of the largest tables, the outermost among them.
+TEST(LutIntegral, LargestTables) {
+    const Device device("");
+    for (const auto& [form, trueForm] : forms) {
+        PelCurvatureLutDesc desc = fixture::curvatureTable(skin().ours, form, 4096, 4096, 0.05, 1e4);
+        desc.axis = PEL_AXIS_LINEAR;
+        compareCurvature(device, skin(), desc, 160);
+    }
+}
+
+// One column of the axis of roots is its middle, N.L = 0.
+TEST(LutIntegral, OneColumnIsTheMiddle) {
+    const Device device("");
+    for (const auto& [form, trueForm] : forms)
+        for (double r : {0.05, 1.0, 30.0}) {
+            const auto desc = fixture::curvatureTable(skin().ours, form, 1, 1, r, r);
+            const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+            const reference::Rgb truth = reference::curvatureD(trueForm, *skin().truth, 0, r * 2.7);
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(texels[size_t(c)], truth[c], tolerance::lutTexelGaussians);
+        }
+}
+
+// D integrated over the light's directions is a quarter in each row of a sphere's table on the axis of roots:
+// no light is lost. u = s |s|, du/2 = |s| ds, which vanishes at the middle; trapezoids between texels.
 TEST(LutIntegral, MeanOverTheSphereIsAQuarter) {
     const Device device("");
+    constexpr uint32_t width = 2049;
     for (const ProfileCase& profile : fixture::profiles()) {
         const auto desc =
-            fixture::curvatureTable(profile.ours, PEL_FORM_SPHERE, 2049, sized(12u, 2u), 0.05, 1000);
-        const Lut lut(device, desc);
-        fixture::expectMeansOfAQuarter(lut.read<float>(PEL_LUT_FLOAT), desc.width, profile.name);
+            fixture::curvatureTable(profile.ours, PEL_FORM_SPHERE, width, sized(12u, 2u), 0.05, 1000);
+        const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+        for (size_t row = 0; row < desc.height; ++row)
+            for (size_t c = 0; c < 3; ++c) {
+                double mean = 0;
+                for (uint32_t x = 0; x < width; ++x) {
+                    const double s = -1 + 2.0 * x / (width - 1), end = x == 0 || x + 1 == width ? 0.5 : 1;
+                    mean += texels[(row * width + x) * 3 + c] * std::abs(s) * end * 2 / (width - 1);
+                }
+                EXPECT_NEAR(mean, 0.25, tolerance::sphereMean) << profile.name << " row " << row;
+            }
+    }
+}
+
+// Closed ends: (T - T(0)) / (T(1) - T(0)) per row of the oracle's T, 0 and 1 at the ends of the axis of
+// roots, whose columns are even in the position across the edge and whose rows are even in the root of
+// 1/width.
+TEST(LutIntegral, ClosedEndsOfShadowsRunFromNoneToAll) {
+    const Device device("");
+    for (float sharpening : {1.0f, 10.0f}) {
+        PelShadowLutDesc desc = fixture::shadowTable(skin().ours, 33, 9, 4 / 2.7, 400 / 2.7, sharpening);
+        desc.closedEnds = 1;
+        desc.axis = PEL_AXIS_ROOT;
+        const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+        for (uint32_t y = 0; y < 9; ++y) {
+            const double root = std::sqrt(1.0 / 400) + y / 8.0 * (std::sqrt(1.0 / 4) - std::sqrt(1.0 / 400));
+            const auto T = [&](double w) {
+                return reference::shadowT(*skin().truth, w, root * root, sharpening);
+            };
+            const reference::Rgb low = T(0), high = T(1);
+            for (uint32_t x = 0; x < 33; ++x) {
+                // w of a position p: p - 1/2 = (sqrt w - sqrt(1 - w)) / 2 = sin(asin(sqrt w) - pi/4) / sqrt 2
+                const double z = x / 32.0 - 0.5,
+                             angle = std::asin(std::clamp(z * std::sqrt(2.0), -1.0, 1.0)) + std::atan(1.0);
+                const reference::Rgb t = T(std::pow(std::sin(angle), 2));
+                for (int c = 0; c < 3; ++c) {
+                    const float texel = texels[(y * 33 + x) * 3 + size_t(c)];
+                    EXPECT_NEAR(texel, (t[c] - low[c]) / (high[c] - low[c]), tolerance::closedEnds)
+                        << x << " " << y;
+                    if (x % 32 == 0) {
+                        EXPECT_EQ(texel, x == 0 ? 0 : 1);
+                    }
+                }
+            }
+        }
     }
 }
 

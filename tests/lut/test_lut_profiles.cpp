@@ -1,14 +1,65 @@
-// Profiles against the oracle's, and errors of their descriptions.
+// Profiles against the oracle's, the numbers of the library's materials, which stand here a second time, and
+// errors of descriptions.
+#include <set>
+
 #include "lut_cases.h"
+#include "refusal.h"
 
 using namespace pellucid;
+
+namespace {
+
+struct Material {
+    const char* name;
+    float a[3], b[3];  // reduced scattering and absorption, 1/mm; or mean free path, mm, and albedo
+    float eta;         // 0: Burley's profile
+};
+
+constexpr Material materials[] = {
+    // Jensen, Marschner, Levoy, Hanrahan, SIGGRAPH 2001, figure 5: columns sigma_s' and sigma_a.
+    {"apple", {2.29f, 2.39f, 1.97f}, {0.0030f, 0.0034f, 0.046f}, 1.3f},
+    {"chicken", {0.15f, 0.21f, 0.38f}, {0.015f, 0.077f, 0.19f}, 1.3f},
+    {"cream", {7.38f, 5.47f, 3.15f}, {0.0002f, 0.0028f, 0.0163f}, 1.3f},
+    {"ketchup", {0.18f, 0.07f, 0.03f}, {0.061f, 0.97f, 1.45f}, 1.3f},
+    {"marble", {2.19f, 2.62f, 3.00f}, {0.0021f, 0.0041f, 0.0071f}, 1.5f},
+    {"potato", {0.68f, 0.70f, 0.55f}, {0.0024f, 0.0090f, 0.12f}, 1.3f},
+    {"skim-milk", {0.70f, 1.22f, 1.90f}, {0.0014f, 0.0025f, 0.0142f}, 1.3f},
+    {"skin-dark", {0.74f, 0.88f, 1.01f}, {0.032f, 0.17f, 0.48f}, 1.3f},
+    {"skin-pale", {1.09f, 1.59f, 1.79f}, {0.013f, 0.070f, 0.145f}, 1.3f},
+    {"whole-milk", {2.55f, 3.21f, 3.77f}, {0.0011f, 0.0024f, 0.014f}, 1.3f},
+    // 1 / (absorption + reduced scattering) of skin1 above, to three digits, and its diffuse reflectance in
+    // the same table.
+    {"skin-burley", {1.295f, 0.952f, 0.671f}, {0.44f, 0.22f, 0.13f}, 0},
+    {"paraffin", {4.0f, 3.2f, 2.2f}, {0.92f, 0.89f, 0.80f}, 0},
+    {"jade", {1.2f, 2.6f, 1.5f}, {0.35f, 0.70f, 0.42f}, 0},
+};
+
+}  // namespace
+
+TEST(LutProfiles, LibraryHasTheNumbersOfItsSources) {
+    const std::vector<double> distances = {0.01, 0.1, 0.5, 1, 2, 5, 12};
+    std::string message;
+    try {
+        Profile::named("none of them");
+    } catch (const Error& e) {
+        message = e.what();
+    }
+    for (const Material& m : materials) {
+        const Profile wanted = m.eta > 0 ? Profile::dipole(m.b, m.a, m.eta) : Profile::burley(m.a, m.b);
+        EXPECT_EQ(Profile::named(m.name).radial(distances), wanted.radial(distances)) << m.name;
+        EXPECT_NE(message.find(m.name), std::string::npos) << message;
+    }
+    EXPECT_EQ(Profile::named("skin").radial(distances), Profile::skin().radial(distances));
+    EXPECT_EQ(size_t(std::count(message.begin(), message.end(), ',')), std::size(materials))
+        << "none that this test does not know: " << message;
+}
 
 TEST(LutProfiles, RadialAndLineSpreadEqualTheOracles) {
     for (const fixture::ProfileCase& pair : fixture::profiles()) {
         const double radius = pair.truth->radius();
         EXPECT_NEAR(pair.ours.info().radius / radius, 1, tolerance::profileEvaluation) << pair.name;
-        const std::vector<double> at{0.01 * radius, 0.1 * radius, 0.5 * radius,
-                                     radius,        2 * radius,   4 * radius};
+        std::vector<double> at;
+        for (double radii : {0.01, 0.1, 0.5, 1.0, 2.0, 4.0}) at.push_back(radii * radius);
         const auto radial = pair.ours.radial(at), lineSpread = pair.ours.lineSpread(at);
         for (size_t i = 0; i < at.size(); ++i)
             for (int k = 0; k < 3; ++k) {
@@ -24,42 +75,40 @@ TEST(LutProfiles, RadialAndLineSpreadEqualTheOracles) {
 
 TEST(LutProfiles, NormalBlendOfSkinIsThePublishedOne) {
     const PelProfileInfo info = Profile::skin().info();
-    EXPECT_NEAR(info.normalBlend[0], 1, tolerance::normalBlend);
-    EXPECT_NEAR(info.normalBlend[1], 0.3, tolerance::normalBlend);
-    EXPECT_NEAR(info.normalBlend[2], 0, tolerance::normalBlend);
+    for (auto [c, blend] : {std::pair(0, 1.0), {1, 0.3}, {2, 0.0}})
+        EXPECT_NEAR(info.normalBlend[c], blend, tolerance::normalBlend);
     EXPECT_STREQ(info.name, "skin");
 }
 
 TEST(LutProfiles, RefusesWhatMakesNoSense) {
     const float nan3[3] = {NAN, 1, 1}, ones[3] = {1, 1, 1}, negative[3] = {1, -1, 1},
-                half[3] = {0.5f, 0.5f, 0.5f};
-    auto refused = [](auto make, const char* word) {
-        try {
-            make();
-            ADD_FAILURE() << "accepted a wrong " << word;
-        } catch (const Error& e) {
-            EXPECT_EQ(e.code(), PEL_ERROR_INVALID_ARGUMENT);
-            EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << e.what();
-        }
+                half[3] = {0.5f, 0.5f, 0.5f}, most = std::numeric_limits<float>::max();
+    const auto gaussian = [](const char* word, float variance, float r, float g, float b) {
+        expectRefused(word, [&] { Profile::gaussians({{variance, {r, g, b}}}); });
     };
-    refused([] { Profile::gaussians({}); }, "1 to 256");
-    refused([] { Profile::gaussians({{0, {1, 1, 1}}}); }, "variance");
-    refused([] { Profile::gaussians({{NAN, {1, 1, 1}}}); }, "variance");
-    refused([] { Profile::gaussians({{1, {1, -1, 1}}}); }, "green weight");
-    refused([] { Profile::gaussians({{1, {1, 1, NAN}}}); }, "blue weight");
-    refused([] { Profile::gaussians({{1, {1, 1, 0}}}); }, "blue weights");
-    refused([&] { Profile::burley(nan3, half); }, "red mean free path");
-    refused([&] { Profile::burley(ones, negative); }, "green albedo");
-    refused([&] { Profile::burley(ones, half, PelBurleyFit(9)); }, "fit");
-    refused([&] { Profile::dipole(negative, ones, 1.3f); }, "green absorption");
-    refused([&] { Profile::dipole(ones, ones, 1); }, "eta");
-    refused([&] { Profile::table({0}, {1, 1, 1}); }, "2 to");
-    refused([&] { Profile::table({0, 0}, {1, 1, 1, 1, 1, 1}); }, "distance 1");
-    refused([&] { Profile::table({0, 1}, {1, 1, 1, 1, 1, -1}); }, "blue value");
+    for (float variance : {0.0f, NAN, INFINITY}) gaussian("variance", variance, 1, 1, 1);
+    gaussian("green weight", 1, 1, -1, 1);
+    gaussian("green weight", 1, most, INFINITY, 1);
+    gaussian("blue weight", 1, 1, 1, NAN);
+    gaussian("blue weights", 1, 1, 1, 0);
+    gaussian("weights", 1, 0, 0, 0);
+    expectRefused("1 to 256", [] { Profile::gaussians({}); });
+    expectRefused("red mean free path", [&] { Profile::burley(nan3, half); });
+    expectRefused("green albedo", [&] { Profile::burley(ones, negative); });
+    expectRefused("fit", [&] { Profile::burley(ones, half, PelBurleyFit(9)); });
+    expectRefused("green absorption", [&] { Profile::dipole(negative, ones, 1.3f); });
+    expectRefused("eta", [&] { Profile::dipole(ones, ones, 1); });
+    const auto table = [](const char* word, const std::vector<float>& distances,
+                          const std::vector<float>& values) {
+        expectRefused(word, [&] { Profile::table(distances, values); });
+    };
+    table("2 to", {0}, {1, 1, 1});
+    table("distance 1", {0, 0}, {1, 1, 1, 1, 1, 1});
+    table("blue value", {0, 1}, {1, 1, 1, 1, 1, -1});
+    table("red", {0, 1}, {0, 1, 1, 0, 1, 1});
     for (const float wrong : {-1.0f, NAN, INFINITY}) {
-        refused([&] { Profile::table({wrong, 1}, {1, 1, 1, 1, 1, 1}); }, "distance 0");
-        refused([&] { Profile::table({0, 1}, {1, wrong, 1, 1, 1, 1}); }, "green value");
+        table("distance 0", {wrong, 1}, {1, 1, 1, 1, 1, 1});
+        table("green value", {0, 1}, {1, wrong, 1, 1, 1, 1});
     }
-    refused([&] { Profile::table({0, 1}, {0, 1, 1, 0, 1, 1}); }, "red");
-    refused([&] { Profile::skin().setName(std::string(64, 'x')); }, "63");
+    expectRefused("63", [&] { Profile::skin().setName(std::string(64, 'x')); });
 }

@@ -1,13 +1,11 @@
-// The oracle's curvature LUT against second methods: Bessel series, Fourier modes, Boost.Math quadrature; its
-// limits and energy; and tables that were integrated elsewhere.
+// The oracle's look-up tables by Boost.Math's quadrature of the definitions, their limits, and FaceWorks'
+// encodings in 8 bits. test_lut_encodings compares the library with tables that were integrated elsewhere.
 #include <gtest/gtest.h>
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
-#include <boost/math/special_functions/bessel.hpp>
 #include <numbers>
 #include <random>
 
-#include "npy.h"
 #include "reference/lut.h"
 #include "reference/quadrature.h"
 #include "tolerances.h"
@@ -19,101 +17,21 @@ constexpr double pi = std::numbers::pi;
 constexpr Form allForms[] = {Form::arc, Form::ring, Form::halfRing, Form::sphere, Form::pennerRing};
 const double someU[] = {-1, -0.9, -0.5, -0.1, -1e-3, 0, 1e-3, 0.1, 0.3, 0.7, 0.99, 1};
 
-ProfilePtr oneGaussian(double sigma) {
-    return gaussiansProfile({{sigma * sigma, {1, 1, 1}}});
-}
+const std::pair<const char*, ProfilePtr> profiles[] = {
+    {"skin", skinProfile()},
+    {"dipole", dipoleProfile({0.032, 0.17, 0.48}, {0.74, 0.88, 1.01}, 1.3)},
+    {"table",
+     tableProfile({0, 0.5, 1, 2, 4}, {{9, 8, 7}, {4, 3, 2}, {1, .5, .2}, {.2, .05, .01}, {0, 0, 0}})},
+    {"burley", burleyProfile({3.67, 1.37, 0.68}, {0.9, 0.6, 0.4})}};
 
-// Coefficient of cos(n theta) in max0(cos theta) on the circle.
-double circleMode(int n) {
-    if (n == 0) return 1 / pi;
-    if (n == 1) return 0.5;
-    if (n % 2) return 0;
-    const double m = n / 2;
-    return (n / 2 % 2 ? 1 : -1) * 2 / pi / (4 * m * m - 1);
-}
-
-// Coefficient of the Legendre polynomial l in max0(cos theta) on the sphere.
-double sphereMode(int l) {
-    if (l == 0) return 0.25;
-    if (l == 1) return 0.5;
-    if (l % 2) return 0;
-    double moment = 0.125;  // integral of x P_2 over [0, 1]; each l + 2 follows by a factor
-    for (int k = 2; k < l; k += 2) moment *= -double(k - 1) / (k + 4);
-    return (2 * l + 1) / 2.0 * moment;
-}
-
-// Ratios I_{n+order}(kappa)/I_order(kappa) for n = 0..count by downward recurrence (Miller's algorithm).
-std::vector<double> besselRatios(double order, double kappa, int count) {
-    std::vector<double> ratio(count + 1, 1.0);
-    double quotient = 0;  // I_{nu+1}/I_nu, from the continued fraction's tail
-    std::vector<double> quotients(count + 1);
-    for (int n = 2 * count + 50; n >= 0; --n) {
-        quotient = 1 / (2 * (n + order + 1) / kappa + quotient);
-        if (n < count) quotients[n] = quotient;
-    }
-    for (int n = 0; n < count; ++n) ratio[n + 1] = ratio[n] * quotients[n];
-    return ratio;
-}
-
-double ringSeries(double u, double kappa) {
-    const int count = 200 + int(12 * std::sqrt(kappa));
-    const auto ratio = besselRatios(0, kappa, count);
-    const double theta = std::acos(u);
-    double sum = 0;
-    for (int n = 0; n <= count; ++n) sum += circleMode(n) * ratio[n] * std::cos(n * theta);
-    return sum;
-}
-
-double sphereSeries(double u, double kappa) {
-    const int count = 200 + int(12 * std::sqrt(kappa));
-    const auto ratio = besselRatios(0.5, kappa, count);
-    double sum = 0, previous = 1, current = u;  // Legendre polynomials l, l + 1
-    for (int l = 0; l <= count; ++l) {
-        sum += sphereMode(l) * ratio[l] * previous;
-        const double next = ((2 * l + 3) * u * current - (l + 1) * previous) / (l + 2);
-        previous = current;
-        current = next;
-    }
-    return sum;
-}
-
-TEST(ReferenceLut, RingOfOneGaussianIsABesselSeries) {
-    for (double r : {0.05, 0.3, 1.0, 3.0, 30.0, 300.0})  // in sigmas
-        for (double u : someU)
-            EXPECT_NEAR(curvatureD(Form::ring, *oneGaussian(1), u, r).x, ringSeries(u, r * r),
-                        tolerance::oracleClosedForm)
-                << "u " << u << " r " << r;
-}
-
-TEST(ReferenceLut, SphereOfOneGaussianIsABesselLegendreSeries) {
-    for (double r : {0.05, 0.3, 1.0, 3.0, 30.0, 300.0})
-        for (double u : someU)
-            EXPECT_NEAR(curvatureD(Form::sphere, *oneGaussian(1), u, r).x, sphereSeries(u, r * r),
-                        tolerance::oracleClosedForm)
-                << "u " << u << " r " << r;
-}
-
-TEST(ReferenceLut, ArcLongEnoughIsAWrappedGaussian) {
-    // With the cut at 12 sigma and pi r beyond it, each mode n of the circle shrinks by exp(-n² v / 2r²).
-    for (double r : {4.0, 10.0, 100.0})
-        for (double u : someU) {
-            double sum = 0;
-            for (int n = 0; n <= 3000; ++n)
-                sum += circleMode(n) * std::exp(-0.5 * n * n / (r * r)) * std::cos(n * std::acos(u));
-            EXPECT_NEAR(curvatureD(Form::arc, *oneGaussian(1), u, r, 12).x, sum, tolerance::oracleClosedForm)
-                << "u " << u << " r " << r;
-        }
-}
+using Rule = boost::math::quadrature::gauss_kronrod<double, 61>;
 
 // The definitions as written, each smooth stretch by Boost's 61-point rule, no folding and no substitution.
 double boostCurvature(Form form, const Profile& profile, int channel, double u, double r) {
-    using Rule = boost::math::quadrature::gauss_kronrod<double, 61>;
     const double theta = std::acos(u);
-    const double end = form == Form::arc          ? std::min(pi * r, profileCut(profile)) / r
-                       : form == Form::ring       ? pi
-                       : form == Form::pennerRing ? pi
-                       : form == Form::sphere     ? pi
-                                                  : pi / 2;
+    const double end = form == Form::arc        ? std::min(pi * r, profileCut(profile)) / r
+                       : form == Form::halfRing ? pi / 2
+                                                : pi;
     std::vector<double> borders{0};
     for (double l : profile.lengths()) {
         const double angle = form == Form::arc ? l / r : l < 2 * r ? 2 * std::asin(l / (2 * r)) : pi;
@@ -151,12 +69,6 @@ double boostCurvature(Form form, const Profile& profile, int channel, double u, 
 
 TEST(ReferenceLut, EveryFormAndProfileEqualsBoostQuadrature) {
     std::mt19937 random(7);
-    const std::pair<const char*, ProfilePtr> profiles[] = {
-        {"skin", skinProfile()},
-        {"dipole", dipoleProfile({0.032, 0.17, 0.48}, {0.74, 0.88, 1.01}, 1.3)},
-        {"table",
-         tableProfile({0, 0.5, 1, 2, 4}, {{9, 8, 7}, {4, 3, 2}, {1, .5, .2}, {.2, .05, .01}, {0, 0, 0}})},
-        {"burley", burleyProfile({3.67, 1.37, 0.68}, {0.9, 0.6, 0.4})}};
     for (const auto& [name, profile] : profiles)
         for (Form form : allForms) {
             const bool ringLike = form == Form::ring || form == Form::halfRing;
@@ -222,49 +134,75 @@ TEST(ReferenceLut, HoldsFromATwentiethToTenThousandSigma) {
                 EXPECT_LE(tiny[c], 1);
             }
         }
+    const ProfilePtr one = gaussiansProfile({{1, {1, 1, 1}}});
     // A sphere much smaller than the profile is lit evenly, as is the ring: 1/4 and 1/pi.
-    EXPECT_NEAR(curvatureD(Form::sphere, *oneGaussian(1), 0.7, 1e-4).x, 0.25, tolerance::smallRadiusLimit);
-    EXPECT_NEAR(curvatureD(Form::ring, *oneGaussian(1), 0.7, 1e-4).x, 1 / pi, tolerance::smallRadiusLimit);
+    EXPECT_NEAR(curvatureD(Form::sphere, *one, 0.7, 1e-4).x, 0.25, tolerance::smallRadiusLimit);
+    EXPECT_NEAR(curvatureD(Form::ring, *one, 0.7, 1e-4).x, 1 / pi, tolerance::smallRadiusLimit);
 }
 
-TEST(ReferenceLut, MeanOfSphereIsAQuarterAndOfRingOneOverPi) {
-    for (const auto& profile : {skinProfile(), burleyProfile({3.67, 1.37, 0.68}, {0.9, 0.6, 0.4})})
-        for (double r : {0.3, 5.0, 200.0}) {
-            // The terminator changes D over widths of each Gaussian: borders there.
-            std::vector<double> borders;
-            for (double l : profile->lengths())
-                for (double sign : {-1, 1}) borders.push_back(sign * l / r);
-            borders.push_back(0);
-            const Rgb mean =
-                integrate<Rgb>([&](double u) { return 0.5 * curvatureD(Form::sphere, *profile, u, r); },
-                               panelPoints(-1, 1, borders), 1e-11, 1e-11);
-            for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c], 0.25, tolerance::oracleClosedForm) << "r " << r;
-            if (profile->singularAtZero()) continue;
-            const Rgb ringMean = integrate<Rgb>(
-                [&](double theta) { return curvatureD(Form::ring, *profile, std::cos(theta), r) / pi; },
-                panelPoints(0, pi, {pi / 2}), 1e-11, 1e-11);
-            for (int c = 0; c < 3; ++c)
-                EXPECT_NEAR(ringMean[c], 1 / pi, tolerance::oracleClosedForm) << "r " << r;
+TEST(ReferenceShadowLut, EveryProfileEqualsBoostQuadrature) {
+    std::mt19937 random(11);
+    for (const auto& [name, profile] : profiles)
+        for (int i = 0; i < 2; ++i) {
+            const double w = std::uniform_real_distribution<>(0, 1)(random);
+            const double q = std::uniform_real_distribution<>(0.01, 0.12)(random) / profile->radius();
+            const double k = std::uniform_real_distribution<>(1, 12)(random), p = shadowPosition(w);
+            const double cut = profileCut(*profile);
+            auto integrand = [&](double s) {
+                const double t = std::clamp((p + s * q) * k + (1 - k) / 2, 0.0, 1.0);
+                return t * t * (3 - 2 * t) * profile->lineSpread(s).y;
+            };
+            std::vector<double> borders{-cut, 0, cut, (0.5 - 0.5 / k - p) / q, (0.5 + 0.5 / k - p) / q};
+            for (double l : profile->lengths()) {
+                borders.push_back(l);
+                borders.push_back(-l);
+            }
+            std::sort(borders.begin(), borders.end());
+            double sum = 0;
+            for (size_t j = 0; j + 1 < borders.size(); ++j)
+                if (borders[j] >= -cut && borders[j + 1] <= cut && borders[j + 1] > borders[j])
+                    sum += Rule::integrate(integrand, borders[j], borders[j + 1], 8, 1e-12);
+            EXPECT_NEAR(shadowT(*profile, w, q, k).y, sum,
+                        profile->singularAtZero() ? tolerance::oracleSingular : tolerance::oracleQuadrature);
         }
 }
 
-TEST(ReferenceLut, ArcEqualsTheIndependentTable) {
-    REQUIRE_ORACLE_DIRECTORY(directory);
-    const auto truth = npy::read<float>(directory / "truth_lut_curv_A_arc10_f32.npy");
-    const auto axes = npy::read<double>(directory / "truth_lut_curv_A_axes_f64.npy");
-    const CurvatureLutSpec spec;
-    ASSERT_EQ(truth.shape, (std::vector<size_t>{512, 512, 3}));
-    const auto skin = skinProfile();
-    double worst = 0;
-    for (int y = 0; y < 512; y += 73)
-        for (int x = 0; x < 512; x += 19) {
-            EXPECT_NEAR(axes.row(0)[x], spec.u(x), tolerance::oracleExact);
-            const Rgb d = curvatureTexel(spec, *skin, x, y);
-            for (int c = 0; c < 3; ++c)
-                worst = std::max(worst, std::abs(d[c] - truth.data[(y * 512 + x) * 3 + c]));
-        }
-    RecordProperty("worst", std::to_string(worst));
-    EXPECT_LE(worst, tolerance::oracleFloatTable);
+TEST(ReferenceEncoding, RoundsAndClips) {
+    EXPECT_EQ(roundedSteps({0.49, 0.5, 254.9}), (Rgba8{0, 1, 255, 255}));
+    const Rgb d{0.3, 0.5, 0.7};
+    const Rgb steps = faceworksCurvatureSteps(d, 0.4);
+    EXPECT_NEAR(steps.x, 255 * 0.3, tolerance::oracleClosedForm);
+    EXPECT_NEAR(steps.y, 255 * 0.7, tolerance::oracleClosedForm);
+    EXPECT_EQ(steps.z, 255);
+    EXPECT_TRUE(faceworksCurvatureClips(d, 0.4));
+    EXPECT_FALSE(faceworksCurvatureClips(d, 0.5));
+    for (double linear : {0.0, 0.001, 0.0031308, 0.02, 0.5, 1.0})
+        EXPECT_NEAR(linearFromSrgb(srgbFromLinear(linear)), linear, tolerance::srgbInverse);
+    EXPECT_NEAR(srgbFromLinear(0.5), 0.7353569830524495, tolerance::oracleClosedForm);
+    EXPECT_EQ(shadowFade(0, 512), 0);
+    EXPECT_EQ(shadowFade(20, 512), 500.0 / 512);
+    EXPECT_EQ(shadowFade(21, 512), 1);
+}
+
+TEST(ReferenceBeckmann, IsNormalisedOverTheHemisphereAndHasItsLimits) {
+    for (double m : {0.1, 0.3, 0.8}) {
+        // A distribution of slopes: the integral of P cos over the hemisphere is pi.
+        const double share = Rule::integrate(
+            [&](double a) { return 2 * pi * beckmann(std::cos(a), m) * std::cos(a) * std::sin(a); }, 0,
+            pi / 2, 12, 1e-12);
+        EXPECT_NEAR(share, pi, tolerance::oracleClosedForm) << "m " << m;
+        EXPECT_NEAR(beckmann(1, m), 1 / (m * m), tolerance::oracleClosedForm);
+    }
+    EXPECT_EQ(beckmann(0, 0.3), 0);
+    EXPECT_EQ(beckmann(1e-200, 0.3), 0);
+    EXPECT_EQ(beckmann(0.5, 1e-200), 0);
+    EXPECT_EQ(beckmann(0.5, 0), 0);
+    EXPECT_EQ(beckmann(1, 0), 0);
+    for (int x = 0; x <= 50; ++x)
+        for (int y = 0; y <= 50; ++y) EXPECT_TRUE(std::isfinite(beckmannEncoded(x / 50.0, y / 50.0)));
+    EXPECT_NEAR(beckmannEncoded(0.9, 0.3),
+                0.5 * std::pow(std::exp(-(1 / 0.81 - 1) / 0.09) / (0.09 * 0.6561), 0.1),
+                tolerance::oracleExact);
 }
 
 }  // namespace

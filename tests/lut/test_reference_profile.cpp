@@ -31,13 +31,6 @@ std::vector<std::pair<const char*, ProfilePtr>> allProfiles() {
             {"table", testTable()}};
 }
 
-TEST(ReferenceQuadrature, IntegratesPolynomialsToDegree22InOnePanel) {
-    for (int degree = 0; degree <= 22; ++degree) {
-        const auto panel = kronrodPanel<double>([&](double x) { return std::pow(x, degree); }, 0, 1);
-        EXPECT_NEAR(panel.value, 1.0 / (degree + 1), tolerance::oracleExact) << "degree " << degree;
-    }
-}
-
 TEST(ReferenceQuadrature, HandlesKinksAndSingularEnds) {
     EXPECT_NEAR(integrate<double>([](double x) { return std::abs(x - 0.3); }, {0, 1}), 0.29,
                 tolerance::oracleQuadrature);
@@ -92,15 +85,6 @@ TEST(ReferenceProfile, LineSpreadIntegratesToOneAndHasTheRmsWidthOfRadial) {
             EXPECT_NEAR(std::sqrt(moment(2)) / width[c], 1, tolerance::oracleEnergy) << name;
         }
     }
-}
-
-TEST(ReferenceProfile, GaussianLineSpreadEqualsItsQuadrature) {
-    const auto profile = skinProfile();
-    for (double s : {0.0, 0.01, 0.1, 0.5, 1.0, 3.0, 6.0})
-        for (int c = 0; c < 3; ++c) {
-            const double closed = profile->lineSpread(s)[c], byLine = profile->Profile::lineSpread(s)[c];
-            EXPECT_NEAR(byLine / closed, 1, tolerance::oracleLineSpread) << "s " << s;
-        }
 }
 
 TEST(ReferenceProfile, BurleyLineSpreadIsAModifiedBesselFunction) {
@@ -179,27 +163,6 @@ TEST(ReferenceProfile, ScalingKeepsEnergyAndStretchesBothViews) {
                 << name;
         }
     }
-}
-
-TEST(ReferenceProfile, MemoisedIsTheSame) {
-    for (const auto& [name, profile] : allProfiles()) {
-        const auto memoised = memoisedProfile(profile);
-        for (int twice = 0; twice < 2; ++twice)
-            for (double s : {0.2, 1.0, -1.0, 2.5})
-                for (int c = 0; c < 3; ++c)
-                    EXPECT_EQ(memoised->lineSpread(s)[c], profile->lineSpread(s)[c]) << name;
-        EXPECT_EQ(memoised->radial(0.7).x, profile->radial(0.7).x);
-        EXPECT_EQ(memoised->radius(), profile->radius());
-        EXPECT_EQ(memoised->singularAtZero(), profile->singularAtZero());
-    }
-}
-
-TEST(ReferenceProfile, RefusesWhatHasNoMeaning) {
-    EXPECT_THROW(gaussiansProfile({{0, {1, 1, 1}}}), std::invalid_argument);
-    EXPECT_THROW(gaussiansProfile({{1, {1, 0, 1}}}), std::invalid_argument);
-    EXPECT_THROW(tableProfile({1, 0.5}, {{1, 1, 1}, {1, 1, 1}}), std::invalid_argument);
-    EXPECT_THROW(burleyProfile({0, 1, 1}, {0.5, 0.5, 0.5}), std::invalid_argument);
-    EXPECT_THROW(dipoleProfile({0.1, 0.1, 0.1}, {0, 1, 1}, 1.3), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,16 +1,13 @@
 // What a table costs beside its arithmetic: buffers, launches, transfers, waits, and pages that the system
 // maps anew.
 #include <gtest/gtest.h>
-
-#include <pellucid/pellucid.hpp>
+#include <sys/resource.h>
 
 #include <functional>
+#include <pellucid/pellucid.hpp>
 
 #include "cl/cl_spy.h"
 #include "test_size.h"
-#ifdef __linux__
-#include <sys/resource.h>
-#endif
 
 using namespace pellucid;
 
@@ -27,45 +24,36 @@ struct Kind {
 
 std::vector<Kind> kinds() {
     static const Profile table = Profile::table({0, 1, 2, 4}, {9, 8, 7, 4, 3, 2, 1, .5f, .2f, 0, 0, 0});
-    const auto curvature = [](PelCurvatureForm form, const Profile& profile) {
-        PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
-        desc.width = desc.height = side;
-        desc.form = form;
-        desc.profile = profile.get();
-        return [=](const Device& device, const PelSubmit* submit) { return Lut(device, desc, submit); };
-    };
-    const auto shadow = [](const Profile& profile) {
-        PelShadowLutDesc desc = pelShadowLutDescDefaults();
+    const auto of = [](auto desc, const Profile& profile, PelCurvatureForm form = PEL_FORM_ARC) {
         desc.width = desc.height = side;
         desc.profile = profile.get();
+        if constexpr (std::is_same_v<decltype(desc), PelCurvatureLutDesc>) desc.form = form;
         return [=](const Device& device, const PelSubmit* submit) { return Lut(device, desc, submit); };
     };
+    const PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
+    const PelShadowLutDesc shadow = pelShadowLutDescDefaults();
     PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
     specular.width = specular.height = side;
     PelEyeLutDesc eye = pelEyeLutDescDefaults();
     eye.width = 128, eye.height = 64, eye.depth = 32;
     static const Profile skin = Profile::skin();
-    return {{"arc", curvature(PEL_FORM_ARC, skin), 5, 2, tableBytes * 3 / 2},
-            {"sphere", curvature(PEL_FORM_SPHERE, skin), 5, 2, tableBytes * 3 / 2},
-            {"shadow", shadow(skin), 2, 1, tableBytes + 4096},
+    return {{"arc", of(curvature, skin), 5, 2, tableBytes * 3 / 2},
+            {"sphere", of(curvature, skin, PEL_FORM_SPHERE), 5, 2, tableBytes * 3 / 2},
+            {"shadow", of(shadow, skin), 2, 1, tableBytes + 4096},
             {"specular", [=](const Device& d, const PelSubmit* s) { return Lut(d, specular, s); }, 1, 1,
              tableBytes},
-            {"tabulated arc", curvature(PEL_FORM_ARC, table), 6, 2, tableBytes * 2},
-            {"tabulated sphere", curvature(PEL_FORM_SPHERE, table), 6, 2, tableBytes * 2},
-            {"tabulated shadow", shadow(table), 5, 2, tableBytes * 9 / 4},
+            {"tabulated arc", of(curvature, table), 6, 2, tableBytes * 2},
+            {"tabulated sphere", of(curvature, table, PEL_FORM_SPHERE), 6, 2, tableBytes * 2},
+            {"tabulated shadow", of(shadow, table), 5, 2, tableBytes * 9 / 4},
             {"caustic", [=](const Device& d, const PelSubmit* s) { return Lut(d, eye, s); }, 2, 2,
              tableBytes * 3 / 2}};
 }
 
 // Page faults of this process, in which the system hands out pages of zeros.
 [[maybe_unused]] int64_t pageFaults() {
-#ifdef __linux__
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return usage.ru_minflt;
-#else
-    return 0;
-#endif
 }
 
 }  // namespace
@@ -102,8 +90,7 @@ TEST(TableCost, Counters) {
         const uint64_t waits = spy::counts().waits;
         const Lut lut = kind.make(device, &submit);
         EXPECT_EQ(spy::counts().waits, waits) << "a call that returns an event does not wait";
-        check(pelEventWait(made));
-        pelEventRelease(made);
+        Event(made).wait();
     }
 }
 

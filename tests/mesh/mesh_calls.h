@@ -22,21 +22,27 @@ inline PelMeshTopologyDesc weldedDesc(const Mesh& mesh, float tolerance = 0) {
     return desc;
 }
 
-inline PelCurvatureParams edgeParams(uint32_t passes, float scale = 1) {
+inline constexpr PelCurvatureEstimator allEstimators[] = {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR,
+                                                          PEL_CURVATURE_QUADRIC};
+
+inline PelCurvatureParams paramsOf(PelCurvatureEstimator estimator, uint32_t passes = 2,
+                                   PelCurvatureQuantity quantity = PEL_QUANTITY_ABSOLUTE) {
     PelCurvatureParams params = pelCurvatureParamsDefaults();
-    params.estimator = PEL_CURVATURE_EDGE;
+    params.estimator = estimator;
+    params.quantity = quantity;
     params.smoothingPasses = passes;
-    params.scale = scale;
     return params;
+}
+
+inline PelCurvatureParams edgeParams(uint32_t passes) {
+    return paramsOf(PEL_CURVATURE_EDGE, passes);
 }
 
 // Signed mean curvature (of PEL_CURVATURE_EDGE the one quantity that it knows), smoothed to `radius`.
 inline PelCurvatureParams meanParams(PelCurvatureEstimator estimator, float radius = 0,
                                      PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT) {
-    PelCurvatureParams params = pelCurvatureParamsDefaults();
-    params.estimator = estimator;
-    params.quantity = estimator == PEL_CURVATURE_EDGE ? PEL_QUANTITY_ABSOLUTE : PEL_QUANTITY_MEAN;
-    params.smoothingPasses = 0;
+    PelCurvatureParams params =
+        paramsOf(estimator, 0, estimator == PEL_CURVATURE_EDGE ? PEL_QUANTITY_ABSOLUTE : PEL_QUANTITY_MEAN);
     params.smoothingRadius = radius;
     params.smoothingWeights = weights;
     return params;

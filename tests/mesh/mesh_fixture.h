@@ -48,8 +48,24 @@ inline Result curvature(const Mesh& mesh, const PelMeshTopologyDesc& desc, const
     return result;
 }
 
+inline std::vector<float> valuesOf(const Mesh& mesh, const PelCurvatureParams& params, uint32_t floats = 1) {
+    return curvature(mesh, topologyDesc(mesh), params, floats).values;
+}
+
 inline Result edgeCurvature(const Mesh& mesh, uint32_t passes) {
     return curvature(mesh, topologyDesc(mesh), edgeParams(passes));
+}
+
+// Made by the device; `stride`: floats from one position to the next.
+inline std::vector<float> normalsOf(const Mesh& mesh, uint32_t stride = 3) {
+    using namespace pellucid;
+    const uint32_t n = mesh.vertices();
+    std::vector<float> strided(size_t(n) * stride);
+    for (uint32_t v = 0; v < n; ++v) std::copy_n(&mesh.positions[3 * v], 3, &strided[size_t(v) * stride]);
+    const Buffer positions(device(), strided), out(device(), n * 12);
+    MeshTopology(device(), topologyDesc(mesh))
+        .normals(vertexView(positions, n, 0, stride * 4), vertexView(out, n));
+    return out.readAll<float>();
 }
 
 inline float uvScale(const Mesh& mesh) {

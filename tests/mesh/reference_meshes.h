@@ -32,4 +32,26 @@ inline Pair pairOf(reference::Mesh exact) {
     return pair;
 }
 
+inline Mesh sampled(const reference::Surface& surface, int columns, int rows,
+                    reference::Tessellation kind = reference::Tessellation::irregular) {
+    return pairOf(tessellate(surface, columns, rows, kind).mesh).mesh;
+}
+
+inline Mesh irregularTorus(int columns, int rows) {
+    return sampled(reference::torusSurface(3, 1), columns, rows);
+}
+
+inline reference::Mesh exactOf(const Mesh& mesh) {
+    reference::Mesh exact;
+    for (uint32_t v = 0; v < mesh.vertices(); ++v) {
+        const float *p = &mesh.positions[3 * v], *n = &mesh.normals[3 * v];
+        exact.positions.push_back({p[0], p[1], p[2]});
+        exact.normals.push_back({n[0], n[1], n[2]});
+        if (!mesh.uvs.empty()) exact.uvs.push_back({mesh.uvs[2 * v], mesh.uvs[2 * v + 1]});
+    }
+    for (size_t t = 0; t < mesh.indices.size(); t += 3)
+        exact.triangles.push_back({int(mesh.indices[t]), int(mesh.indices[t + 1]), int(mesh.indices[t + 2])});
+    return exact;
+}
+
 }  // namespace fixture

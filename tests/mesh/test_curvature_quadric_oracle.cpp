@@ -22,34 +22,13 @@ std::vector<std::set<int>> rings(const reference::Mesh& mesh) {
     return all;
 }
 
-// Orders all triangles as the first of their surface: tessellate() turns those that jitter folded over, and
-// which of two neighbours counts a vertex is a matter of order.
+// Orders all triangles alike: tessellate() turns those that jitter folded over, and which of two neighbours
+// counts a vertex is a matter of order.
 void orient(reference::Mesh& mesh) {
-    std::map<std::pair<int, int>, std::vector<int>> trianglesAt;
-    for (int t = 0; t < int(mesh.triangles.size()); ++t)
-        for (int i = 0; i < 3; ++i)
-            trianglesAt[std::minmax(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3])].push_back(t);
-    std::vector<bool> reached(mesh.triangles.size());
-    std::vector<int> open{0};
-    reached[0] = true;
-    while (!open.empty()) {
-        const reference::Triangle triangle = mesh.triangles[open.back()];
-        open.pop_back();
-        for (int i = 0; i < 3; ++i) {
-            const int a = triangle[i], b = triangle[(i + 1) % 3];
-            for (int other : trianglesAt[std::minmax(a, b)]) {
-                if (reached[other]) continue;
-                reached[other] = true;
-                open.push_back(other);
-                reference::Triangle& o = mesh.triangles[other];
-                for (int k = 0; k < 3; ++k)
-                    if (o[k] == a && o[(k + 1) % 3] == b) {
-                        std::swap(o[k], o[(k + 1) % 3]);
-                        break;
-                    }
-            }
-        }
-    }
+    const Mesh sampled = pairOf(mesh).mesh;
+    std::vector<uint32_t> indices(sampled.indices.size());
+    pellucid::orientMesh(topologyDesc(sampled), indices.data());
+    for (size_t i = 0; i < indices.size(); ++i) mesh.triangles[i / 3][i % 3] = int(indices[i]);
 }
 
 // Replaces the edge between two triangles drawn at random by the other diagonal, again and again; vertices
@@ -124,16 +103,14 @@ std::vector<std::pair<std::string, reference::Mesh>> meshes() {
     return all;
 }
 
-Result measure(const Mesh& mesh, PelCurvatureQuantity quantity, uint32_t floats) {
-    PelCurvatureParams params = pelCurvatureParamsDefaults();
-    params.estimator = PEL_CURVATURE_QUADRIC;
-    params.quantity = quantity;
-    params.smoothingPasses = 0;
-    return curvature(mesh, topologyDesc(mesh), params, floats);
+Result measured(const Mesh& mesh, PelCurvatureQuantity quantity, uint32_t floats = 1) {
+    return curvature(mesh, topologyDesc(mesh), paramsOf(PEL_CURVATURE_QUADRIC, 0, quantity), floats);
 }
 
-std::vector<float> measured(const Mesh& mesh, PelCurvatureQuantity quantity, uint32_t floats) {
-    return measure(mesh, quantity, floats).values;
+double largestOf(const std::vector<reference::QuadricCurvature>& expected) {
+    double largest = 0;
+    for (const auto& k : expected) largest = std::max({largest, std::abs(k.first), std::abs(k.second)});
+    return largest;
 }
 
 }  // namespace
@@ -145,7 +122,7 @@ TEST(CurvatureQuadricOracle, AllQuantities) {
         SCOPED_TRACE(name);
         const Pair pair = pairOf(given);
         const auto expected = reference::quadricCurvature(pair.exact);
-        const Result frame = measure(pair.mesh, PEL_QUANTITY_FRAME, 8);
+        const Result frame = measured(pair.mesh, PEL_QUANTITY_FRAME, 8);
         const auto& frames = frame.values;
         size_t low = 0, unsure = 0;
         for (const auto& k : expected)
@@ -157,10 +134,9 @@ TEST(CurvatureQuadricOracle, AllQuantities) {
         EXPECT_LE(frame.report.lowDegreeFits, low + unsure);
         EXPECT_LE(unsure, expected.size() / sized<size_t>(25, 8));
         lowOfAll += low;
-        const auto means = measured(pair.mesh, PEL_QUANTITY_MEAN, 1),
-                   gaussians = measured(pair.mesh, PEL_QUANTITY_GAUSSIAN, 1);
-        double largest = 0;
-        for (const auto& k : expected) largest = std::max({largest, std::abs(k.first), std::abs(k.second)});
+        const auto means = measured(pair.mesh, PEL_QUANTITY_MEAN).values,
+                   gaussians = measured(pair.mesh, PEL_QUANTITY_GAUSSIAN).values;
+        const double largest = largestOf(expected);
         const auto ring = rings(pair.exact);
         size_t left = 0;
         double worst[5] = {};
@@ -207,35 +183,22 @@ TEST(CurvatureQuadricOracle, AllQuantities) {
 // Neither does a result depend on where the tangent frame's axes point: the ridge that decides at borders
 // weighs all directions alike.
 TEST(CurvatureQuadricOracle, TurnedMeshesCurveAlike) {
-    const double axis[3] = {1 / std::sqrt(14.0), 2 / std::sqrt(14.0), 3 / std::sqrt(14.0)}, c = std::cos(0.9),
-                 s = std::sin(0.9);
-    const auto turn = [&](std::vector<float>& vectors) {
-        for (size_t i = 0; i < vectors.size(); i += 3) {
-            float* v = &vectors[i];
-            const double along = axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2],
-                         old[3] = {v[0], v[1], v[2]};
-            for (int k = 0; k < 3; ++k) {
-                const int l = (k + 1) % 3, m = (k + 2) % 3;
-                v[k] =
-                    float(c * old[k] + s * (axis[l] * old[m] - axis[m] * old[l]) + (1 - c) * along * axis[k]);
-            }
-        }
-    };
+    using reference::Vec3;
+    const Vec3 axis = normalized(Vec3{1, 2, 3});
+    const double c = std::cos(0.9), s = std::sin(0.9);
     for (const auto& [name, given] : meshes()) {
         SCOPED_TRACE(name);
         const Pair pair = pairOf(given);
         const auto expected = reference::quadricCurvature(pair.exact);
-        const auto means = measured(pair.mesh, PEL_QUANTITY_MEAN, 1);
-        Mesh turned = pair.mesh;
-        turn(turned.positions);
-        turn(turned.normals);
-        const auto turnedMeans = measured(turned, PEL_QUANTITY_MEAN, 1);
-        double largest = 0;
-        for (const auto& k : expected) largest = std::max({largest, std::abs(k.first), std::abs(k.second)});
+        const auto means = measured(pair.mesh, PEL_QUANTITY_MEAN).values;
+        reference::Mesh turned = pair.exact;
+        for (auto* vectors : {&turned.positions, &turned.normals})
+            for (Vec3& v : *vectors) v = c * v + s * cross(axis, v) + (1 - c) * dot(axis, v) * axis;
+        const auto turnedMeans = measured(pairOf(turned).mesh, PEL_QUANTITY_MEAN).values;
         double worst = 0;
         for (size_t v = 0; v < expected.size(); ++v)
             if (expected[v].margin >= tolerance::quadricDecision && expected[v].points >= 9)
-                worst = std::max(worst, std::abs(double(means[v]) - turnedMeans[v]) / largest);
+                worst = std::max(worst, std::abs(double(means[v]) - turnedMeans[v]) / largestOf(expected));
         EXPECT_LE(worst, tolerance::quadricTurned);
     }
 }

@@ -1,228 +1,225 @@
-// Smoothing to a radius in length units.
+// Smoothing to a radius against the oracle's flow, and against what the heat equation says: the heat kernel
+// of the plane, harmonics of the sphere, the conservation of the sum of values.
+#include <numbers>
+#include <numeric>
+
 #include "mesh_fixture.h"
+#include "reference/scattered.h"
 #include "reference_meshes.h"
+#include "refusal.h"
 #include "tolerances.h"
 
 using namespace fixture;
-using reference::AnalyticMesh;
-using reference::Tessellation;
 
 namespace {
 
 constexpr PelSmoothingWeights bothWeights[] = {PEL_SMOOTHING_COTANGENT, PEL_SMOOTHING_AREA};
 
-PelCurvatureParams smoothed(float radius, PelCurvatureEstimator estimator = PEL_CURVATURE_QUADRIC,
-                            PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT) {
-    return meanParams(estimator, radius, weights);
+PelCurvatureParams smoothed(double radius, PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT) {
+    return meanParams(PEL_CURVATURE_EDGE, float(radius), weights);
 }
 
-std::vector<float> run(const Mesh& mesh, const PelCurvatureParams& params) {
-    return curvature(mesh, topologyDesc(mesh), params).values;
+// A lattice of the plane, one unit between vertices: squares cut along a diagonal, or equilateral triangles.
+Mesh lattice(uint32_t half, bool equilateral) {
+    const uint32_t side = 2 * half;
+    Mesh mesh = grid(side, side);
+    for (uint32_t y = 0; y <= side && equilateral; ++y)
+        for (uint32_t x = 0; x <= side; ++x) {
+            const uint32_t a = y * (side + 1) + x, b = a + 1, c = a + side + 1, d = c + 1;
+            if (y % 2) mesh.positions[3 * a] += 0.5f;
+            mesh.positions[3 * a + 1] *= float(std::sqrt(0.75));
+            const uint32_t other[6] = {a, b, c, b, d, c};
+            if (y % 2 == 0 && x < side && y < side)
+                std::copy_n(other, 6, &mesh.indices[6 * (size_t(y) * side + x)]);
+        }
+    return mesh;
 }
 
-// RMS difference over RMS of `expected`.
-double rms(const std::vector<float>& a, const std::vector<double>& expected) {
-    double difference = 0, total = 0;
-    for (size_t i = 0; i < a.size(); ++i) {
-        difference += (a[i] - expected[i]) * (a[i] - expected[i]);
-        total += expected[i] * expected[i];
+// A third of the areas of its triangles for each vertex.
+std::vector<double> areasOf(const Mesh& mesh) {
+    std::vector<double> areas(mesh.vertices());
+    const reference::Mesh exact = exactOf(mesh);
+    for (const auto& t : exact.triangles) {
+        const reference::Vec3* p = exact.positions.data();
+        for (int v : t) areas[v] += length(cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]])) / 6;
     }
-    return std::sqrt(difference / total);
+    return areas;
+}
+
+// What `mesh`, tilted at vertex `source` alone, becomes, over what the heat kernel makes of the values
+// before: the largest difference in parts of the peak.
+double spread(Mesh mesh, uint32_t source, double radius, PelSmoothingWeights weights) {
+    mesh.normals[3 * source] = 0.01f;
+    const auto before = valuesOf(mesh, smoothed(0)), after = valuesOf(mesh, smoothed(radius, weights));
+    const std::vector<double> areas = areasOf(mesh);
+    double worst = 0, peak = 0;
+    for (uint32_t v = 0; v < mesh.vertices(); ++v) {
+        double expected = 0;
+        for (uint32_t s = 0; s < mesh.vertices(); ++s) {
+            if (before[s] == 0) continue;
+            const double dx = mesh.positions[3 * v] - mesh.positions[3 * s],
+                         dy = mesh.positions[3 * v + 1] - mesh.positions[3 * s + 1], square = radius * radius;
+            expected += before[s] * areas[s] * std::exp(-(dx * dx + dy * dy) / (2 * square)) /
+                        (2 * std::numbers::pi * square);
+        }
+        worst = std::max(worst, std::abs(after[v] - expected)), peak = std::max(peak, expected);
+    }
+    return worst / peak;
 }
 
 }  // namespace
 
-TEST(CurvatureDiffusion, BlursACosineByWhatTheHeatEquationSays) {
-    // A cylinder whose radius hardly waves along its axis: the mean curvature is 1/2 plus a cosine, and a
-    // blur of standard deviation r leaves exp(-r^2 k^2 / 2) of a cosine of wave number k. Whatever the mesh.
-    const double k = 2, height = 4 * 3.14159265358979, wave = 1e-3;
-    reference::Surface tube = reference::cylinderSurface(1, height);
-    for (auto kind : {Tessellation::regular, Tessellation::irregular})
-        for (int columns : {60, 120}) {
-            AnalyticMesh mesh = tessellate(tube, columns, 2 * columns, kind);
-            std::vector<double> phase;
-            double lowest = 1e30, highest = -1e30;
-            int axis = 0;
-            for (int c = 0; c < 3; ++c) {
-                // The axis is the coordinate that spans the height.
-                double low = 1e30, high = -1e30;
-                for (const auto& p : mesh.mesh.positions)
-                    low = std::min(low, p[c]), high = std::max(high, p[c]);
-                if (high - low > 3) axis = c, lowest = low, highest = high;
-            }
-            for (auto& p : mesh.mesh.positions) {
-                phase.push_back(k * (p[axis] - lowest));
-                for (int c = 0; c < 3; ++c)
-                    if (c != axis) p[c] *= 1 + wave * std::cos(phase.back());
-            }
-            ASSERT_GT(highest - lowest, 10);
-            const Mesh sampled = pairOf(mesh.mesh).mesh;
-            const std::vector<float> before = run(sampled, smoothed(0));
-            for (auto [radius, weights] : {std::pair(0.25f, PEL_SMOOTHING_COTANGENT),
-                                           {0.5f, PEL_SMOOTHING_COTANGENT},
-                                           {0.5f, PEL_SMOOTHING_AREA}}) {
-                const std::vector<float> after =
-                    run(sampled, smoothed(radius, PEL_CURVATURE_QUADRIC, weights));
-                // Amplitudes by least squares, away from the borders.
-                const auto amplitude = [&](const std::vector<float>& values) {
-                    double n = 0, c = 0, cc = 0, f = 0, fc = 0;
-                    for (size_t v = 0; v < phase.size(); ++v) {
-                        if (phase[v] < 5 || phase[v] > k * height - 5) continue;
-                        const double wave = std::cos(phase[v]);
-                        n += 1, c += wave, cc += wave * wave, f += values[v], fc += wave * values[v];
-                    }
-                    return (n * fc - f * c) / (n * cc - c * c);
-                };
-                const double expected = std::exp(-0.5 * radius * radius * k * k);
-                EXPECT_NEAR(amplitude(after) / amplitude(before), expected,
-                            weights == PEL_SMOOTHING_AREA ? tolerance::diffusionAmplitudeArea
-                                                          : tolerance::diffusionAmplitude)
-                    << columns << " " << int(kind) << " " << radius << " " << int(weights);
-            }
+TEST(CurvatureSmoothing, EqualsTheOraclesFlow) {
+    const std::pair<reference::Surface, double> surfaces[] = {// and about the length of an edge
+                                                              {reference::torusSurface(3, 1), 0.4},
+                                                              {reference::monkeySaddle(2), 0.1},
+                                                              {reference::cylinderSurface(1, 0.3), 0.02}};
+    for (const auto& [surface, edge] : surfaces)
+        for (double noise : {0.0, 0.05}) {
+            reference::Mesh mesh =
+                tessellate(surface, sized(40, 14), sized(30, 12), reference::Tessellation::irregular).mesh;
+            if (noise > 0) addNoise(mesh, noise, 2);
+            const Pair pair = pairOf(mesh);
+            for (auto weights : bothWeights)
+                for (auto [edges, stages, crease] :
+                     {std::tuple(0.5, 4, 0.0), {2.0, 16, 0.0}, {2.0, 16, 0.3}, {6.0, 64, 0.0}}) {
+                    PelCurvatureParams params = smoothed(edges * edge, weights);
+                    params.smoothingStages = uint32_t(stages);
+                    params.smoothingCrease = float(crease);
+                    std::vector<double> expected =
+                        reference::smoothedToRadius(pair.exact, reference::edgeCurvature(pair.exact),
+                                                    {params.smoothingRadius, params.smoothingCrease, stages,
+                                                     weights == PEL_SMOOTHING_AREA});
+                    for (double& v : expected) v = std::abs(v);  // slivers carry values below 0
+                    EXPECT_LE(relativeError(valuesOf(pair.mesh, params), expected),
+                              tolerance::radiusSmoothing)
+                        << "edge " << edge << ", noise " << noise << ", weights " << weights << ", " << edges
+                        << " edges, crease " << crease;
+                }
         }
 }
 
-TEST(CurvatureDiffusion, TwiceTheTrianglesGiveTheSameAnswer) {
-    // Vertex (2x, 2y) of the fine mesh is vertex (x, y) of the coarse one.
-    const int n = 40;
-    const AnalyticMesh coarse = tessellate(reference::torusSurface(3, 1), 2 * n, n, Tessellation::regular);
-    const AnalyticMesh fine = tessellate(reference::torusSurface(3, 1), 4 * n, 2 * n, Tessellation::regular);
-    // By the tensor estimator, which with exact normals is the same on both to 0.1 %.
-    const auto at = [&](const AnalyticMesh& mesh, float radius,
-                        PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT) {
-        return run(pairOf(mesh.mesh).mesh, smoothed(radius, PEL_CURVATURE_TENSOR, weights));
-    };
-    for (auto [radius, weights] : {std::pair(0.2f, PEL_SMOOTHING_COTANGENT),
-                                   {0.6f, PEL_SMOOTHING_COTANGENT},
-                                   {1.0f, PEL_SMOOTHING_COTANGENT},
-                                   {1.0f, PEL_SMOOTHING_AREA}}) {
-        const std::vector<float> a = at(coarse, radius, weights), b = at(fine, radius, weights);
-        std::vector<double> atCoarse;
-        for (int y = 0; y < n; ++y)
-            for (int x = 0; x < 2 * n; ++x) atCoarse.push_back(b[size_t(2 * y) * 4 * n + 2 * x]);
-        EXPECT_LE(rms(a, atCoarse), tolerance::densityIndependence) << radius << " " << int(weights);
-        if (radius < 1) continue;
-        EXPECT_GT(rms(at(coarse, 0), atCoarse), 5 * tolerance::densityIndependence)
-            << "the radius must do something";
-    }
-}
-
-TEST(CurvatureDiffusion, TakesNoiseOut) {
-    AnalyticMesh torus = tessellate(reference::torusSurface(3, 1), 200, 100, Tessellation::irregular);
-    addNoise(torus.mesh, 0.02, 11);
-    const Mesh mesh = pairOf(torus.mesh).mesh;
-    std::vector<double> truth;
-    for (const auto& point : torus.truth) truth.push_back(point.curvature.mean());
-    const double raw = rms(run(mesh, smoothed(0)), truth);
-    EXPECT_GT(raw, 2 * tolerance::noisyTorus);
-    for (auto weights : bothWeights)
-        EXPECT_LE(rms(run(mesh, smoothed(0.15f, PEL_CURVATURE_QUADRIC, weights)), truth),
-                  tolerance::noisyTorus)
-            << int(weights);
-}
-
-TEST(CurvatureDiffusion, StaysWithinTheRangeOfItsValues) {
-    AnalyticMesh torus =
-        tessellate(reference::torusSurface(3, 1), sized(60, 9), sized(30, 7), Tessellation::irregular);
-    addNoise(torus.mesh, 0.1, 2);
-    const Mesh mesh = pairOf(torus.mesh).mesh;
-    const std::vector<float> before = run(mesh, smoothed(0));
+TEST(CurvatureSmoothing, StaysWithinTheRangeOfItsValues) {
+    reference::Mesh noisy = tessellate(reference::torusSurface(3, 1), sized(60, 9), sized(30, 7),
+                                       reference::Tessellation::irregular)
+                                .mesh;
+    addNoise(noisy, 0.1, 2);
+    const Mesh mesh = pairOf(noisy).mesh;
+    const std::vector<float> before = valuesOf(mesh, smoothed(0));
     const auto [low, high] = std::minmax_element(before.begin(), before.end());
     for (uint32_t stages : {0u, 1u, 3u, 10u, 100u})
         for (float radius : {0.01f, 0.3f, 5.0f}) {
-            PelCurvatureParams params = smoothed(radius);
+            PelCurvatureParams params = smoothed(radius, PEL_SMOOTHING_AREA);
             params.smoothingStages = stages;
-            for (float value : run(mesh, params)) {
-                EXPECT_GE(value, *low - tolerance::diffusionRange * std::abs(*low));
-                EXPECT_LE(value, *high + tolerance::diffusionRange * std::abs(*high));
+            for (float value : valuesOf(mesh, params)) {
+                EXPECT_GE(value, *low * (1 - tolerance::diffusionRange));
+                EXPECT_LE(value, *high * (1 + tolerance::diffusionRange));
             }
         }
 }
 
-TEST(CurvatureDiffusion, AreaWeightsKeepEveryValueBetweenItsNeighbours) {
-    // Slivers have negative cotangents, which carry a spike beyond the range of all values; areas have none.
-    const AnalyticMesh sliced =
-        tessellate(reference::cylinderSurface(1, 0.3), sized(40, 14), sized(60, 20), Tessellation::irregular);
-    Mesh mesh = pairOf(sliced.mesh).mesh;
-    PelCurvatureParams params = smoothed(0.05f, PEL_CURVATURE_EDGE, PEL_SMOOTHING_AREA);
-    const std::vector<float> before = run(mesh, smoothed(0, PEL_CURVATURE_EDGE));
-    const auto [low, high] = std::minmax_element(before.begin(), before.end());
-    const std::vector<float> area = run(mesh, params);
-    for (float value : area) {
-        EXPECT_GE(value, *low * (1 - tolerance::diffusionRange));
-        EXPECT_LE(value, *high * (1 + tolerance::diffusionRange));
-    }
-    params.smoothingWeights = PEL_SMOOTHING_COTANGENT;
-    EXPECT_NE(run(mesh, params), area) << "the choice must do something";
-    params.smoothingWeights = PelSmoothingWeights(2);
-    EXPECT_THROW(run(mesh, params), pellucid::Error);
-}
-
-TEST(CurvatureDiffusion, MeshesTooSmallForTheirAreasStayFinite) {
+TEST(CurvatureSmoothing, MeshesTooSmallForTheirAreasStayFinite) {
     for (auto weights : bothWeights)
-        for (double size : {1e-9, 1e-11, 1e-13, 1e-16, 1e9, 1e13}) {
-            const AnalyticMesh torus =
-                tessellate(reference::torusSurface(3 * size, size), 24, 12, Tessellation::irregular);
-            for (float value :
-                 run(pairOf(torus.mesh).mesh, smoothed(float(size), PEL_CURVATURE_EDGE, weights)))
-                ASSERT_TRUE(std::isfinite(value)) << size << ", " << int(weights);
-        }
+        for (double size : {1e-9, 1e-11, 1e-13, 1e-16, 1e9, 1e13})
+            expectFinite(
+                valuesOf(sampled(reference::torusSurface(3 * size, size), 24, 12), smoothed(size, weights)));
 }
 
-TEST(CurvatureDiffusion, KeepsWhatLiesBeyondACrease) {
-    // Two planes at a right angle, welded along the fold, curvature of the fold itself: edge-preserving
-    // smoothing leaves it where it is, plain smoothing carries it into the planes.
-    Mesh mesh;
-    const int n = sized(20, 8);
-    const double degrees90[2][3] = {{1, 0, 0}, {0, 0, -1}};
-    for (int y = 0; y <= n; ++y)
-        for (int x = -n; x <= n; ++x) {
-            const double* d = degrees90[x > 0];
-            for (int c = 0; c < 3; ++c) mesh.positions.push_back(float(0.1 * (x * d[c] + (c == 1 ? y : 0))));
-            const float side[3] = {x > 0   ? 1.0f
-                                   : x < 0 ? 0.0f
-                                           : 0.70710678f,
-                                   0,
-                                   x > 0   ? 0.0f
-                                   : x < 0 ? 1.0f
-                                           : 0.70710678f};
-            mesh.normals.insert(mesh.normals.end(), side, side + 3);
-        }
-    const uint32_t row = 2 * n + 1;
-    for (uint32_t y = 0; y < uint32_t(n); ++y)
-        for (uint32_t x = 0; x + 1 < row; ++x) {
-            const uint32_t p = y * row + x;
-            mesh.indices.insert(mesh.indices.end(), {p, p + 1, p + row + 1, p, p + row + 1, p + row});
-        }
-    PelCurvatureParams params = smoothed(0.3f, PEL_CURVATURE_EDGE);
-    const uint32_t planeVertex = (n / 2) * row + n + 4, foldVertex = (n / 2) * row + n;
-    const std::vector<float> plain = run(mesh, params);
-    params.smoothingCrease = 0.2f;
-    const std::vector<float> kept = run(mesh, params);
-    const std::vector<float> before = run(mesh, smoothed(0, PEL_CURVATURE_EDGE));
-    // The edge estimator sees the fold from the vertices beside it too: these are on the planes and do spread
-    // there.
-    EXPECT_GT(kept[foldVertex], 0.99 * before[foldVertex]);
-    EXPECT_LT(plain[foldVertex], 0.7 * before[foldVertex]);
-    EXPECT_LT(kept[planeVertex], plain[planeVertex]);
-}
-
-TEST(CurvatureDiffusion, SpreadsNoNaNAndNamesWrongParameters) {
-    Mesh mesh = pairOf(tessellate(reference::torusSurface(3, 1), sized(40, 20), sized(20, 16),
-                                  Tessellation::irregular)
-                           .mesh)
-                    .mesh;
+TEST(CurvatureSmoothing, SpreadsNoNaNAndNamesWrongParameters) {
+    Mesh mesh = irregularTorus(sized(40, 20), sized(20, 16));
     mesh.positions[300] = NAN;
     mesh.normals[900] = INFINITY;
-    const std::vector<float> values = run(mesh, smoothed(0.5f));
+    const std::vector<float> values = valuesOf(mesh, smoothed(0.5));
     expectFinite(values);
     EXPECT_EQ(values[100], 0);
-    for (float bad : {-1.0f, NAN, INFINITY}) EXPECT_THROW(run(mesh, smoothed(bad)), pellucid::Error);
-    EXPECT_THROW(run(mesh, smoothed(1e6f)), pellucid::Error) << "more stages than anybody waits for";
-    PelCurvatureParams params = smoothed(0.1f);
-    params.smoothingCrease = 4;
-    EXPECT_THROW(run(mesh, params), pellucid::Error);
-    Mesh points = mesh;
-    points.indices.clear();
-    for (float value : run(points, smoothed(0.5f))) EXPECT_EQ(value, 0);
+    PelCurvatureParams crease = smoothed(0.1);
+    crease.smoothingCrease = 4;
+    for (const PelCurvatureParams& wrong : {smoothed(-1), smoothed(NAN), smoothed(INFINITY), crease,
+                                            smoothed(1e6),  // more stages than anybody waits for
+                                            smoothed(0.1, PelSmoothingWeights(2))})
+        expectRefused("smoothing", [&] { valuesOf(mesh, wrong); });
+    mesh.indices.clear();
+    for (float value : valuesOf(mesh, smoothed(0.5))) EXPECT_EQ(value, 0);
+}
+
+TEST(CurvatureHeat, APointSpreadsAsTheHeatKernelOfThePlane) {
+    for (bool equilateral : {false, true})
+        for (uint32_t radius : {2u, 4u, 8u, 16u})
+            for (auto weights : bothWeights) {
+                const uint32_t half = std::max(24u, 4 * radius);
+                EXPECT_LE(spread(lattice(half, equilateral), half * (2 * half + 1) + half, radius, weights),
+                          tolerance::heatKernel)
+                    << equilateral << ", radius " << radius << ", weights " << int(weights);
+            }
+}
+
+TEST(CurvatureHeat, IrregularLatticesSpreadAsFarAsRegularOnes) {
+    // Vertices moved within the plane by up to `jitter` of an edge; the variance that a point has gained,
+    // along both axes.
+    for (float jitter : {0.2f, 0.3f, 0.4f})
+        for (auto weights : bothWeights) {
+            const uint32_t half = 32;
+            const float radius = 7;
+            Mesh mesh = lattice(half, true);
+            std::mt19937 random(5);
+            std::uniform_real_distribution<float> move(-jitter, jitter);
+            for (size_t i = 0; i < mesh.positions.size(); ++i)
+                if (i % 3 < 2) mesh.positions[i] += move(random);
+            mesh.normals[3 * size_t(half * (2 * half + 1) + half)] = 0.01f;
+            const std::vector<double> areas = areasOf(mesh);
+            const auto variance = [&](float r, size_t axis) {
+                const std::vector<float> values = valuesOf(mesh, smoothed(r, weights));
+                double all = 0, mean = 0, square = 0;
+                for (size_t v = 0; v < values.size(); ++v) {
+                    const double m = areas[v] * values[v], x = mesh.positions[3 * v + axis];
+                    all += m, mean += m * x, square += m * x * x;
+                }
+                return square / all - std::pow(mean / all, 2);
+            };
+            for (size_t axis : {0, 1})
+                EXPECT_NEAR(std::sqrt(variance(radius, axis) - variance(0, axis)) / radius, 1,
+                            tolerance::heatSpread)
+                    << jitter << " " << int(weights);
+        }
+}
+
+TEST(CurvatureHeat, AreaWeightsKeepMass) {
+    // Of values that are anything, on triangles that are anything.
+    const auto flat = reference::delaunay(reference::uniformPoints(4000, 7));
+    reference::Mesh exact = lifted(flat, reference::ellipsoidCap(1, 1.5, 2)).mesh;
+    addNoise(exact, 0.1, 3);
+    const Mesh mesh = pairOf(exact).mesh;
+    const std::vector<double> areas = areasOf(mesh);
+    const auto total = [&](float radius) {
+        const std::vector<float> values = valuesOf(mesh, smoothed(radius, PEL_SMOOTHING_AREA));
+        return std::inner_product(values.begin(), values.end(), areas.begin(), 0.0);
+    };
+    for (float radius : {0.02f, 0.1f, 0.4f})
+        EXPECT_NEAR(total(radius) / total(0), 1, tolerance::heatMass) << radius;
+}
+
+TEST(CurvatureHeat, HarmonicsOfASphereDecay) {
+    // Normals turned by amounts that are a harmonic about the axis would not be one of their sizes; so the
+    // sphere's own radius waves: its mean curvature is 1 plus a multiple of P8, of which exp(-l (l + 1) r^2 /
+    // 2) is left.
+    const double wave = 1e-3, radius = 0.3, left = std::exp(-8 * 9 * radius * radius / 2);
+    for (int splits : {4, 5})
+        for (auto weights : bothWeights) {
+            reference::AnalyticMesh sphere = reference::icosphere(1, 1, 1, splits);
+            std::vector<double> harmonic;
+            for (auto& p : sphere.mesh.positions) {
+                harmonic.push_back(std::legendre(8, std::clamp(p.z, -1.0, 1.0)));
+                p = (1 + wave * harmonic.back()) * p;
+            }
+            const Mesh mesh = pairOf(sphere.mesh).mesh;
+            const auto amplitude = [&](double r) {
+                const auto values = valuesOf(mesh, meanParams(PEL_CURVATURE_QUADRIC, float(r), weights));
+                double sum = 0, squares = 0;
+                for (size_t v = 0; v < values.size(); ++v)
+                    sum += (values[v] - 1) * harmonic[v], squares += harmonic[v] * harmonic[v];
+                return sum / squares;
+            };
+            EXPECT_NEAR(amplitude(radius) / amplitude(0) / left, 1, tolerance::heatHarmonic)
+                << int(weights) << ", " << splits;
+        }
 }

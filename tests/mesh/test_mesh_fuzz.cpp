@@ -14,10 +14,8 @@ Mesh randomMesh(uint32_t seed) {
     Mesh mesh;
     const uint32_t vertices = 1 + random() % 40, triangles = random() % 80;
     for (uint32_t v = 0; v < vertices; ++v) {
-        float n[3] = {unit(random), unit(random), unit(random) + 0.1f};
-        const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        for (float x : n) mesh.normals.push_back(x / length);
-        for (int k = 0; k < 3; ++k) mesh.positions.push_back(unit(random));
+        const reference::Vec3 n = normalized(reference::Vec3{unit(random), unit(random), unit(random) + 0.1});
+        mesh.vertex({unit(random), unit(random), unit(random)}, {float(n.x), float(n.y), float(n.z)});
     }
     // Some seeds make a hub, doubled triangles, or repeated corners.
     for (uint32_t t = 0; t < triangles; ++t) {
@@ -30,27 +28,15 @@ Mesh randomMesh(uint32_t seed) {
     return mesh;
 }
 
-// Repeated corners are skipped by the library and would be edges of no length to the oracle.
-reference::Mesh withoutDegenerates(const Mesh& mesh) {
-    reference::Mesh exact;
-    for (uint32_t v = 0; v < mesh.vertices(); ++v) {
-        const float *p = &mesh.positions[3 * v], *n = &mesh.normals[3 * v];
-        exact.positions.push_back({p[0], p[1], p[2]});
-        exact.normals.push_back({n[0], n[1], n[2]});
-    }
-    for (size_t t = 0; t < mesh.indices.size(); t += 3) {
-        const int a = int(mesh.indices[t]), b = int(mesh.indices[t + 1]), c = int(mesh.indices[t + 2]);
-        if (a != b && b != c && c != a) exact.triangles.push_back({a, b, c});
-    }
-    return exact;
-}
-
 }  // namespace
 
 TEST(MeshFuzz, EdgeCurvatureEqualsTheOracleOnAnyConnectivity) {
     for (uint32_t seed = 0; seed < 1000; ++seed) {
         const Mesh mesh = randomMesh(seed);
-        const reference::Mesh exact = withoutDegenerates(mesh);
+        reference::Mesh exact = exactOf(mesh);
+        // Repeated corners are skipped by the library and would be edges of no length to the oracle.
+        std::erase_if(exact.triangles,
+                      [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
         const uint32_t passes = seed % 4;
         const auto expected = reference::smoothed(exact, reference::edgeCurvature(exact), int(passes));
         const std::vector<float> actual = edgeCurvature(mesh, passes).values;
@@ -74,10 +60,8 @@ TEST(MeshFuzz, EveryEstimatorStaysFiniteOnBrokenData) {
         }
         if (seed % 5 == 0 && mesh.vertices() > 2)
             std::copy_n(mesh.positions.begin(), 3, mesh.positions.begin() + 3);
-        PelCurvatureParams params = pelCurvatureParamsDefaults();
-        params.estimator = PelCurvatureEstimator(seed % 3);
-        params.quantity = seed % 3 == 0 ? PEL_QUANTITY_ABSOLUTE : PEL_QUANTITY_FRAME;
-        params.smoothingPasses = seed % 2;
+        PelCurvatureParams params = paramsOf(PelCurvatureEstimator(seed % 3), seed % 2,
+                                             seed % 3 == 0 ? PEL_QUANTITY_ABSOLUTE : PEL_QUANTITY_FRAME);
         params.smoothingRadius = seed % 4 == 0 ? 0.3f : 0.0f;
         params.smoothingStages = 12;
         params.smoothingWeights = PelSmoothingWeights(seed % 8 == 0);

@@ -38,9 +38,8 @@ class Fenced {
 // Every pass that reads positions or normals by slot.
 std::vector<PelCurvatureParams> everyPass() {
     std::vector<PelCurvatureParams> all;
-    for (auto estimator : {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}) {
-        PelCurvatureParams params = edgeParams(3);
-        params.estimator = estimator;
+    for (auto estimator : allEstimators) {
+        PelCurvatureParams params = paramsOf(estimator, 3);
         all.push_back(params);
         params.smoothingPasses = 0;
         params.smoothingRadius = 0.5f;
@@ -59,11 +58,9 @@ std::vector<float> everything(const MeshTopology& topology, const Buffer& positi
     for (const PelCurvatureParams& params : everyPass())
         for (bool made : {false, true}) {
             const Buffer out(device(), n * sizeof(float));
-            if (made)
-                topology.curvature(params, vertexView(positions, n), vertexView(out, n));
-            else
-                topology.curvature(params, vertexView(positions, n), vertexView(normals, n),
-                                   vertexView(out, n));
+            made ? topology.curvature(params, vertexView(positions, n), vertexView(out, n))
+                 : topology.curvature(params, vertexView(positions, n), vertexView(normals, n),
+                                      vertexView(out, n));
             const std::vector<float> values = out.readAll<float>();
             all.insert(all.end(), values.begin(), values.begin() + count);
         }
@@ -76,15 +73,6 @@ std::vector<float> everything(const Mesh& mesh, uint32_t count) {
     return everything(topology, positions, normals, mesh.vertices(), count);
 }
 
-// `second` behind `first`, away from it.
-Mesh joined(const Mesh& first, const Mesh& second) {
-    Mesh both = first;
-    both.positions.insert(both.positions.end(), second.positions.begin(), second.positions.end());
-    both.normals.insert(both.normals.end(), second.normals.begin(), second.normals.end());
-    for (uint32_t index : second.indices) both.indices.push_back(first.vertices() + index);
-    return both;
-}
-
 }  // namespace
 
 TEST(MeshRows, NothingBehindTheLastVertexIsRead) {
@@ -94,10 +82,9 @@ TEST(MeshRows, NothingBehindTheLastVertexIsRead) {
             Mesh mesh = torus(5, sized(sides, sides - 32));
             if (shuffled) mesh = shuffleVertices(mesh, sides).mesh;
             const uint32_t n = mesh.vertices();
-            Mesh longer =
-                mesh;  // by a vertex without triangles: the others' last one is not the last of the memory
-            longer.positions.insert(longer.positions.end(), {1, 2, 3});
-            longer.normals.insert(longer.normals.end(), {0, 0, 1});
+            // By a vertex without triangles: the others' last one is not the last of the memory.
+            Mesh longer = mesh;
+            longer.vertex({1, 2, 3});
             const std::vector<float> expected = everything(longer, n);
 
             const Fenced positions(mesh.positions), normals(mesh.normals);
@@ -111,11 +98,12 @@ TEST(MeshRows, NothingBehindTheLastVertexIsRead) {
 TEST(MeshRows, RunsGiveTheBitsOfSingleLoads) {
     // A grid is nearly all runs. Behind it stands a part that has none and is larger, so that the topology
     // keeps none: the rows of the grid are the same, but are read one by one.
-    const Mesh grid = torus(sized(24, 8), sized(40, 8)),
-               scattered = shuffleVertices(torus(sized(40, 10), sized(40, 10)), 3).mesh;
+    const Mesh grid = torus(sized(24, 8), sized(40, 8));
+    Mesh both = grid;
+    both.append(shuffleVertices(torus(sized(40, 10), sized(40, 10)), 3).mesh);
     ASSERT_EQ(grid.vertices() % 8, 0u);
     const std::vector<float> alone = everything(grid, grid.vertices());
-    EXPECT_EQ(alone, everything(joined(grid, scattered), grid.vertices()));
+    EXPECT_EQ(alone, everything(both, grid.vertices()));
 
     const std::vector<char> bytes = MeshTopology(device(), topologyDesc(grid)).save();
     const MeshTopology loaded = MeshTopology::load(device(), bytes.data(), bytes.size());

@@ -8,12 +8,6 @@ using namespace pellucid;
 
 namespace {
 
-PelCurvatureParams paramsOf(PelCurvatureEstimator estimator) {
-    PelCurvatureParams params = pelCurvatureParamsDefaults();
-    params.estimator = estimator;
-    return params;
-}
-
 struct Pose {
     Mesh mesh = torus(24, 12);
     uint32_t n = mesh.vertices();
@@ -34,11 +28,10 @@ struct Pose {
 };
 
 TEST(MeshSubmit, TheFirstCurvatureReturns) {
-    for (PelCurvatureEstimator estimator :
-         {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}) {
+    for (PelCurvatureEstimator estimator : allEstimators) {
         const Pose pose;
         PelCurvatureParams params = paramsOf(estimator);
-        params.smoothingRadius = 0.5f,
+        params.smoothingRadius = 0.5f;
         params.smoothingStages = 4;  // without a number the call measures the mesh
         expectReturns(device(), "pelMeshCurvature", [&](const PelSubmit* submit) {
             pose.topology.curvature(params, pose.at(), pose.result(), nullptr, submit);
@@ -55,8 +48,7 @@ TEST(MeshSubmit, TheFirstNormalsReturn) {
 }
 
 TEST(MeshSubmit, TheFirstUpdatesOfALiveMeshReturn) {
-    for (PelCurvatureEstimator estimator :
-         {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}) {
+    for (PelCurvatureEstimator estimator : allEstimators) {
         Pose pose;
         const PelCurvatureParams params = paramsOf(estimator);
         const LiveMesh live(pose.topology, params);

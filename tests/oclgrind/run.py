@@ -9,6 +9,7 @@ than S seconds of processor time, when a line of left_out.txt matches no case, a
 kernels/*.cl was never launched. test_small runs with 16, 8 and 1 lanes in any case.
 """
 import argparse
+import collections
 import concurrent.futures
 import os
 import pathlib
@@ -27,27 +28,22 @@ ROOT = HERE.parent.parent
 OPTIONS = "-cl-opt-disable -Dalways_inline= -DPEL_NO_PREFETCH"
 
 
-def fail(message):
-    print(message, file=sys.stderr)
-    sys.exit(2)
-
-
 def plugin(build):
     """Compiles defined.cpp where it is newer than what was compiled."""
-    source, target = HERE / "defined.cpp", build / "oclgrind" / "defined.so"
-    newest = max(f.stat().st_mtime for f in (source, HERE / "lanes.h"))
-    if target.exists() and target.stat().st_mtime > newest:
+    target = build / "oclgrind" / "defined.so"
+    sources = HERE / "defined.cpp", HERE / "lanes.h"
+    if target.exists() and target.stat().st_mtime > max(s.stat().st_mtime for s in sources):
         return target
     libraries = subprocess.run(["ldd", "/usr/lib/oclgrind/liboclgrind-rt.so"], capture_output=True,
                                text=True).stdout
     version = re.search(r"libLLVM-(\d+)", libraries)
     llvm = pathlib.Path(f"/usr/lib/llvm-{version[1] if version else 14}")
     if not pathlib.Path("/usr/include/oclgrind/Plugin.h").exists() or not (llvm / "include/llvm/IR").exists():
-        fail(f"the plugin needs headers: apt-get install liboclgrind-dev {llvm.name}-dev")
+        sys.exit(f"the plugin needs headers: apt-get install liboclgrind-dev {llvm.name}-dev")
     target.parent.mkdir(parents=True, exist_ok=True)
     subprocess.run([os.environ.get("CXX", "c++"), "-std=c++17", "-O2", "-fno-rtti", "-fPIC", "-shared", "-w",
-                    "-Wl,-z,nodelete",
-                    "-I/usr/include/oclgrind", f"-I{llvm}/include", source, "-o", target], check=True)
+                    "-Wl,-z,nodelete", "-I/usr/include/oclgrind", f"-I{llvm}/include", sources[0], "-o",
+                    target], check=True)
     return target
 
 
@@ -68,41 +64,30 @@ def cases_of(program):
             suite = name
 
 
-def left_out():
-    """(expression, pattern, reason) of each line."""
-    for line in (HERE / "left_out.txt").read_text().splitlines():
-        if line.strip() and not line.startswith("#"):
-            pattern, _, reason = line.partition("  ")
-            yield re.compile(f"({pattern})(@[0-9]+)?$"), pattern, reason.strip()
-
-
-class Result:
-    """What became of one case."""
-
-    def __init__(self, name, status, seconds, folder, limit):
-        def text(pattern):
-            return "".join(p.read_text(errors="replace") for p in sorted(folder.glob(pattern)))
-
-        self.name, self.seconds, self.status = name, seconds, status
-        self.reports, self.output = text("reports"), text("output")
-        self.kernels = set(text("kernels").split())
-        late = status in (-signal.SIGXCPU, -signal.SIGKILL) or seconds > limit
-        self.verdict = ("reports" if self.reports else "too slow" if late else "failed" if status else
-                        "skipped" if "[  SKIPPED ]" in self.output else "clean")
+Result = collections.namedtuple("Result", "verdict seconds name kernels reports")
 
 
 def run_case(name, command, environment, limit, scratch):
     """One process, and those that it starts, in Oclgrind."""
     folder = pathlib.Path(tempfile.mkdtemp(dir=scratch))
+
+    def text(pattern):
+        return "".join(p.read_text(errors="replace") for p in sorted(folder.glob(pattern)))
+
     with open(folder / "output", "w") as output:
         process = subprocess.Popen(
-            ["oclgrind", "--num-threads", "1", "--log", "/dev/null",
-             *command], cwd=folder, stdin=subprocess.DEVNULL,
-            stdout=output, stderr=subprocess.STDOUT, env=dict(environment, PELLUCID_OCLGRIND_DIR=str(folder)),
+            ["oclgrind", "--num-threads", "1", "--log", "/dev/null", *command], cwd=folder, stdout=output,
+            stdin=subprocess.DEVNULL, stderr=subprocess.STDOUT,
+            env=dict(environment, PELLUCID_OCLGRIND_DIR=str(folder)),
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 2)))
         status, used = os.wait4(process.pid, 0)[1:]
-    process.returncode = os.waitstatus_to_exitcode(status)
-    result = Result(name, process.returncode, used.ru_utime + used.ru_stime, folder, limit)
+    process.returncode = status = os.waitstatus_to_exitcode(status)
+    seconds, reports, said = used.ru_utime + used.ru_stime, text("reports"), text("output")
+    late = status in (-signal.SIGXCPU, -signal.SIGKILL) or seconds > limit
+    verdict = ("reports" if reports else "too slow" if late else "failed" if status else
+               "skipped" if "[  SKIPPED ]" in said else "clean")
+    result = Result(verdict, seconds, name, set(text("kernels").split()),
+                    reports[:6000] or f"{said[-3000:]}\nended with {status}")
     shutil.rmtree(folder, ignore_errors=True)
     return result
 
@@ -130,15 +115,6 @@ def check_planted(defined, scratch):
     return wrong
 
 
-def kernels_of_the_tree():
-    """Every __kernel of kernels/, by name."""
-    found = {}
-    for path in sorted((ROOT / "kernels").rglob("*.cl*")):
-        for name in re.findall(r"__kernel\b[^{;]*?\bvoid\s+(\w+)\s*\(", path.read_text()):
-            found[name] = path.name
-    return found
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -149,57 +125,47 @@ def main():
     parser.add_argument("--only", default="", help="cases whose name matches this regular expression")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--seconds", type=int, default=60, help="processor time of a case (60)")
-    parser.add_argument("--times", type=pathlib.Path,
-                        help="writes verdict, seconds and name of each case here")
     o = parser.parse_args()
     if not shutil.which("oclgrind"):
-        fail("oclgrind is not installed: apt-get install oclgrind liboclgrind-dev llvm-14-dev")
+        sys.exit("oclgrind is not installed: apt-get install oclgrind liboclgrind-dev llvm-14-dev")
     environment = dict(os.environ, PELLUCID_TEST_SMALL="1", OCLGRIND_BUILD_OPTIONS=OPTIONS,
-                       OCLGRIND_DATA_RACES="1",
-                       OCLGRIND_PLUGINS=str(plugin(o.build.resolve())))
+                       OCLGRIND_DATA_RACES="1", OCLGRIND_PLUGINS=str(plugin(o.build.resolve())))
 
-    rules, skipped, work = list(left_out()), [], []
-    stale = set(range(len(rules)))
+    rules = [line.partition("  ")[0] for line in (HERE / "left_out.txt").read_text().splitlines()
+             if line.strip() and not line.startswith("#")]
+    stale, skipped, work, widths = set(rules), 0, [], o.widths.split(",")
     for program in o.programs:
         path = o.build.resolve() / "bin" / program
         for case, arguments in cases_of(path):
-            widths = o.widths.split(",")
             for width in sorted({*widths, "16", "8", "1"}) if program == "test_small" else widths:
                 name = f"{program}/{case}@{width}"
-                hits = [i for i, (expression, *_) in enumerate(rules) if expression.match(name)]
-                stale -= set(hits)
-                if hits:
-                    skipped.append(name)
-                elif re.search(o.only, name):
+                hits = {rule for rule in rules if re.match(f"({rule})(@[0-9]+)?$", name)}
+                stale, skipped = stale - hits, skipped + bool(hits)
+                if not hits and re.search(o.only, name):
                     work.append((name, [str(path), *arguments], dict(environment, PELLUCID_MATH_WIDTH=width)))
 
     done, started = [], time.monotonic()
-    with tempfile.TemporaryDirectory() as scratch:
-        bad = check_planted(environment["OCLGRIND_PLUGINS"], scratch)
     with tempfile.TemporaryDirectory() as scratch, concurrent.futures.ThreadPoolExecutor(o.jobs) as pool:
+        bad = check_planted(environment["OCLGRIND_PLUGINS"], scratch)
         running = [pool.submit(run_case, *w, o.seconds, scratch) for w in work]
         for future in concurrent.futures.as_completed(running):
             r = future.result()
             done.append(r)
             print(f"[{len(done)}/{len(work)}] {r.verdict:8} {r.seconds:6.1f} s  {r.name}", flush=True)
             if r.verdict not in ("clean", "skipped"):
-                print(r.reports[:6000] or f"{r.output[-3000:]}\nended with {r.status}", flush=True)
-    if o.times:
-        slowest = sorted(done, key=lambda r: -r.seconds)
-        o.times.write_text("".join(f"{r.verdict}\t{r.seconds:.1f}\t{r.name}\n" for r in slowest))
-
+                print(r.reports, flush=True)
     bad += [f"{r.verdict}: {r.name}" for r in done if r.verdict not in ("clean", "skipped")]
-    every = kernels_of_the_tree()
+    every = {name for path in (ROOT / "kernels").rglob("*.cl*")
+             for name in re.findall(r"__kernel\b[^{;]*?\bvoid\s+(\w+)\s*\(", path.read_text())}
     if not o.only:
-        bad += [f"left_out.txt: {rules[i][1]} matches no case" for i in sorted(stale)]
-        for width in o.widths.split(","):
+        bad += [f"left_out.txt: {rule} matches no case" for rule in sorted(stale)]
+        for width in widths:
             launched = set().union(*(r.kernels for r in done if r.name.endswith("@" + width)))
-            bad += [f"never launched with {width} lanes: {k} ({every[k]})"
-                    for k in every if k not in launched]
-            print(f"{len(launched & set(every))} of {len(every)} kernels launched with {width} lanes")
+            bad += [f"never launched with {width} lanes: {k}" for k in sorted(every - launched)]
+            print(f"{len(launched & every)} of {len(every)} kernels launched with {width} lanes")
     verdicts = ("clean", "skipped", "reports", "failed", "too slow")
     print(", ".join(f"{sum(r.verdict == v for r in done)} {v}" for v in verdicts)
-          + f", {len(skipped)} left out (tests/oclgrind/left_out.txt)")
+          + f", {skipped} left out (tests/oclgrind/left_out.txt)")
     print(f"{sum(r.seconds for r in done):.0f} s of processor time in {time.monotonic() - started:.0f} s")
     print("\n".join(bad))
     sys.exit(1 if bad else 0)

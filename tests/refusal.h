@@ -1,0 +1,33 @@
+// That a call is refused, and what it says then.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <initializer_list>
+#include <pellucid/pellucid.hpp>
+#include <string>
+#include <type_traits>
+
+// `call` returns an error or throws one; its message holds all of `words`.
+template <class Call>
+void expectRefused(std::initializer_list<const char*> words, const Call& call,
+                   PelError expected = PEL_ERROR_INVALID_ARGUMENT) {
+    PelError code = PEL_SUCCESS;
+    if constexpr (std::is_same_v<std::invoke_result_t<Call>, PelError>) {
+        code = call();
+    } else {
+        try {
+            call();
+        } catch (const pellucid::Error& e) {
+            code = e.code();
+        }
+    }
+    const std::string message = code == PEL_SUCCESS ? "no error" : pelGetErrorMessage();
+    EXPECT_EQ(code, expected) << message;
+    for (const char* word : words)
+        EXPECT_NE(message.find(word), std::string::npos) << '"' << word << "\" in: " << message;
+}
+
+template <class Call>
+void expectRefused(const char* word, const Call& call) {
+    expectRefused({word}, call);
+}
