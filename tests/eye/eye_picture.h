@@ -2,6 +2,7 @@
 #pragma once
 #include "eye/eye_lut_error.h"
 #include "reference/eye.h"
+#include "reference/shade.h"
 
 #include <pellucid/pellucid.hpp>
 
@@ -62,7 +63,10 @@ struct EyePixel {
 
 class EyePicture {
   public:
-    explicit EyePicture(const EyeScene& scene) : s_(scene), truth_(referenceOf(scene.eye)) {
+    explicit EyePicture(const EyeScene& scene)
+        : s_(scene), truth_(referenceOf(scene.eye)), texture_{scene.textureSize, scene.textureSize, {}} {
+        const std::vector<float>& t = scene.texture;
+        for (size_t i = 0; i < t.size(); i += 3) texture_.texels.push_back({t[i], t[i + 1], t[i + 2]});
         z_ = normalized(vec(s_.eye.gaze));
         y_ = vec(s_.eye.up);
         y_ = normalized(y_ - dot(y_, z_) * z_);
@@ -166,23 +170,6 @@ class EyePicture {
         return p;
     }
 
-    Rgb textureAt(reference::Vec2 uv) const {
-        const int n = s_.textureSize;
-        const double x = std::clamp(uv.x * n - 0.5, 0.0, n - 1.0);
-        const double y = std::clamp(uv.y * n - 0.5, 0.0, n - 1.0);
-        const int i = std::min(int(x), n - 2), j = std::min(int(y), n - 2);
-        Rgb sum;
-        for (int c = 0; c < 3; ++c) {
-            const auto at = [&](int a, int b) {
-                return double(s_.texture[size_t(3 * ((j + b) * n + i + a) + c)]);
-            };
-            const double fx = x - i, fy = y - j;
-            sum[c] =
-                (1 - fy) * ((1 - fx) * at(0, 0) + fx * at(1, 0)) + fy * ((1 - fx) * at(0, 1) + fx * at(1, 1));
-        }
-        return sum;
-    }
-
     Rgb radiance(const EyePixel& p, size_t k, const std::vector<reference::Caustic>& caustics,
                  std::map<int, double>& known) const {
         const reference::EyeHit& h = p.hit;
@@ -215,7 +202,8 @@ class EyePicture {
         }
         Rgb sum = (1 - h.share) * (vec(s_.sclera.albedo) * onSclera) + gloss;
         if (h.share > 0) {
-            const Rgb albedo = s_.textureSize ? textureAt(irisTexture(truth_, h)) : Rgb{1, 1, 1};
+            const reference::Vec2 uv = irisTexture(truth_, h);
+            const Rgb albedo = s_.textureSize ? bilinear(texture_, uv.x, uv.y) : Rgb{1, 1, 1};
             const double through =
                 irisVisible(truth_, h) * h.transmittance / (truth_.nAqueous * truth_.nAqueous);
             sum = sum + h.share * through * (albedo * onIris);
@@ -225,6 +213,7 @@ class EyePicture {
 
     const EyeScene& s_;
     reference::Eye truth_;
+    reference::Table texture_;
     Vec3 x_, y_, z_;
 };
 

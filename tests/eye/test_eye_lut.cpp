@@ -22,34 +22,26 @@ std::vector<float> tableOf(const PelEyeLutDesc& desc) {
 
 // Some slices. 10^8 photons for a whole table leave noise of 1.2 % of its mean, so each slice takes more
 // photons.
-LutError errorOf(const PelEye& eye, std::initializer_list<uint32_t> slices, uint64_t photons) {
+LutError errorOf(const PelEye& eye, std::initializer_list<uint32_t> slices) {
     const PelEyeLutDesc desc = descOf(eye);
     const std::vector<float> texels = tableOf(desc);
     LutError error;
-    for (const uint32_t z : slices) addSlice(desc, referenceOf(eye), texels, z, photons, &error);
+    for (const uint32_t z : slices) addSlice(desc, referenceOf(eye), texels, z, 16'000'000, &error);
     return error;
 }
-
-constexpr uint64_t perSlice = 16'000'000;
 
 }  // namespace
 
 TEST(EyeLut, MatchesPhotons) {
-    const LutError error = errorOf(pelEyeDefaults(), {0, 7, 13, 19, 24, 28}, perSlice);
-    std::printf("RMS %.3g of the mean, flux %.2g, after a reflection inside %.2g of it\n", error.rms(),
-                error.fluxError(), error.bounced / error.trueFlux);
-    EXPECT_LT(error.rms(), tolerance::eyeLutRms);
-    EXPECT_LT(error.fluxError(), tolerance::eyeLutFlux);
-}
-
-TEST(EyeLut, MatchesPhotonsOfOtherEyes) {
-    PelEye eyes[3] = {pelEyeDefaults(), pelEyeDefaults(), pelEyeDefaults()};
-    eyes[0].irisConcavity = 0.6f, eyes[0].irisRadius = 5.6f;
-    eyes[1].corneaConic = 0, eyes[1].chamberDepth = 3.6f;
-    eyes[2].corneaIndex = eyes[2].aqueousIndex = 1.5f, eyes[2].corneaConic = -1.2f;
+    PelEye eyes[4] = {pelEyeDefaults(), pelEyeDefaults(), pelEyeDefaults(), pelEyeDefaults()};
+    eyes[1].irisConcavity = 0.6f, eyes[1].irisRadius = 5.6f;
+    eyes[2].corneaConic = 0, eyes[2].chamberDepth = 3.6f;
+    eyes[3].corneaIndex = eyes[3].aqueousIndex = 1.5f, eyes[3].corneaConic = -1.2f;
     for (const PelEye& eye : eyes) {
-        const LutError error = errorOf(eye, {2, 14, 22}, perSlice);
-        std::printf("RMS %.3g of the mean, flux %.2g\n", error.rms(), error.fluxError());
+        const LutError error =
+            &eye == eyes ? errorOf(eye, {0, 7, 13, 19, 24, 28}) : errorOf(eye, {2, 14, 22});
+        std::printf("RMS %.3g of the mean, flux %.2g, after a reflection inside %.2g of it\n", error.rms(),
+                    error.fluxError(), error.bounced / error.trueFlux);
         EXPECT_LT(error.rms(), tolerance::eyeLutRms);
         EXPECT_LT(error.fluxError(), tolerance::eyeLutFlux);
     }
@@ -76,20 +68,6 @@ TEST(EyeLut, AnIndexOfOneLeavesLightWhereItIs) {
                     << i << ", " << j << ", " << z;
             }
     EXPECT_GT(lit, 30000u);
-}
-
-TEST(EyeLut, LightAlongTheGazeIsSymmetric) {
-    const PelEyeLutDesc desc = descOf(pelEyeDefaults());
-    const std::vector<float> texels = tableOf(desc);
-    for (uint32_t j = 0; j < desc.height; ++j)
-        for (uint32_t i = 0; i < desc.width / 2; ++i)
-            EXPECT_NEAR(texels[3 * (j * 64 + i)], texels[3 * (j * 64 + 63 - i)], tolerance::eyeLutPlain);
-    // And round the axis: the same places along x and along y, which have texels of 3/16 and 3/32 mm.
-    for (uint32_t k = 4; k < 30; ++k) {
-        const double alongX = 0.5 * (texels[3 * (32 + k)] + texels[3 * (32 + k - 1)]),
-                     alongY = 0.5 * (texels[3 * ((2 * k) * 64 + 32)] + texels[3 * ((2 * k - 1) * 64 + 32)]);
-        EXPECT_NEAR(alongX, alongY, tolerance::eyeLutRound);
-    }
 }
 
 TEST(EyeLut, HasNoScaleAndTheSameBits) {

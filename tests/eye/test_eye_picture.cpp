@@ -25,7 +25,7 @@ TEST(EyePicture, RefractsAsTheTracer) {
     EyeScene scene;
     // The tracer looks at points: texels as wide as pixels.
     scene.makeTexture(32);
-    scene.ambient.constant[0] = scene.ambient.constant[1] = scene.ambient.constant[2] = 1;
+    std::fill_n(scene.ambient.constant, 3, 1.0f);
     EXPECT_LT(errorOf(scene, "refraction").rms, tolerance::eyePictureRms);
     scene.eye.irisConcavity = 0.7f;
     scene.eye.pupilRadius = 3.2f;
@@ -68,38 +68,25 @@ TEST(EyePicture, DrawnFibresDifferRoundTheIris) {
     EyeScene scene;
     for (int i = 0; i < 3; ++i) scene.eye.gaze[i] = float(scene.camera[i]) - scene.eye.center[i];
     scene.eye.corneaIndex = scene.eye.aqueousIndex = 1;
-    scene.ambient.constant[0] = scene.ambient.constant[1] = scene.ambient.constant[2] = 1;
+    std::fill_n(scene.ambient.constant, 3, 1.0f);
     const auto seen = [&](uint32_t seed) {
         scene.eye.irisSeed = seed;
         return EyePicture(scene).shade();
     };
     const std::vector<float> one = seen(1), other = seen(2);
-    const double middle = 0.5 * scene.size;
     const EyePicture picture(scene);
-    double most = 0;  // pixels from the middle to the rim
-    for (size_t k = 0; k < picture.pixels.size(); ++k)
-        if (picture.pixels[k].hit.share > 0)
-            most = std::max(most, std::hypot(double(k % 128) + 0.5 - middle, double(k / 128) + 0.5 - middle));
-    // By sixteenths of the circle, two rings: means and how much they differ.
-    const int parts = 16;
-    std::vector<double> sum(2 * parts), count(2 * parts), sumOfOther(2 * parts);
+    // Without fibres the iris, seen along its axis, would look alike after a quarter of a turn.
+    double turned = 0, seeds = 0, mean = 0, count = 0;
     for (size_t k = 0; k < picture.pixels.size(); ++k) {
-        const double x = double(k % 128) + 0.5 - middle, y = double(k / 128) + 0.5 - middle,
-                     r = std::hypot(x, y) / most;
-        if (r < 0.6 || r > 0.84) continue;
-        const int at = (r > 0.72) * parts +
-                       std::min(parts - 1, int((std::atan2(y, x) / (2 * std::numbers::pi) + 0.5) * parts));
-        sum[at] += one[3 * k], sumOfOther[at] += other[3 * k], ++count[at];
+        const auto& hit = picture.pixels[k].hit;
+        if (hit.share < 1 || hit.radius < 1.3 * scene.eye.pupilRadius || hit.radius > 5) continue;
+        const size_t x = k % 128, y = k / 128;
+        turned += std::abs(one[3 * k] - one[3 * (x * 128 + 127 - y)]);
+        seeds += std::abs(one[3 * k] - other[3 * k]);
+        mean += one[3 * k], ++count;
     }
-    double spread = 0, seeds = 0, mean = 0;
-    for (int i = 0; i < 2 * parts; ++i)
-        sum[i] /= count[i], sumOfOther[i] /= count[i], mean += sum[i] / (2 * parts);
-    for (int i = 0; i < 2 * parts; ++i) {
-        const int ring = i / parts * parts, next = ring + (i + 1) % parts;
-        spread += std::abs(sum[i] - sum[next]) / (2 * parts);
-        seeds += std::abs(sum[i] - sumOfOther[i]) / (2 * parts);
-    }
-    EXPECT_GT(spread, 0.04 * mean);
+    EXPECT_GT(count, 100);
+    EXPECT_GT(turned, 0.04 * mean);
     EXPECT_GT(seeds, 0.04 * mean);
 }
 

@@ -11,10 +11,12 @@ using eye_test::EyeFrame;
 
 namespace {
 
+void unchanged(PelEye&) {}
+
 // What a shader is set to; `apply` leaves nothing of an earlier state.
 struct State {
     std::string name;
-    std::function<void(PelEye&)> change = [](PelEye&) {};
+    std::function<void(PelEye&)> change = unchanged;
     size_t frame = 0;
     uint32_t texture = 0;                    // texels on a side; 0: none
     const Lut* caustics = nullptr;           // of the caller
@@ -72,6 +74,7 @@ TEST(EyeSequence, EqualsNewShaders) {
     const Lut other(device, desc);
 
     std::vector<State> states;
+    const auto add = [&](const State& state) { states.push_back(state); };
     // Every length and index from which the caustics follow, with the default eye between two changes.
     for (const auto& [name, field, value] : {std::tuple{"scleraRadius", &PelEye::scleraRadius, 11.0f},
                                              {"corneaRadius", &PelEye::corneaRadius, 7.5f},
@@ -83,26 +86,26 @@ TEST(EyeSequence, EqualsNewShaders) {
                                              {"irisRadius", &PelEye::irisRadius, 5.4f},
                                              {"irisConcavity", &PelEye::irisConcavity, 0.6f}}) {
         states.push_back({name, [field, value](PelEye& e) { e.*field = value; }});
-        states.push_back({"defaults"});
+        add({"defaults"});
     }
-    states.push_back({"moved", [](PelEye& e) { e.center[0] = 2, e.gaze[0] = 0.3f, e.gaze[2] = 0.9f; }});
-    states.push_back({"pupil", [](PelEye& e) { e.pupilRadius = 3; }});
-    states.push_back({"profile", [&](PelEye& e) { e.irisProfile = skin.get(); }});
-    states.push_back({"other profile", [&](PelEye& e) { e.irisProfile = marble.get(); }});
-    states.push_back({"no profile"});
-    states.push_back({"table of the caller", [](PelEye&) {}, 0, 0, &small});
-    states.push_back({"other table of the caller", [](PelEye&) {}, 0, 0, &other});
-    states.push_back({"own table", [](PelEye&) {}, 1});
-    states.push_back({"seed", [](PelEye& e) { e.irisSeed = 7; }, 1});
-    states.push_back({"texture of 64", [](PelEye&) {}, 1, 64});
-    states.push_back({"texture of 16", [](PelEye&) {}, 2, 16});
-    states.push_back({"no texture", [](PelEye&) {}, 3});
+    add({"moved", [](PelEye& e) { e.center[0] = 2, e.gaze[0] = 0.3f, e.gaze[2] = 0.9f; }});
+    add({"pupil", [](PelEye& e) { e.pupilRadius = 3; }});
+    add({"profile", [&](PelEye& e) { e.irisProfile = skin.get(); }});
+    add({"other profile", [&](PelEye& e) { e.irisProfile = marble.get(); }});
+    add({"no profile"});
+    add({"table of the caller", unchanged, 0, 0, &small});
+    add({"other table of the caller", unchanged, 0, 0, &other});
+    add({"own table", unchanged, 1});
+    add({"seed", [](PelEye& e) { e.irisSeed = 7; }, 1});
+    add({"texture of 64", unchanged, 1, 64});
+    add({"texture of 16", unchanged, 2, 16});
+    add({"no texture", unchanged, 3});
     const auto skinned = [&](PelEye& e) { e.irisProfile = skin.get(); };
-    states.push_back({"two eyes alike", [](PelEye&) {}, 0, 16, nullptr, [](PelEye&) {}});
-    states.push_back({"two profiles", [](PelEye&) {}, 0, 0, nullptr, skinned});
-    states.push_back({"profiles exchanged", skinned, 1, 0, nullptr, [](PelEye&) {}});
-    states.push_back({"two shapes", [](PelEye& e) { e.corneaIndex = 1.5f; }, 2, 64, nullptr, [](PelEye&) {}});
-    states.push_back({"one eye", [](PelEye&) {}, 0});
+    add({"two eyes alike", unchanged, 0, 16, nullptr, unchanged});
+    add({"two profiles", unchanged, 0, 0, nullptr, skinned});
+    add({"profiles exchanged", skinned, 1, 0, nullptr, unchanged});
+    add({"two shapes", [](PelEye& e) { e.corneaIndex = 1.5f; }, 2, 64, nullptr, unchanged});
+    add({"one eye", unchanged, 0});
 
     Shader shader(device);
     std::vector<std::vector<float>> pictures;

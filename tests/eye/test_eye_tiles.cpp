@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "eye/eye_frame.h"
+#include "refusal.h"
 
 using namespace pellucid;
 using eye_test::EyeFrame;
@@ -62,100 +63,55 @@ TEST(EyeTiles, OutputsAddUp) {
 }
 
 TEST(EyeTiles, NeedsWhatItReads) {
-    EyeFrame frame;
-    try {
-        frame.shade([](Shader& s) {
+    expectRefused("by eyes", [] {
+        EyeFrame().shade([](Shader& s) {
             PelMaterial dull = pelMaterialDefaults();
             dull.scattering = PEL_SCATTERING_NONE;
             s.setMaterial(1, dull).setEye(2, pelEyeDefaults());
             s.clear(PEL_SLOT_POSITION);
         });
-        FAIL() << "no position";
-    } catch (const Error& e) {
-        EXPECT_EQ(e.code(), PEL_ERROR_INVALID_ARGUMENT);
-        EXPECT_NE(std::string(e.what()).find("by eyes"), std::string::npos) << e.what();
-    }
+    });
 }
 
 TEST(EyeTiles, BadInputGivesFiniteValues) {
     EyeFrame frame;
-    const std::pair<const char*, std::function<void(Shader&)>> cases[] = {
-        {"a light inside the eye",
-         [](Shader& s) {
-             PelLight light = pelLightDefaults();
-             light.type = PEL_LIGHT_POINT;
-             light.position[2] = 8;
-             s.set(std::vector{light});
-         }},
-        {"a light on the surface",
-         [](Shader& s) {
-             PelLight light = pelLightDefaults();
-             light.type = PEL_LIGHT_POINT;
-             light.position[2] = 12;
-             s.set(std::vector{light});
-         }},
-        {"the camera inside the cornea",
-         [](Shader& s) {
-             PelCamera camera = pelCameraDefaults();
-             camera.position[2] = 11;
-             s.set(camera);
-         }},
-        {"the camera at a pixel",
-         [](Shader& s) {
-             PelCamera camera = pelCameraDefaults();
-             camera.position[2] = 12;
-             s.set(camera);
-         }},
-        {"an eye elsewhere",
-         [](Shader& s) {
-             PelEye eye = pelEyeDefaults();
-             eye.center[0] = 1e6f;
-             s.setEye(2, eye);
-         }},
-        {"a huge eye",
-         [](Shader& s) {
-             PelEye eye = pelEyeDefaults();
-             for (float* f : {&eye.scleraRadius, &eye.corneaRadius, &eye.limbusRadius, &eye.chamberDepth,
-                              &eye.pupilRadius})
-                 *f *= 1e5f;
-             s.setEye(2, eye);
-         }},
-        {"a tiny eye",
-         [](Shader& s) {
-             PelEye eye = pelEyeDefaults();
-             for (float* f : {&eye.scleraRadius, &eye.corneaRadius, &eye.limbusRadius, &eye.chamberDepth,
-                              &eye.pupilRadius, &eye.limbusWidth})
-                 *f *= 1e-4f;
-             s.setEye(2, eye);
-         }},
-        {"a cornea as wide as it can be, an iris that nearly fills it",
-         [](Shader& s) {
-             PelEye eye = pelEyeDefaults();
-             eye.pupilRadius = std::nextafter(eye.limbusRadius, 0.0f);
-             eye.irisRadius = eye.limbusRadius;
-             s.setEye(2, eye);
-         }},
-        {"two eyes in one place",
-         [](Shader& s) {
-             s.setEye(1, pelEyeDefaults());
-             s.setEye(2, pelEyeDefaults());
-         }},
-        {"no pupil, no border",
-         [](Shader& s) {
-             PelEye eye = pelEyeDefaults();
-             eye.pupilRadius = eye.limbusWidth = 0;
-             eye.limbusDarkening = 1;
-             s.setEye(2, eye);
-         }},
+    const auto scale = [](PelEye& e, float by) {
+        for (float* f : {&e.scleraRadius, &e.corneaRadius, &e.limbusRadius, &e.chamberDepth, &e.pupilRadius,
+                         &e.limbusWidth})
+            *f *= by;
     };
-    for (const auto& bad : cases) {
-        SCOPED_TRACE(bad.first);
-        expectFinite(frame.shade([&](Shader& s) {
-            s.setEye(2, pelEyeDefaults());
-            bad.second(s);
-        }));
-        EXPECT_EQ(frame.stats.pixelsInvalid, 0u);
-    }
+    struct Case {
+        const char* name;
+        std::function<void(PelEye&)> change;
+        float lightZ = 0, cameraZ = 300;  // 0: a parallel light
+    };
+    const auto nothing = [](PelEye&) {};
+    const Case cases[] = {
+        {"a light inside the eye", nothing, 8},
+        {"a light on the surface", nothing, 12},
+        {"the camera inside the cornea", nothing, 0, 11},
+        {"the camera at a pixel", nothing, 0, 12},
+        {"an eye elsewhere", [](PelEye& e) { e.center[0] = 1e6f; }},
+        {"a huge eye", [&](PelEye& e) { scale(e, 1e5f); }},
+        {"a tiny eye", [&](PelEye& e) { scale(e, 1e-4f); }},
+        {"a cornea as wide as it can be, an iris that nearly fills it",
+         [](PelEye& e) {
+             e.pupilRadius = std::nextafter(e.limbusRadius, 0.0f);
+             e.irisRadius = e.limbusRadius;
+         }},
+        {"no pupil, no border", [](PelEye& e) { e.pupilRadius = e.limbusWidth = 0, e.limbusDarkening = 1; }}};
+    for (const Case& bad : cases)
+        for (bool two : {false, true}) {  // eyes in one place
+            SCOPED_TRACE(bad.name);
+            expectFinite(frame.shade([&](Shader& s) {
+                PelEye eye = pelEyeDefaults();
+                bad.change(eye);
+                s.setEye(2, eye).set(pellucid::cameraAt({0, 0, bad.cameraZ}));
+                if (two) s.setEye(1, pelEyeDefaults());
+                if (bad.lightZ > 0) s.set(pellucid::pointLight({0, 0, bad.lightZ}, {1, 1, 1}));
+            }));
+            EXPECT_EQ(frame.stats.pixelsInvalid, 0u);
+        }
 }
 
 // Pixels of an eye whose texture or surroundings are NaN or Inf show PelShaderOptions.invalidColor, wetness
@@ -163,57 +119,45 @@ TEST(EyeTiles, BadInputGivesFiniteValues) {
 TEST(EyeTiles, NanInImagesOfEyesStaysInItsPixels) {
     EyeFrame frame;
     const float bad[] = {std::nanf(""), INFINITY, -INFINITY};
-    const auto withEye = [](Shader& s) { s.setEye(2, pelEyeDefaults()); };
     const size_t pixels = frame.pixels();
-    // At least one pixel and at most `limit` change.
-    const auto sameBeyond = [&](const std::vector<float>& is, const std::vector<float>& should,
-                                size_t limit) {
+    // Overwrites these floats of an image, which `set` gives to the shader.
+    const auto expectLocal = [&](std::vector<float> values, std::initializer_list<size_t> faulty,
+                                 size_t limit, const std::function<void(Shader&, const Buffer&)>& set) {
+        const auto picture = [&] {
+            const Buffer image(frame.device, values);
+            return frame.shade([&](Shader& s) {
+                s.setEye(2, pelEyeDefaults());
+                set(s, image);
+            });
+        };
+        const std::vector<float> clean = picture();
+        size_t next = 0;
+        for (const size_t at : faulty) values[at] = bad[next++ % 3];
+        const std::vector<float> is = picture();
         expectFinite(is);
         size_t changed = 0;
-        for (size_t k = 0; k < pixels; ++k) changed += is[3 * k] != should[3 * k];
+        for (size_t k = 0; k < pixels; ++k) changed += is[3 * k] != clean[3 * k];
         EXPECT_GE(changed, 1u);
         EXPECT_LE(changed, limit);
         EXPECT_LE(frame.stats.pixelsInvalid, changed);
     };
-    std::vector<float> wet(pixels);
-    const Buffer even(frame.device, wet);
-    const auto wetFrame = [&](const Buffer& wetness) {
-        return frame.shade([&](Shader& s) {
-            withEye(s);
-            s.set(PEL_SLOT_WETNESS, imageDesc(wetness, PEL_FORMAT_R32F, frame.width, frame.height));
-        });
-    };
-    const std::vector<float> dry = wetFrame(even);
-    for (int i = 0; i < 3; ++i) wet[128 * frame.width + 400 + 9 * i] = bad[i];
-    wet[100] = bad[0];  // on the wall, which has no tears
-    sameBeyond(wetFrame(Buffer(frame.device, wet)), dry, 3);
-
-    const auto textured = [&](const std::vector<float>& texels) {
-        const Buffer texture(frame.device, texels);
-        return frame.shade([&](Shader& s) {
-            withEye(s);
-            PelAmbient ambient = pelAmbientDefaults();
-            ambient.constant[0] = ambient.constant[1] = ambient.constant[2] = 0.5f;
-            s.set(ambient);
-            s.setIrisTexture(2, imageDesc(texture, PEL_FORMAT_RGB32F, 64, 64));
-        });
-    };
-    std::vector<float> texels(64 * 64 * 3, 0.3f);
-    const std::vector<float> clean = textured(texels);
-    for (int i = 0; i < 3; ++i) texels[size_t(3 * (20 * 64 + 16 * i + 8))] = bad[i];
-    sameBeyond(textured(texels), clean, 200);
-
-    const auto reflecting = [&](const std::vector<float>& cube) {
-        const Buffer faces(frame.device, cube);
-        return frame.shade([&](Shader& s) {
-            withEye(s);
-            s.setReflectionCube(imageDesc(faces, PEL_FORMAT_RGB32F, 4, 24));
-        });
-    };
-    std::vector<float> cube(4 * 24 * 3, 0.7f);
-    const std::vector<float> mirrored = reflecting(cube);
-    cube[3 * 30] = bad[0], cube[3 * 70] = bad[1];
-    sameBeyond(reflecting(cube), mirrored, pixels / 4);
+    const size_t row = 128 * size_t(frame.width);
+    // The last one lies on the wall, which has no tears.
+    expectLocal(std::vector<float>(pixels), {row + 400, row + 409, row + 418, 100}, 3,
+                [&](Shader& s, const Buffer& wetness) {
+                    s.set(PEL_SLOT_WETNESS, imageDesc(wetness, PEL_FORMAT_R32F, frame.width, frame.height));
+                });
+    expectLocal(std::vector<float>(64 * 64 * 3, 0.3f), {3864, 3912, 3960},
+                200,  // row 20, columns 8, 24, 40
+                [](Shader& s, const Buffer& texture) {
+                    PelAmbient ambient = pelAmbientDefaults();
+                    std::fill_n(ambient.constant, 3, 0.5f);
+                    s.set(ambient).setIrisTexture(2, imageDesc(texture, PEL_FORMAT_RGB32F, 64, 64));
+                });
+    expectLocal(std::vector<float>(4 * 24 * 3, 0.7f), {90, 210}, pixels / 4,
+                [](Shader& s, const Buffer& cube) {
+                    s.setReflectionCube(imageDesc(cube, PEL_FORMAT_RGB32F, 4, 24));
+                });
 }
 
 // Light of the lids does not reach the eye, nor the other way: by every method that gathers on the screen.
