@@ -9,15 +9,15 @@
 
 namespace pel::cl {
 
-ProgramCache::ProgramCache(Context context, cl_device_id device, uint32_t mathWidth)
+ProgramCache::ProgramCache(Context context, cl_device_id device, Defines defines)
     : context_(std::move(context)),
       device_(device),
-      mathWidth_(mathWidth),
+      defines_(std::move(defines)),
       binaries_(context_.get(), device) {}
 
 std::string ProgramCache::optionsOf(const ProgramKey& key) const {
     Defines all = key.defines;
-    all.emplace("PEL_WIDTH", std::to_string(mathWidth_));
+    all.insert(defines_.begin(), defines_.end());
     std::string options = "-cl-std=CL1.2";
     for (const auto& [name, value] : all) options += " -D" + name + "=" + value;
     return options;

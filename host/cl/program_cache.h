@@ -25,10 +25,11 @@ struct ProgramKey {
 
 class ProgramCache {
   public:
-    ProgramCache(Context context, cl_device_id device, uint32_t mathWidth);
+    // `defines`: of all programs, unless a key has its own.
+    ProgramCache(Context context, cl_device_id device, Defines defines);
 
     // Thread-safe. Different programs are built at the same time by the threads that ask for them, if the
-    // driver can do that. PEL_WIDTH (the device's math width) is defined unless `defines` does so.
+    // driver can do that. PEL_WIDTH and PEL_GROUP are the device's unless `defines` has them.
     Program get(const ProgramKey& key);
     Program get(const std::string& file, const Defines& defines) { return get(ProgramKey{{file}, defines}); }
 
@@ -55,7 +56,7 @@ class ProgramCache {
 
     Context context_;
     cl_device_id device_;
-    uint32_t mathWidth_;
+    Defines defines_;
     BinaryCache binaries_;
     mutable std::mutex mutex_;  // of the rest
     std::map<std::string, std::shared_ptr<Entry>> programs_;

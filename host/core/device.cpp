@@ -6,6 +6,7 @@
 #include "cl/host_memory.h"
 #include "cl/platform.h"
 #include "cl/process.h"
+#include "core/launch_policy.h"
 
 namespace pel {
 
@@ -51,7 +52,9 @@ Device::Device(cl::Context context, cl_device_id id, cl::Queue queue, const PelD
       id_(id),
       queue_(std::move(queue)),
       info_(info),
-      programs_(std::move(context), id, info.mathWidth),
+      programs_(std::move(context), id,
+                {{"PEL_WIDTH", std::to_string(info.mathWidth)},
+                 {"PEL_GROUP", std::to_string(launchPolicy(info.mathWidth).texels)}}),
       stats_(pelDeviceStatsDefaults()) {
     cl_command_queue_properties properties = 0;
     clGetCommandQueueInfo(queue_.get(), CL_QUEUE_PROPERTIES, sizeof properties, &properties, nullptr);

@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "core/launch_policy.h"
 #include "shading/launch_ranges.h"
 #include "shading/scratch_image.h"
 #include "shading/shading_constants.h"
@@ -46,8 +47,8 @@ std::vector<cl::ProgramKey> BlendScatter::programs(const BlendImages& images) co
 }
 
 void BlendScatter::launch(cl::Launch& launch, const BlendImages& images, std::vector<cl::Event>& events) {
-    const size_t pixels = size_t(images.out.width) * images.out.height;
-    events.push_back(device_->launch(launch, {{pixels, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}}));
+    events.push_back(
+        device_->launch(launch, itemRange(*device_, size_t(images.out.width) * images.out.height)));
 }
 
 void BlendScatter::enqueuePreparation(const BlendImages& images, std::vector<cl::Event>& events) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/launch_policy.h"
 #include "diffusion/gather_taps.h"
 #include "shading/launch_ranges.h"
 #include "shading/scratch_image.h"
@@ -158,8 +159,8 @@ void GatherScatter::enqueue(const GatherImages& images, std::vector<cl::Event>& 
     std::vector<cl::Program> programs;
     for (const cl::ProgramKey& key : this->programs(images)) programs.push_back(device_->programs().get(key));
     const ScatterImages& of = images.of;
-    const auto launch = [&](cl::Launch& launch, size_t items) {
-        events.push_back(device_->launch(launch, {{items, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}}));
+    const auto launch = [&](cl::Launch& launch, const cl::Range& range) {
+        events.push_back(device_->launch(launch, range));
     };
     device_->fill(counters_.get(), 0, PEL_DIFFUSION_COUNTERS * sizeof(cl_uint), 0);
     cl::Launch points(programs[SURFACE], "gather_points");
@@ -167,19 +168,17 @@ void GatherScatter::enqueue(const GatherImages& images, std::vector<cl::Event>& 
         .arg(memoryOf(of.irradiance))
         .arg(memoryOf(of.positions ? of.positions : of.depth));
     points.arg(memoryOf(of.ids)).arg(memoryOf(images.weight)).arg(points_).arg(counters_);
-    launch(points, size_t(PEL_ROW_PARTS) * frame_.height);
+    launch(points, itemRange(*device_, size_t(frame_.width) * frame_.height));
     const size_t tiles = size_t(frame_.tilesX) * frame_.tilesY;
     cl::Launch areas(programs[SURFACE], "gather_areas");
     areas.arg(constants_.memory()).arg(points_).arg(described_).arg(tiles_).arg(counters_);
-    launch(areas, tiles);
-    const size_t items =
-        std::min<size_t>(tiles, 64 * size_t(device_->info().computeUnits)) * PEL_DIFFUSION_GROUP;
+    launch(areas, groupRange(*device_, tiles));
     const auto gather = [&](const char* kernel, auto&& arguments) {
         cl::Launch one(programs[GATHER], kernel);
         one.arg(constants_.memory()).arg(points_).arg(described_).arg(taps_).arg(nodes_).arg(tiles_);
         arguments(one);
         one.arg(counters_);
-        launch(one, items);
+        launch(one, groupRange(*device_, groupsFor(*device_, tiles)));
     };
     const auto results = [&](cl::Launch& l) { l.arg(memoryOf(of.irradiance)).arg(memoryOf(of.out)); };
     if (form_ == Form::disk) return gather("scatter_disk", results);

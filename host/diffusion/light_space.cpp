@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "core/launch_policy.h"
 #include "shading/launch_ranges.h"
 #include "shading/mapped_lights.h"
 #include "shading/shading_constants.h"
@@ -126,7 +127,7 @@ void LightSpace::addFiles(cl::ProgramKey& program) const {
 // Work-items, of a vector of texels each.
 cl::Range LightSpace::rows(const PelPyramidLevel& level) const {
     const uint32_t lanes = device_->info().mathWidth;
-    return cl::folded(size_t((level.width + lanes - 1) / lanes) * level.height, PEL_DIFFUSION_GROUP);
+    return itemRange(*device_, size_t((level.width + lanes - 1) / lanes) * level.height);
 }
 
 void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory& screen,
@@ -146,8 +147,8 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
         seen.arg(screen.frame).arg(memory(images.positions ? images.positions : images.depth));
         seen.arg(memory(images.ids)).arg(mapUpload_.memory()).arg(cl_uint(k)).arg(memory(maps_[k].image));
         seen.arg(screen.pyramid).arg(seen_);
-        launch(seen, cl::folded(size_t((screen.width + lanes - 1) / lanes) * ((screen.height + 1) / 2),
-                                PEL_DIFFUSION_GROUP));
+        launch(seen,
+               itemRange(*device_, size_t((screen.width + lanes - 1) / lanes) * ((screen.height + 1) / 2)));
     }
     for (uint32_t k = 0; k < maps_.size(); ++k) {
         const PelLightMap& map = maps_[k].constants;
@@ -167,7 +168,7 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
     cl::Launch classify(screen.program, "light_classify");
     classify.arg(screen.frame).arg(screen.pyramid).arg(screen.tables).arg(screen.nodes).arg(screen.tiles);
     classify.arg(mapUpload_.memory()).arg(cl_uint(maps_.size())).arg(pyramid_).arg(parts_).arg(counters_);
-    launch(classify, {{screen.tileCount, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
+    launch(classify, itemRange(*device_, screen.tileCount));
 }
 
 void LightSpace::enqueueHidden(const ScreenMemory& screen, std::vector<cl::Event>& events) {
@@ -184,9 +185,7 @@ void LightSpace::enqueueHidden(const ScreenMemory& screen, std::vector<cl::Event
         .arg(pyramid_)
         .arg(hiddenMemory_)
         .arg(counters_);
-    const size_t groups = std::min<size_t>(screen.tileCount, 64 * size_t(device_->info().computeUnits));
-    events.push_back(
-        device_->launch(hidden, {{groups * PEL_DIFFUSION_GROUP, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}}));
+    events.push_back(device_->launch(hidden, groupRange(*device_, groupsFor(*device_, screen.tileCount))));
 }
 
 void LightSpace::enqueueSums(const ScatterImages& images, const ScreenMemory& screen,
@@ -198,9 +197,7 @@ void LightSpace::enqueueSums(const ScatterImages& images, const ScreenMemory& sc
         .arg(pyramid_)
         .arg(images.out.buffer->memory())
         .arg(counters_);
-    const size_t groups = std::min<size_t>(screen.tileCount, 64 * size_t(device_->info().computeUnits));
-    events.push_back(
-        device_->launch(scatter, {{groups * PEL_DIFFUSION_GROUP, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}}));
+    events.push_back(device_->launch(scatter, groupRange(*device_, groupsFor(*device_, screen.tileCount))));
 }
 
 LightCounts LightSpace::counts() {

@@ -161,7 +161,7 @@ std::vector<cl::ProgramKey> ScreenScatter::programs(const ScatterImages& images)
 // Work-items, of a vector of pixels each.
 cl::Range ScreenScatter::rows(uint32_t width, uint32_t height) const {
     const uint32_t lanes = device_->info().mathWidth;
-    return cl::folded(size_t((width + lanes - 1) / lanes) * height, PEL_DIFFUSION_GROUP);
+    return itemRange(*device_, size_t((width + lanes - 1) / lanes) * height);
 }
 
 void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>& events) {
@@ -179,7 +179,7 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
             .arg(memory(images.irradiance))
             .arg(memory(images.positions ? images.positions : images.depth));
         points.arg(memory(images.ids)).arg(pyramid_).arg(counters_);
-        launch(points, {{size_t(PEL_ROW_PARTS) * frame_.height, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
+        launch(points, rows(frame_.width, frame_.height));
         cl::Launch areas(programs[PIXELS], "surface_areas");
         areas.arg(constants_.memory()).arg(pyramid_);
         launch(areas, rows(frame_.width, frame_.height));
@@ -192,7 +192,7 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
     const size_t tiles = size_t(frame_.tilesX) * frame_.tilesY;
     cl::Launch classify(programs[CLASSIFY], "classify_scatter");
     classify.arg(constants_.memory()).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_).arg(counters_);
-    launch(classify, {{tiles, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
+    launch(classify, itemRange(*device_, tiles));
     if (!light_.empty()) light_.enqueuePyramids(images, screen, events);
     // With the texels only, the screen's last step just copies.
     const bool alone = !light_.empty() && lights_.alone;
@@ -212,8 +212,7 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
     scatter.arg(constants_.memory()).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_);
     scatter.arg(sums_).arg(fillsHidden() ? light_.hidden() : cl::Memory());
     scatter.arg(memory(images.irradiance)).arg(memory(images.out)).arg(counters_);
-    const size_t groups = groupsFor(*device_, tiles);
-    launch(scatter, {{groups * PEL_DIFFUSION_GROUP, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
+    launch(scatter, groupRange(*device_, groupsFor(*device_, tiles)));
     if (alone) light_.enqueueSums(images, screen, events);
 }
 

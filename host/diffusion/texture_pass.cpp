@@ -2,6 +2,7 @@
 // reads irradiance from its slot of the plan and replaces it by that light.
 #include <algorithm>
 
+#include "core/launch_policy.h"
 #include "diffusion/passes.h"
 #include "diffusion/scatter_material.h"
 #include "shading/launch_ranges.h"
@@ -75,7 +76,7 @@ class TexturePass final : public Pass {
             cl::Launch launch(program(i), "sample_texture");
             launch.arg(samples_[i].constants).arg(memoryOf(samples_[i].texture)).arg(memoryOf(uv_));
             launch.arg(memoryOf(ids_)).arg(memoryOf(irradiance_)).arg(memoryOf(target_)).arg(counters_);
-            work.launch(launch, {{tiles, 1, 1}, {PEL_TEXTURE_GROUP, 1, 1}});
+            work.launch(launch, groupRange(work.device, tiles));
         }
     }
 

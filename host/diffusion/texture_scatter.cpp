@@ -4,6 +4,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "core/launch_policy.h"
 #include "shading/check_settings.h"
 #include "shading/image_slots.h"
 #include "shading/launch_ranges.h"
@@ -111,7 +112,7 @@ void TextureScatter::drawMesh(const std::vector<uint32_t>& indices, const std::v
 }
 
 void TextureScatter::launch(cl::Launch& launch, size_t items) {
-    if (items) events_.push_back(device_->launch(launch, {{items, 1, 1}, {PEL_TEXTURE_GROUP, 1, 1}}));
+    if (items) events_.push_back(device_->launch(launch, itemRange(*device_, items)));
 }
 
 void TextureScatter::describe(const ImageView& irradiance, const ImageView& albedo, const ImageView& out,
@@ -216,8 +217,7 @@ void TextureScatter::execute(const PelTextureScatterParams& params, const Ref<Pr
         cl::Launch blur(kernels, "texture_blur");
         blur.arg(frameMemory_).arg(blurs_).arg(cl_uint(i)).arg(stretch_).arg(tileFlags_);
         blur.arg(i % 2 ? blurred_ : light_).arg(i % 2 ? light_ : blurred_).arg(result_);
-        launch(blur,
-               std::min<size_t>(tiles(), 64 * size_t(device_->info().computeUnits)) * PEL_TEXTURE_GROUP);
+        events_.push_back(device_->launch(blur, groupRange(*device_, groupsFor(*device_, tiles()))));
     }
     cl::Launch result(kernels, "texture_result");
     result.arg(frameMemory_).arg(light_).arg(result_).arg(memoryOf(albedo)).arg(memoryOf(out));

@@ -4,6 +4,7 @@
 // prepare_irradiance: (irradiance + through * back) * albedo^before. finish_scatter: irradiance + weight *
 // (scattered - irradiance), times albedo^after, written or added. One work-item is one pixel. Variants:
 // PEL_FORMAT_... of the images, 0 for an image that is not set.
+#include "lib/diffusion/item.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 #include "shared/blend.h"
@@ -30,11 +31,11 @@ static inline Vec3w albedoPower(__global const PelBlendFrame* frame,
     return vec3(pow(max0w(a.x), power), pow(max0w(a.y), power), pow(max0w(a.z), power));
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void prepare_irradiance(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void prepare_irradiance(
     __global const PelBlendFrame* restrict frame, __global const PelBlendMaterial* restrict materials,
     __global uchar* irradiance, __global uchar* ids, __global uchar* back, __global uchar* albedo,
     __global uchar* out) {
-    const uint x = get_global_id(0) % frame->width, y = get_global_id(0) / frame->width;
+    const uint x = itemOfFolded() % frame->width, y = itemOfFolded() / frame->width;
     if (y >= frame->height) return;
     __global const PelBlendMaterial* material = materialAt(frame, materials, ids, x, y);
     Vec3w e = loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y));
@@ -48,11 +49,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void p
     storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, x, y), e, 1);
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void finish_scatter(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void finish_scatter(
     __global const PelBlendFrame* restrict frame, __global const PelBlendMaterial* restrict materials,
     __global uchar* irradiance, __global uchar* scattered, __global uchar* ids, __global uchar* weight,
     __global uchar* albedo, __global uchar* out) {
-    const uint x = get_global_id(0) % frame->width, y = get_global_id(0) / frame->width;
+    const uint x = itemOfFolded() % frame->width, y = itemOfFolded() / frame->width;
     if (y >= frame->height) return;
     __global const PelBlendMaterial* material = materialAt(frame, materials, ids, x, y);
     Vec3w s = loadColor(PEL_FORMAT_SCATTERED, imageSpan(scattered, &frame->scattered, x, y));

@@ -10,6 +10,7 @@
 // Input: the pyramid. Output: packed flags per tile (shared/diffusion.h). One work-item: one tile.
 #undef PEL_WIDTH
 #define PEL_WIDTH 1
+#include "lib/diffusion/item.clh"
 #include "lib/diffusion/profile_table.clh"
 #include "lib/diffusion/pyramid.clh"
 
@@ -51,11 +52,13 @@ static inline float minSize(__global const PelPyramidLevel* level, __global cons
     return least < FLT_MAX ? least : 0.0f;
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void classify_scatter(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void classify_scatter(
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global uint* tiles, __global uint* restrict counters) {
-    const uint tile = get_global_id(0);
+    // Private memory that is indexed lies in global memory on GPUs.
+    __local float differences[PEL_PYRAMID_LEVELS][PEL_GROUP];
+    const uint tile = itemOfFolded(), item = get_local_id(0);
     if (tile >= frame->tilesX * frame->tilesY) return;
     const uint tileX = tile % frame->tilesX, tileY = tile / frame->tilesX;
     __global const PelPyramidLevel* own = &frame->level[PEL_TILE_LEVEL];
@@ -64,11 +67,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void c
     if (!(block[PEL_PLANE_AREA * own->stride] > 0.0f)) return;
     atomic_inc(&counters[PEL_COUNT_TILES_COVERED]);
     const float size = minSize(own, pyramid, tileX, tileY);
-    float difference2[PEL_PYRAMID_LEVELS];
     for (uint k = 0; k + 1 < frame->levels; ++k)
-        difference2[k] = maxDifference2(frame, pyramid, tileX, tileY, (int)k);
+        differences[k][item] = maxDifference2(frame, pyramid, tileX, tileY, (int)k);
     // the coarsest level has no coarser blocks
-    difference2[frame->levels - 1] = difference2[frame->levels - 2];
+    differences[frame->levels - 1][item] = differences[frame->levels - 2][item];
     uint levels = 0;
     bool near = false;
     float greatest = 0.0f;
@@ -83,7 +85,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void c
             const float beyond = 1.0f - fmin(within.x, fmin(within.y, within.z));
             if (beyond < MIN_LIGHT) break;
             end = k + 1;
-            error += PEL_ERROR_PER_DIFFERENCE2 * beyond * difference2[k];
+            error += PEL_ERROR_PER_DIFFERENCE2 * beyond * differences[k][item];
             if (k == 0) errorOfPixels = error;
         }
         if (!(error > LEFT_ALONE * frame->tolerance) && !frame->everyTile) continue;

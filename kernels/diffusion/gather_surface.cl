@@ -2,11 +2,12 @@
 // section 10).
 //
 // Inputs: images of irradiance, of positions (length) or depth, of ids (0 is background), of weights and
-// radii. Output: PEL_GATHER_FLOATS floats a pixel. gather_points copies the images; one work-item is a part
-// of a row. gather_areas measures pixels against their neighbours and flags tiles that have something to
-// gather; one work-item is one tile. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_POSITION or
+// radii. Output: PEL_GATHER_FLOATS floats a pixel. gather_points copies the images; one work-item is a
+// pixel. gather_areas measures pixels against their neighbours and flags tiles that have something to
+// gather; one work-group is one tile. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_POSITION or
 // PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SCATTER_WEIGHT (0: all 1).
 #include "lib/diffusion/gather.clh"
+#include "lib/diffusion/item.clh"
 #include "lib/diffusion/usable_light.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/position.clh"
@@ -15,58 +16,64 @@
 // turns away inside a pixel, its normal does not hold for the whole area.
 #define MIN_COSINE 0.25f
 
+#define COVERED (1u << 31)  // of the flags of a tile: a pixel of it may gather
+
 static inline float clampedShare(float v) {
     return v >= 0.0f ? fmin(v, 1.0f) : 0.0f;  // NaN: 0
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void gather_points(
+// Copies one pixel.
+static inline void copyPoint(__global const PelGatherFrame* frame, __global uchar* irradiance,
+                             __global uchar* position, __global uchar* ids, __global uchar* weight,
+                             __global float* points, uint x, uint y, uint* covered, uint* invalid) {
+    uint id = 1;
+#if PEL_FORMAT_MATERIAL
+    id = loadId(PEL_FORMAT_MATERIAL, imageSpan(ids, &frame->ids, x, y));
+#endif
+    if (id >= PEL_DIFFUSION_IDS || !(frame->sources[id >> 5] >> (id & 31) & 1u)) id = 0;
+    float4 p = (float4)(0.0f), e = (float4)(0.0f), pixel = (float4)(0.0f, 0.0f, 1.0f, 1.0f);
+    if (id) {
+        const Span span = imageSpan(position, &frame->position, x, y);
+#if PEL_FORMAT_POSITION
+        const Vec3w at = loadColor(PEL_FORMAT_POSITION, span);
+#else
+        const Vec3w at = positionFromDepth(frame->inverseViewProjection, frame->width, frame->height, x, y,
+                                           loadScalar(PEL_FORMAT_DEPTH, span));
+#endif
+        const Vec3w light = loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y));
+        const bool gathers = frame->materialOf[id] != 0, sound = finite3(at) && usableLight(light);
+        *covered = gathers, *invalid = gathers && !sound;
+        if (sound) {
+            p = (float4)(at.x - frame->origin[0], at.y - frame->origin[1], at.z - frame->origin[2], 0.0f);
+            e = (float4)(light.x, light.y, light.z, 0.0f);
+#if PEL_FORMAT_SCATTER_WEIGHT
+            const Span span = imageSpan(weight, &frame->weight, x, y);
+            pixel.w = clampedShare(loadScalar(PEL_FORMAT_SCATTER_WEIGHT, span));
+#if PEL_WEIGHT_COMPONENTS > 1
+            pixel.z = clampedShare(gatherComponent(PEL_FORMAT_SCATTER_WEIGHT, span, 1));
+#endif
+#endif
+        } else {
+            id = 0;
+        }
+    }
+    e.w = as_float(id);
+    __global float* to = points + PEL_GATHER_FLOATS * ((size_t)y * frame->width + x);
+    vstore4(p, 0, to + PEL_GATHER_POINT);
+    vstore4(e, 0, to + PEL_GATHER_LIGHT);
+    vstore4(pixel, 0, to + PEL_GATHER_PIXEL);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void gather_points(
     __global const PelGatherFrame* restrict frame, __global uchar* irradiance, __global uchar* position,
     __global uchar* ids, __global uchar* weight, __global float* points, __global uint* restrict counters) {
-    const uint y = get_global_id(0) / PEL_ROW_PARTS, part = get_global_id(0) % PEL_ROW_PARTS;
-    if (y >= frame->height) return;
+    __local uint sums[2];
+    const uint x = itemOfFolded() % frame->width, y = itemOfFolded() / frame->width;
     uint covered = 0, invalid = 0;
-    const uint end = (uint)((ulong)frame->width * (part + 1) / PEL_ROW_PARTS);
-    for (uint x = (uint)((ulong)frame->width * part / PEL_ROW_PARTS); x < end; ++x) {
-        uint id = 1;
-#if PEL_FORMAT_MATERIAL
-        id = loadId(PEL_FORMAT_MATERIAL, imageSpan(ids, &frame->ids, x, y));
-#endif
-        if (id >= PEL_DIFFUSION_IDS || !(frame->sources[id >> 5] >> (id & 31) & 1u)) id = 0;
-        float4 p = (float4)(0.0f), e = (float4)(0.0f), pixel = (float4)(0.0f, 0.0f, 1.0f, 1.0f);
-        if (id) {
-            const Span span = imageSpan(position, &frame->position, x, y);
-#if PEL_FORMAT_POSITION
-            const Vec3w at = loadColor(PEL_FORMAT_POSITION, span);
-#else
-            const Vec3w at = positionFromDepth(frame->inverseViewProjection, frame->width, frame->height, x,
-                                               y, loadScalar(PEL_FORMAT_DEPTH, span));
-#endif
-            const Vec3w light =
-                loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y));
-            const bool gathers = frame->materialOf[id] != 0, sound = finite3(at) && usableLight(light);
-            covered += gathers, invalid += gathers && !sound;
-            if (sound) {
-                p = (float4)(at.x - frame->origin[0], at.y - frame->origin[1], at.z - frame->origin[2], 0.0f);
-                e = (float4)(light.x, light.y, light.z, 0.0f);
-#if PEL_FORMAT_SCATTER_WEIGHT
-                const Span span = imageSpan(weight, &frame->weight, x, y);
-                pixel.w = clampedShare(loadScalar(PEL_FORMAT_SCATTER_WEIGHT, span));
-#if PEL_WEIGHT_COMPONENTS > 1
-                pixel.z = clampedShare(gatherComponent(PEL_FORMAT_SCATTER_WEIGHT, span, 1));
-#endif
-#endif
-            } else {
-                id = 0;
-            }
-        }
-        e.w = as_float(id);
-        __global float* to = points + PEL_GATHER_FLOATS * ((size_t)y * frame->width + x);
-        vstore4(p, 0, to + PEL_GATHER_POINT);
-        vstore4(e, 0, to + PEL_GATHER_LIGHT);
-        vstore4(pixel, 0, to + PEL_GATHER_PIXEL);
-    }
-    if (covered) atomic_add(&counters[PEL_COUNT_PIXELS_COVERED], covered);
-    if (invalid) atomic_add(&counters[PEL_COUNT_IRRADIANCE_INVALID], invalid);
+    if (y < frame->height)
+        copyPoint(frame, irradiance, position, ids, weight, points, x, y, &covered, &invalid);
+    addOfGroup(&counters[PEL_COUNT_PIXELS_COVERED], covered, &sums[0]);
+    addOfGroup(&counters[PEL_COUNT_IRRADIANCE_INVALID], invalid, &sums[1]);
 }
 
 typedef struct Step {
@@ -125,37 +132,43 @@ static inline void measurePixel(__global const PelGatherFrame* frame, __global f
     to[PEL_GATHER_PIXEL] = wide, to[PEL_GATHER_PIXEL + 1] = high;
 }
 
+// Measures a pixel. Returns what it adds to the flags of its tile.
+static inline uint measured(__global const PelGatherFrame* frame, __global float* points,
+                            __global const PelGatherMaterial* materials, uint x, uint y) {
+    const size_t at = PEL_GATHER_FLOATS * ((size_t)y * frame->width + x);
+    const uint id = as_uint(points[at + PEL_GATHER_LIGHT + 3]);
+    if (!id) return 0;
+    measurePixel(frame, points, x, y);
+    const uint material = frame->materialOf[id];
+    if (!material) return PEL_TILE_LIT;
+    const float4 pixel = vload4(0, points + at + PEL_GATHER_PIXEL);
+    // Where all taps would fall into the pixel itself, irradiance is right as it is.
+    const float radius = materials[material - 1].farthest * pixel.z;
+    const bool wide = radius > fmin(pixel.x, pixel.y) || frame->everywhere;
+    if (pixel.w > 0.0f && pixel.x > 0.0f && wide) return PEL_TILE_LIT | COVERED | PEL_TILE_GATHERS;
+    points[at + PEL_GATHER_PIXEL + 2] = -pixel.z;  // read by others alone
+    return PEL_TILE_LIT | COVERED;
+}
+
 // A tile: PEL_TILE_GATHERS, PEL_TILE_LIT.
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void gather_areas(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void gather_areas(
     __global const PelGatherFrame* restrict frame, __global float* points,
     __global const PelGatherMaterial* restrict materials, __global uint* tiles,
     __global uint* restrict counters) {
-    const uint tile = get_global_id(0);
-    if (tile >= frame->tilesX * frame->tilesY) return;
-    const uint left = tile % frame->tilesX * PEL_DIFFUSION_TILE,
-               top = tile / frame->tilesX * PEL_DIFFUSION_TILE;
-    bool gathers = false, covered = false, lit = false;
-    for (uint y = top; y < min(top + PEL_DIFFUSION_TILE, frame->height); ++y)
-        for (uint x = left; x < min(left + PEL_DIFFUSION_TILE, frame->width); ++x) {
-            const size_t at = PEL_GATHER_FLOATS * ((size_t)y * frame->width + x);
-            const uint id = as_uint(points[at + PEL_GATHER_LIGHT + 3]);
-            if (!id) continue;
-            lit = true;
-            measurePixel(frame, points, x, y);
-            const uint material = frame->materialOf[id];
-            if (!material) continue;
-            covered = true;
-            const float4 pixel = vload4(0, points + at + PEL_GATHER_PIXEL);
-            // Where all taps would fall into the pixel itself, irradiance is right as it is.
-            const float radius = materials[material - 1].farthest * pixel.z;
-            const bool wide = radius > fmin(pixel.x, pixel.y) || frame->everywhere;
-            if (pixel.w > 0.0f && pixel.x > 0.0f && wide) {
-                gathers = true;
-            } else {
-                points[at + PEL_GATHER_PIXEL + 2] = -pixel.z;  // read by others alone
-            }
-        }
-    tiles[tile] = (gathers ? PEL_TILE_GATHERS : 0) | (lit ? PEL_TILE_LIT : 0);
-    if (covered) atomic_inc(&counters[PEL_COUNT_TILES_COVERED]);
-    if (gathers) atomic_inc(&counters[PEL_COUNT_TILES_TAPPED]);
+    __local uint flags;
+    const uint tile = get_group_id(0), item = get_local_id(0);
+    if (item == 0) flags = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    uint mine = 0;
+    for (uint pixel = item; pixel < PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE; pixel += PEL_GROUP) {
+        const uint x = tile % frame->tilesX * PEL_DIFFUSION_TILE + pixel % PEL_DIFFUSION_TILE,
+                   y = tile / frame->tilesX * PEL_DIFFUSION_TILE + pixel / PEL_DIFFUSION_TILE;
+        if (x < frame->width && y < frame->height) mine |= measured(frame, points, materials, x, y);
+    }
+    if (mine) atomic_or(&flags, mine);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (item != 0) return;
+    tiles[tile] = flags & (PEL_TILE_GATHERS | PEL_TILE_LIT);
+    if (flags & COVERED) atomic_inc(&counters[PEL_COUNT_TILES_COVERED]);
+    if (flags & PEL_TILE_GATHERS) atomic_inc(&counters[PEL_COUNT_TILES_TAPPED]);
 }

@@ -7,6 +7,7 @@
 // level 2 of the screen's pyramid. A part counts where the sum over the texels differs from the irradiance,
 // or where classify_scatter has flagged the tile. Output: a bit per part. One work-item is one tile.
 // Variants: PEL_HIDDEN.
+#include "lib/diffusion/item.clh"
 #include "lib/diffusion/windowed.clh"
 
 #define PART_LEVEL 2
@@ -43,14 +44,6 @@ static inline float maxStep(__global const float* block, uint stride, uint level
 }
 
 #if PEL_HIDDEN
-// The most light that can come in within the margin of the receiver.
-static inline float lightNear(__global const PelProfileTable* tables, __global const float* nodes,
-                              __global const PelLightMap* maps, uint mapCount, __global const float* lights,
-                              int number, Receiver* receiver, uint* texels) {
-    const float3 light = farLight(maps, mapCount, lights, nodes, tables[number], receiver, texels);
-    return fmax(light.x, fmax(light.y, light.z));
-}
-
 // The most light that occluded texels can add to a tile. The block of a tile stands for one surface. Parts
 // of the tile that lie further away, such as an ear in front of a neck, are tested by themselves.
 static inline float changeByLight(__global const PelDiffusionFrame* frame, __global const float* pyramid,
@@ -58,24 +51,26 @@ static inline float changeByLight(__global const PelDiffusionFrame* frame, __glo
                                   __global const float* nodes, __global const PelLightMap* maps,
                                   uint mapCount, __global const float* lights, uint* texels) {
     __global const PelPyramidLevel *whole = &frame->level[PEL_TILE_LEVEL], *part = &frame->level[PART_LEVEL];
-    __global const float* block = pyramid + pyramidRow(whole, (int)tileY) + tileX;
+    const uint side = PEL_DIFFUSION_TILE >> PART_LEVEL;
     Receiver receiver;
     receiver.rho = 0.0f;
-    const int number = receiverOf(frame, block, whole->stride, &receiver);
-    if (number < 0) return 0.0f;
-    receiver.margin = 0.71f * PEL_DIFFUSION_TILE * maxStep(block, whole->stride, PEL_TILE_LEVEL);
-    float change = lightNear(tables, nodes, maps, mapCount, lights, number, &receiver, texels);
-    const float3 middle = receiver.p;
-    const float around = receiver.margin;
-    const uint side = PEL_DIFFUSION_TILE >> PART_LEVEL;
-    for (uint k = 0; k < side * side; ++k) {
-        const uint x = tileX * side + k % side, y = tileY * side + k / side;
-        if (x >= part->width || y >= part->height) continue;
-        block = pyramid + pyramidRow(part, (int)y) + x;
-        const int other = receiverOf(frame, block, part->stride, &receiver);
-        if (other < 0 || (other == number && distance(receiver.p, middle) < around)) continue;
-        receiver.margin = 0.71f * (float)(1 << PART_LEVEL) * maxStep(block, part->stride, PART_LEVEL);
-        change = fmax(change, lightNear(tables, nodes, maps, mapCount, lights, other, &receiver, texels));
+    float3 middle = (float3)(0.0f);
+    float change = 0.0f, around = 0.0f;
+    int number = -1;
+    for (uint k = 0; k <= side * side; ++k) {  // 0: the whole tile
+        const uint x = k ? tileX * side + (k - 1) % side : tileX,
+                   y = k ? tileY * side + (k - 1) / side : tileY;
+        const uint atLevel = k ? PART_LEVEL : PEL_TILE_LEVEL;
+        __global const PelPyramidLevel* level = k ? part : whole;
+        if (x >= level->width || y >= level->height) continue;
+        __global const float* block = pyramid + pyramidRow(level, (int)y) + x;
+        const int table = receiverOf(frame, block, level->stride, &receiver);
+        if (k == 0 && table < 0) return 0.0f;
+        if (table < 0 || (k && table == number && distance(receiver.p, middle) < around)) continue;
+        receiver.margin = 0.71f * (float)(1 << atLevel) * maxStep(block, level->stride, atLevel);
+        if (k == 0) number = table, middle = receiver.p, around = receiver.margin;
+        const float3 light = farLight(maps, mapCount, lights, nodes, tables[table], &receiver, texels);
+        change = fmax(change, fmax(light.x, fmax(light.y, light.z)));
     }
     return change;
 }
@@ -99,12 +94,12 @@ static inline bool lightMatters(__global const PelDiffusionFrame* frame, __globa
 }
 #endif
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_classify(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_classify(
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global uint* tiles, __global const PelLightMap* restrict maps, uint mapCount,
     __global const float* restrict lights, __global uint* parts, __global uint* restrict counters) {
-    const uint tile = get_global_id(0);
+    const uint tile = itemOfFolded();
     if (tile >= frame->tilesX * frame->tilesY) return;
     const uint tileX = tile % frame->tilesX, tileY = tile / frame->tilesX;
     uint texels = 0;

@@ -56,7 +56,7 @@ static inline bool isBesideReached(__global const PelDiffusionFrame* frame, __gl
     return false;
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_hidden(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_hidden(
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global const uint* restrict tiles, __global const float* sums, __global const uint* restrict change,
@@ -69,7 +69,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
         const bool reached = tiles[tile] & PEL_TILE_HIDDEN;
         if (!reached && !isBesideReached(frame, tiles, tile)) continue;
-        for (uint item = get_local_id(0); item < side * side; item += PEL_DIFFUSION_GROUP) {
+        for (uint item = get_local_id(0); item < side * side; item += PEL_GROUP) {
             const uint x = tile % frame->tilesX * side + item % side,
                        y = tile / frame->tilesX * side + item / side;
             if (x >= level->width || y >= level->height) continue;

@@ -7,6 +7,11 @@
 #include "lib/diffusion/light_space.clh"
 #include "lib/diffusion/pyramid.clh"
 
+#if PEL_WIDTH == 1
+#define UNROLL _Pragma("unroll")
+#else
+#define UNROLL
+#endif
 #define APART 1.5f  // widths of a block between two clusters
 
 typedef struct Cluster {
@@ -79,7 +84,7 @@ static inline bool cellsMatter(__global const PelLightMap* map, __global const u
     return false;
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_reduce(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_reduce(
     __global const PelLightMap* restrict maps, uint index, uint to, __global const uchar* restrict before,
     __global const uchar* now, __global float* pyramid) {
     __global const PelLightMap* map = maps + index;
@@ -95,14 +100,18 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     Cluster clusters[8];
     loadClusters(upper, stride, &clusters[0], &clusters[1]);
     loadClusters(lower, stride, &clusters[2], &clusters[3]);
-    uint count = 4;
     if (points == 2) {
         loadClusters(upper + layer, stride, &clusters[4], &clusters[5]);
         loadClusters(lower + layer, stride, &clusters[6], &clusters[7]);
-        count = 8;
+    } else if (PEL_WIDTH == 1) {
+        for (uint k = 4; k < 8; ++k) clusters[k] = clusters[0], clusters[k].flux = 0.0f;
     }
+    // One lane: loops of constant length are unrolled, and the clusters stay in registers.
+    const uint count = PEL_WIDTH == 1 || points == 2 ? 8 : 4;
     Cluster first = clusters[0];
-    for (uint k = 1; k < count; ++k) first = chooseCluster(first, clusters[k], clusters[k].flux > first.flux);
+    UNROLL for (uint k = 1; k < count; ++k) {
+        first = chooseCluster(first, clusters[k], clusters[k].flux > first.flux);
+    }
     if (!anyw(first.flux > 0.0f)) {
         storew((floatw)(0.0f), at + PEL_LIGHT_FLUX * coarse->stride, pyramid);
         storew((floatw)(0.0f), at + (lightPlanes(1) + PEL_LIGHT_FLUX) * coarse->stride, pyramid);
@@ -110,7 +119,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     }
     Cluster second = first;
     floatw farthest = 0.0f;
-    for (uint k = 0; k < count; ++k) {
+    UNROLL for (uint k = 0; k < count; ++k) {
         const floatw distance2 = selectw((floatw)(0.0f), apart2(clusters[k], first), clusters[k].flux > 0.0f);
         second = chooseCluster(second, clusters[k], distance2 > farthest);
         farthest = fmax(farthest, distance2);
@@ -120,7 +129,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     Cluster a, b;
     a.flux = a.extent = b.flux = b.extent = 0.0f;
     a.p = b.p = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
-    for (uint k = 0; k < count; ++k) {
+    UNROLL for (uint k = 0; k < count; ++k) {
         const maskw there = clusters[k].flux > 0.0f;
         const floatw toFirst = apart2(clusters[k], first), toSecond = apart2(clusters[k], second);
         const maskw beyond = two & (toSecond < toFirst);

@@ -142,7 +142,7 @@ static inline void fetchDepths(__global const PelLightMap* map, __global const u
     }
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_seen(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_seen(
     __global const PelDiffusionFrame* restrict frame, __global uchar* position, __global uchar* ids,
     __global const PelLightMap* restrict maps, uint index, __global uchar* texels,
     __global const float* restrict pyramid, volatile __global uint* seen) {

@@ -54,7 +54,7 @@ static inline maskw isBeside(Vec3w p, Vec3w q, floatw most, maskw seen) {
 }
 #endif
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_texels(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_texels(
     __global const PelLightMap* restrict maps, uint index, __global uchar* texels,
     __global const uchar* restrict seen, __global const uchar* restrict before, __global uchar* now,
     __global float* pyramid) {

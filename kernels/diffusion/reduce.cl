@@ -110,7 +110,7 @@ static inline Child largerChild(Child a, Child b) {
     return larger;
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void reduce_surface(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void reduce_surface(
     __global const PelDiffusionFrame* restrict frame, __global float* pyramid, uint to) {
     __global const PelPyramidLevel *fine = &frame->level[to - 1], *coarse = &frame->level[to];
     const uint across = (coarse->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;

@@ -2,7 +2,8 @@
 // beyond [0, 1].
 //
 // Inputs: texture, texture coordinates, ids, irradiance. Output: an image like the irradiance. One
-// work-item takes tiles. Variants: PEL_FORMAT_....
+// work-group takes a tile. Variants: PEL_FORMAT_....
+#include "lib/diffusion/item.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 #include "shared/diffusion.h"
@@ -33,39 +34,39 @@ static inline Vec3w sampleAt(__global const PelTextureSample* s, __global uchar*
                  mixed(texelAt(s, texture, x0, y1), texelAt(s, texture, x1, y1), x - left), y - top);
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void sample_texture(
+// Returns 1 if the pixel takes its light from the texture.
+static inline uint samplePixel(__global const PelTextureSample* s, __global uchar* texture,
+                               __global uchar* uv, __global uchar* ids, __global uchar* irradiance,
+                               __global uchar* out, uint x, uint y) {
+    uint id = 1;
+#if PEL_FORMAT_MATERIAL
+    id = loadId(PEL_FORMAT_MATERIAL, imageSpan(ids, &s->ids, x, y));
+#endif
+    const bool takes = id == s->id;
+    if (!takes && !s->copies) return 0;
+    const Span at = imageSpan(uv, &s->uv, x, y);
+    storeColor(PEL_FORMAT_OUT, imageSpan(out, &s->out, x, y),
+               takes ? sampleAt(s, texture, gatherComponent(PEL_FORMAT_UV, at, 0),
+                                gatherComponent(PEL_FORMAT_UV, at, 1))
+                     : loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &s->irradiance, x, y)),
+               1);
+    return takes;
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void sample_texture(
     __global const PelTextureSample* restrict s, __global uchar* texture, __global uchar* uv,
     __global uchar* ids, __global uchar* irradiance, __global uchar* out, __global uint* restrict counters) {
-    const uint tilesY = (s->height + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE;
-    uint pixels = 0, tiles = 0;
-    for (uint tile = get_global_id(0); tile < s->tilesX * tilesY; tile += get_global_size(0)) {
-        const uint left = tile % s->tilesX * PEL_TEXTURE_TILE, top = tile / s->tilesX * PEL_TEXTURE_TILE;
-        uint taken = 0;
-        for (uint y = top; y < min(top + PEL_TEXTURE_TILE, s->height); ++y)
-            for (uint x = left; x < min(left + PEL_TEXTURE_TILE, s->width); ++x) {
-                uint id = 1;
-#if PEL_FORMAT_MATERIAL
-                id = loadId(PEL_FORMAT_MATERIAL, imageSpan(ids, &s->ids, x, y));
-#endif
-                const Span to = imageSpan(out, &s->out, x, y);
-                if (id == s->id) {
-                    const Span at = imageSpan(uv, &s->uv, x, y);
-                    storeColor(PEL_FORMAT_OUT, to,
-                               sampleAt(s, texture, gatherComponent(PEL_FORMAT_UV, at, 0),
-                                        gatherComponent(PEL_FORMAT_UV, at, 1)),
-                               1);
-                    ++taken;
-                } else if (s->copies) {
-                    storeColor(PEL_FORMAT_OUT, to,
-                               loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &s->irradiance, x, y)),
-                               1);
-                }
-            }
-        pixels += taken, tiles += taken > 0;
+    __local uint sum;
+    const uint left = get_group_id(0) % s->tilesX * PEL_TEXTURE_TILE,
+               top = get_group_id(0) / s->tilesX * PEL_TEXTURE_TILE;
+    uint taken = 0;
+    for (uint i = get_local_id(0); i < PEL_TEXTURE_TILE * PEL_TEXTURE_TILE; i += PEL_GROUP) {
+        const uint x = left + i % PEL_TEXTURE_TILE, y = top + i / PEL_TEXTURE_TILE;
+        if (x < s->width && y < s->height) taken += samplePixel(s, texture, uv, ids, irradiance, out, x, y);
     }
-    if (!pixels) return;
-    atomic_add(&counters[PEL_COUNT_TILES_TAPPED], tiles);
-    atomic_add(&counters[PEL_COUNT_PIXELS_COVERED], pixels);
-    atomic_add(&counters[PEL_COUNT_PIXELS_TAPPED], pixels);
-    atomic_add(&counters[PEL_COUNT_TAPS], 4 * pixels);
+    addOfGroup(&counters[PEL_COUNT_PIXELS_COVERED], taken, &sum);
+    if (get_local_id(0) != 0 || !sum) return;
+    atomic_inc(&counters[PEL_COUNT_TILES_TAPPED]);
+    atomic_add(&counters[PEL_COUNT_PIXELS_TAPPED], sum);
+    atomic_add(&counters[PEL_COUNT_TAPS], 4 * sum);
 }

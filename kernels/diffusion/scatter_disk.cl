@@ -53,7 +53,7 @@ static inline float4 gatherDisk(__global const PelGatherFrame* frame, __global c
     return e + pixel.w * (scattered - e);
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_disk(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_disk(
     __global const PelGatherFrame* restrict frame, __global const float* restrict points,
     __global const PelGatherMaterial* restrict materials, __global const PelGatherTap* restrict taps,
     __global const float* restrict nodes, __global const uint* restrict tiles, __global uchar* irradiance,
@@ -63,7 +63,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
         const bool gathers = tiles[tile] & PEL_TILE_GATHERS;
         if (!gathers && frame->inPlace) continue;
-        for (uint item = get_local_id(0); item < PEL_TILE_ITEMS; item += PEL_DIFFUSION_GROUP) {
+        for (uint item = get_local_id(0); item < PEL_TILE_ITEMS; item += PEL_GROUP) {
             const uint x = columnOf(frame, tile, item), y = rowOf(frame, tile, item);
             if (x >= frame->width || y >= frame->height) continue;
             const size_t at = PEL_GATHER_FLOATS * ((size_t)y * frame->width + x);

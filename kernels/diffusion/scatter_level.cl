@@ -32,7 +32,7 @@ static inline void fetchNextBlocks(__global const float* at, uint stride) {
     }
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_level(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_level(
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global const uint* restrict tiles, uint level, __global float* sums, __global uint* restrict counters) {

@@ -197,7 +197,7 @@ static inline bool scatterPixel(__global const PelDiffusionFrame* frame, __globa
     return true;
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_light(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_light(
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global const uint* restrict parts, __global const PelLightMap* restrict maps, uint mapCount,

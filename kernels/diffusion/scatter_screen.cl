@@ -133,7 +133,7 @@ static inline void fetchNextTile(__global const PelDiffusionFrame* frame, __glob
     }
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_screen(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_screen(
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global const uint* restrict tiles, __global const float* sums, __global const float* restrict hidden,
@@ -146,7 +146,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
         const uint word = tiles[tile];
         if (!word && frame->inPlace) continue;
         const uint items = PEL_DIFFUSION_TILE / PEL_WIDTH * PEL_DIFFUSION_TILE;
-        for (uint item = get_local_id(0); item < items; item += PEL_DIFFUSION_GROUP) {
+        for (uint item = get_local_id(0); item < items; item += PEL_GROUP) {
             const uint x = tile % frame->tilesX * PEL_DIFFUSION_TILE +
                            item % (PEL_DIFFUSION_TILE / PEL_WIDTH) * PEL_WIDTH;
             const uint y =

@@ -99,7 +99,7 @@ static inline float4 filterPixel(__global const PelGatherFrame* frame, __global 
     return filterLine(&line, taps, radius, taken);
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void filter_rows(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void filter_rows(
     __global const PelGatherFrame* restrict frame, __global const float* restrict points,
     __global const PelGatherMaterial* restrict materials, __global const PelGatherTap* restrict taps,
     __global const float* restrict nodes, __global const uint* restrict tiles, __global float* rows,
@@ -108,7 +108,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void f
     uint taken = 0;
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
         if (!tiles[tile]) continue;
-        for (uint item = get_local_id(0); item < PEL_TILE_ITEMS; item += PEL_DIFFUSION_GROUP) {
+        for (uint item = get_local_id(0); item < PEL_TILE_ITEMS; item += PEL_GROUP) {
             const uint x = columnOf(frame, tile, item), y = rowOf(frame, tile, item);
             if (x >= frame->width || y >= frame->height) continue;
             const size_t at = (size_t)y * frame->width + x;
@@ -125,7 +125,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void f
     if (taken) atomic_add(&counters[PEL_COUNT_TAPS], taken);
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void filter_columns(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void filter_columns(
     __global const PelGatherFrame* restrict frame, __global const float* restrict points,
     __global const PelGatherMaterial* restrict materials, __global const PelGatherTap* restrict taps,
     __global const float* restrict nodes, __global const uint* restrict tiles, __global const float* rows,
@@ -135,7 +135,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void f
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
         const bool gathers = tiles[tile] & PEL_TILE_GATHERS;
         if (!gathers && frame->inPlace) continue;
-        for (uint item = get_local_id(0); item < PEL_TILE_ITEMS; item += PEL_DIFFUSION_GROUP) {
+        for (uint item = get_local_id(0); item < PEL_TILE_ITEMS; item += PEL_GROUP) {
             const uint x = columnOf(frame, tile, item), y = rowOf(frame, tile, item);
             if (x >= frame->width || y >= frame->height) continue;
             const size_t at = (size_t)y * frame->width + x;

@@ -5,6 +5,7 @@
 // with Gaussian weights of lengths on the surface, over covered texels of the same island. texture_result:
 // times albedo^after; texels within two of a covered one take the value of the nearest covered texel. One
 // work-group takes tiles with covered texels, or texels. Variants: PEL_FORMAT_....
+#include "lib/diffusion/item.clh"
 #include "lib/diffusion/texels.clh"
 #include "lib/diffusion/usable_light.clh"
 #include "lib/image/image.clh"
@@ -27,11 +28,11 @@ static inline Vec3w albedoAt(__global const PelTextureFrame* frame, __global uch
     return vec3(1.0f, 1.0f, 1.0f);
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_light(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_light(
     __global const PelTextureFrame* restrict frame, __global const float4* restrict stretch,
     __global uchar* irradiance, __global uchar* albedo, __global float4* light,
     __global uint* restrict counters) {
-    const uint x = get_global_id(0) % frame->width, y = get_global_id(0) / frame->width;
+    const uint x = itemOfFolded() % frame->width, y = itemOfFolded() / frame->width;
     if (y >= frame->height) return;
     const size_t at = (size_t)y * frame->width + x;
     float4 result = (float4)(0.0f);
@@ -80,7 +81,7 @@ static inline float4 blurTexel(__global const float4* stretch, __global const fl
     return sum.w > 0.0f ? (float4)(sum.xyz / sum.w, 1.0f) : (float4)(0.0f);
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_blur(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_blur(
     __global const PelTextureFrame* restrict frame, __global const PelTextureBlur* restrict blurs, uint which,
     __global const float4* restrict stretch, __global const uint* restrict tiles,
     __global const float4* light, __global float4* blurred, __global float4* result) {
@@ -92,8 +93,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void tex
         if (!tiles[tile]) continue;
         const uint left = tile % frame->tilesX * PEL_TEXTURE_TILE,
                    top = tile / frame->tilesX * PEL_TEXTURE_TILE;
-        for (uint item = get_local_id(0); item < PEL_TEXTURE_TILE * PEL_TEXTURE_TILE;
-             item += PEL_TEXTURE_GROUP) {
+        for (uint item = get_local_id(0); item < PEL_TEXTURE_TILE * PEL_TEXTURE_TILE; item += PEL_GROUP) {
             const uint x = left + item % PEL_TEXTURE_TILE, y = top + item / PEL_TEXTURE_TILE;
             if (x >= frame->width || y >= frame->height) continue;
             const size_t at = (size_t)y * frame->width + x;
@@ -107,10 +107,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void tex
     }
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_result(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_result(
     __global const PelTextureFrame* restrict frame, __global const float4* light,
     __global const float4* result, __global uchar* albedo, __global uchar* out) {
-    const uint x = get_global_id(0) % frame->width, y = get_global_id(0) / frame->width;
+    const uint x = itemOfFolded() % frame->width, y = itemOfFolded() / frame->width;
     if (y >= frame->height) return;
     const size_t at = (size_t)y * frame->width + x;
     float4 best = (float4)(0.0f);

@@ -2,10 +2,9 @@
 // surface under each pixel (docs/mathematics.md, sections 9 and 10).
 //
 // Inputs: images of irradiance, of positions (length) or depth, of ids (0 is background). Output: level 0
-// of the pyramid. surface_points copies the images; one work-item is a part of a row. surface_areas
-// measures pixels against their neighbours; one work-item is PEL_WIDTH pixels of a row. Variants:
-// PEL_FORMAT_IRRADIANCE, PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id
-// 1).
+// of the pyramid. surface_points copies the images, surface_areas measures pixels against their
+// neighbours; one work-item is PEL_WIDTH pixels of a row. Variants: PEL_FORMAT_IRRADIANCE,
+// PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1).
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/pyramid.clh"
 #include "lib/diffusion/usable_light.clh"
@@ -61,17 +60,17 @@ static inline void copyPoints(__global const PelDiffusionFrame* frame, __global 
     storePlane(pyramid, row + PEL_PLANE_ID * stride, as_floatw(id), mine);
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void surface_points(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void surface_points(
     __global const PelDiffusionFrame* restrict frame, __global uchar* irradiance, __global uchar* position,
     __global uchar* ids, __global float* pyramid, __global uint* restrict counters) {
-    const uint y = get_global_id(0) / PEL_ROW_PARTS, part = get_global_id(0) % PEL_ROW_PARTS;
-    if (y >= frame->height) return;
-    const uint vectors = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH;
+    __local uint sums[2];
+    const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
     uint covered = 0, invalid = 0;
-    for (uint v = vectors * part / PEL_ROW_PARTS; v < vectors * (part + 1) / PEL_ROW_PARTS; ++v)
-        copyPoints(frame, irradiance, position, ids, pyramid, v * PEL_WIDTH, y, &covered, &invalid);
-    if (covered) atomic_add(&counters[PEL_COUNT_PIXELS_COVERED], covered);
-    if (invalid) atomic_add(&counters[PEL_COUNT_IRRADIANCE_INVALID], invalid);
+    if (y < frame->height)
+        copyPoints(frame, irradiance, position, ids, pyramid, itemOfFolded() % across * PEL_WIDTH, y,
+                   &covered, &invalid);
+    addOfGroup(&counters[PEL_COUNT_PIXELS_COVERED], covered, &sums[0]);
+    addOfGroup(&counters[PEL_COUNT_IRRADIANCE_INVALID], invalid, &sums[1]);
 }
 
 typedef struct Step {
@@ -100,7 +99,7 @@ static inline Step shorterStep(__global const float* pyramid, size_t here, long 
     return step;
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void surface_areas(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void surface_areas(
     __global const PelDiffusionFrame* restrict frame, __global float* pyramid) {
     const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
     if (y >= frame->height) return;

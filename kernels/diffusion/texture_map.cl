@@ -4,16 +4,17 @@
 // is one triangle. texture_tiles: flags of tiles with such a texel; one work-item is one tile.
 // texture_stretch: length of a texel along u and v, and its island; texture_draw: values of vertices; one
 // work-item is one texel. Lengths are in the unit of positions.
+#include "lib/diffusion/item.clh"
 #include "lib/diffusion/texels.clh"
 #include "lib/image/image.clh"
 #include "lib/mesh/mesh_vertex.clh"
 
 #define INSIDE -1e-5f  // share of a vertex at the border, with the rounding of its texture coordinates
 
-__kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_owner(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_owner(
     __global const PelTextureFrame* restrict frame, __global const uint* restrict indices,
     __global const float* restrict uvs, __global uint* owners) {
-    const uint triangle = get_global_id(0);
+    const uint triangle = itemOfFolded();
     if (triangle >= frame->triangles) return;
     const UvTriangle t = uvTriangle(frame, indices, uvs, triangle);
     if (!(fabs(t.twice) > 0.0f)) return;
@@ -29,10 +30,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void tex
         }
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_tiles(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_tiles(
     __global const PelTextureFrame* restrict frame, __global const uint* restrict owners,
     __global uint* tiles, __global uint* restrict counters) {
-    const uint tile = get_global_id(0), tilesY = (frame->height + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE;
+    const uint tile = itemOfFolded(), tilesY = (frame->height + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE;
     if (tile >= frame->tilesX * tilesY) return;
     const uint left = tile % frame->tilesX * PEL_TEXTURE_TILE, top = tile / frame->tilesX * PEL_TEXTURE_TILE;
     uint covered = 0;
@@ -45,12 +46,12 @@ __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void tex
     atomic_add(&counters[PEL_COUNT_TEXELS_COVERED], covered);
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_stretch(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_stretch(
     __global const PelTextureFrame* restrict frame, __global const uint* restrict indices,
     __global const float* restrict uvs, __global const uint* restrict islands,
     __global const float* restrict positions, VertexLayout layout, __global const uint* restrict owners,
     __global float4* stretch) {
-    const size_t texel = get_global_id(0);
+    const size_t texel = itemOfFolded();
     if (texel >= (size_t)frame->width * frame->height) return;
     float4 result = (float4)(0.0f);
     const uint owner = owners[texel];
@@ -84,11 +85,11 @@ static inline uint nearestOwner(__global const PelTextureFrame* frame, __global 
     return owner;
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_draw(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_draw(
     __global const PelTextureFrame* restrict frame, __global const uint* restrict indices,
     __global const float* restrict uvs, __global const float* restrict values, VertexLayout layout,
     __global const uint* restrict owners, uint unit, __global uchar* out) {
-    const uint x = get_global_id(0) % frame->width, y = get_global_id(0) / frame->width;
+    const uint x = itemOfFolded() % frame->width, y = itemOfFolded() / frame->width;
     if (y >= frame->height) return;
     const uint owner = nearestOwner(frame, owners, (int)x, (int)y);
     float3 value = (float3)(0.0f);

@@ -38,8 +38,6 @@
 #define PEL_TILE_HIDDEN (1u << 16)  // occluded light may come in
 #define PEL_DIFFUSION_TILE 16       // pixels along a side: blocks of level 4
 #define PEL_TILE_LEVEL 4
-#define PEL_DIFFUSION_GROUP 16  // work-items
-#define PEL_ROW_PARTS 4         // of a row; each is copied by one work-item
 #define PEL_DIFFUSION_IDS 256
 #define PEL_MAX_IRRADIANCE 1e15f  // larger values count as invalid: sums over areas would overflow
 

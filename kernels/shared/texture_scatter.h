@@ -4,8 +4,7 @@
 #define PEL_SHARED_TEXTURE_SCATTER
 #include "shared/shade.h"
 
-#define PEL_TEXTURE_GROUP 16  // work-items
-#define PEL_TEXTURE_TILE 16   // texels along a side
+#define PEL_TEXTURE_TILE 16  // texels along a side
 
 typedef struct PelTextureFrame {
     PelUint32 width;  // texels
