@@ -69,7 +69,7 @@ class Manifest:
         PellucidError
             INVALID_ARGUMENT and the like: the entry cannot be made anywhere. DEVICE, OUT_OF_MEMORY: not here.
         """
-        return bytes(_in_flight.aside(lambda: self._handle.make(device._handle, index)))
+        return bytes(_in_flight.interruptible(lambda: self._handle.make(device._handle, index)))
 
     def holds(self, index: int, file: bytes) -> bool:
         """Whether these bytes are entry `index`: whole, unchanged, and made for this request."""

@@ -105,8 +105,7 @@ def main() -> int:
     better = viewer.session.better_unit() if isinstance(viewer.session, Session) else None
     if better is not None:
         print(f"pellucid view: {viewer.session.size_text()} If its lengths are in {UNITS[better]}: --unit-mm "
-              f"{better:g}",
-              file=sys.stderr)
+              f"{better:g}", file=sys.stderr)
     print(address(keys.key), flush=True)
     if not a.no_browser:
         import webbrowser

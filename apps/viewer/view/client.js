@@ -23,14 +23,14 @@
     socket.onclose = () => setTimeout(connect, 1000);
     socket.onmessage = async (event) => {
       if (typeof event.data === 'string') {
-        const told = JSON.parse(event.data);
-        if ('busy' in told) {
+        const message = JSON.parse(event.data);
+        if ('busy' in message) {
           const busy = document.getElementById('pel-busy');
-          busy.style.display = told.busy ? 'block' : 'none';
-          busy.textContent = told.busy;
+          busy.style.display = message.busy ? 'block' : 'none';
+          busy.textContent = message.busy;
           return;
         }
-        pending = told;
+        pending = message;
         document.getElementById('pel-error').style.display = pending.error ? 'block' : 'none';
         document.getElementById('pel-message').textContent = pending.error;
         if (pending.error) say({kind: 'taken'});

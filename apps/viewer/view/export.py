@@ -11,16 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from ..files import write_image
+from .._types import Ambient, Camera, ShaderOptions
+from ..files import _files, write_image
 from .look import SKIN, Look
 from .passes import tinted
 from .session import Session
 
 CHANNELS = {"material": ("Id", "I"), "position": ("Position", "XYZ"),
-            "normal_geometric": ("NormalGeometric", "XYZ"),
-            "normal_shading": ("NormalShading", "XYZ"), "curvature": ("Curvature", "V"),
-            "albedo": ("Albedo", "RGB"),
-            "uv": ("Uv", "XY")}
+            "normal_geometric": ("NormalGeometric", "XYZ"), "normal_shading": ("NormalShading", "XYZ"),
+            "curvature": ("Curvature", "V"), "albedo": ("Albedo", "RGB"), "uv": ("Uv", "XY")}
+# What the C++ sets.
 MATERIAL_KEYS = ("scattering", "specular", "roughness", "f0", "specular_model", "roughness2", "lobe_mix",
                  "shadow_filter_width")
 PROFILE_KEYS = ("transmission", "diffusion_radius", "deep_scatter_color")  # of materials with a profile
@@ -31,65 +31,30 @@ EYE_KEYS = ("center", "gaze", "up", "sclera_radius", "cornea_radius", "limbus_ra
             "tear_roughness")
 
 
-def _toml(value: Any) -> str:
-    if isinstance(value, str):
-        return json.dumps(value)
-    if isinstance(value, (list, tuple, np.ndarray)):
-        return "[" + ", ".join(_toml(v) for v in np.asarray(value).ravel().tolist()) + "]"
-    if isinstance(value, bool):
-        return str(value).lower()
-    return repr(float(value)) if isinstance(value, float) else str(value)
-
-
-def _plain(value: Any) -> Any:
-    return value.name.lower() if isinstance(value, IntEnum) else value
-
-
-def _lines(**values: Any) -> str:
-    return "".join(f"{key} = {_toml(value)}\n" for key, value in values.items())
-
-
-def scene_text(session: Session, look: Look, width: int, height: int) -> str:
+def write_scene(path: Path, session: Session, look: Look, width: int, height: int) -> None:
     """The scene file of the picture; floats keep their bits."""
     eye, _ = session.camera(width / height)
-    text = _lines(version=2, unit_mm=float(session.mm),
-                  target_error=float(np.float32(look.target_error))) + "\n[channels]\n"
-    for key, (name, components) in CHANNELS.items():
-        if key != "uv" or look.method == "texture":
-            names = [f"{name}.{c}" for c in components]
-            text += f"{key} = {json.dumps(names if len(names) > 1 else names[0])}\n"
-    text += "\n[camera]\n" + _lines(position=np.float32(eye))
-    text += "\n[ambient]\n" + _lines(constant=np.float32([session.ambient(look)] * 3))
-    for i, (light, map) in enumerate(session.lights(look)):
-        text += "\n[[light]]\n" + _lines(type="directional", to_light=light.to_light, color=light.color)
-        if map is not None:
-            text += "[light.shadow_map]\n" + _lines(
-                file=f"shadow_{i}.exr", channel="Z", projection="parallel",
-                world_to_shadow=light.world_to_shadow,
-                depth_range=light.shadow_depth_range, filter_texels=light.shadow_filter_texels)
-    for id, m in session.materials(look).items():
-        text += "\n[[material]]\n" + _lines(id=id)
-        keys = [*MATERIAL_KEYS, "thickness_taps"]
-        if m.profile is not None:
-            text += _lines(profile="profile.toml" if look.profile == "custom" else look.profile)
-            keys += PROFILE_KEYS
-        if look.method == "texture" and id == SKIN:
-            text += _lines(scattered_texture="scattered.exr")
-        text += _lines(**{key: _plain(getattr(m, key)) for key in keys if key not in OPTIONAL
-                          or np.any(getattr(m, key))})
-    for id, eye in session.eyes(look).items():
-        text += "\n[[eye]]\n" + _lines(material=id, **{key: getattr(eye, key) for key in EYE_KEYS})
-        if look.iris_texture:
-            text += _lines(iris_texture="iris.exr")
-        if look.iris_profile:
-            text += _lines(iris_profile=look.iris_profile)
-    return text
+    channels = {key: [f"{name}.{c}" for c in components] for key, (name, components) in CHANNELS.items()
+                if key != "uv" or look.method == "texture"}
+    options = ShaderOptions(target_error=look.target_error, millimetres_per_unit=session.mm)
+    profile = "profile.toml" if look.profile == "custom" else look.profile
+    _files.write_scene(
+        str(path), channels,
+        [(id, m._data.tobytes(), profile if m.profile else "",
+          "scattered.exr" if look.method == "texture" and id == SKIN else "")
+         for id, m in session.materials(look).items()],
+        [(light._data.tobytes(), "" if map is None else f"shadow_{i}.exr")
+         for i, (light, map) in enumerate(session.lights(look))],
+        [(id, eye._data.tobytes(), "iris.exr" if look.iris_texture else "", look.iris_profile)
+         for id, eye in session.eyes(look).items()],
+        Ambient(constant=[session.ambient(look)] * 3)._data.tobytes(),
+        Camera(position=eye)._data.tobytes(), options._data.tobytes())
 
 
 def profile_text(look: Look) -> str:
     """The profile file of the look's own profile."""
-    return _lines(name="custom", kind="burley", unit="mm", source="made in the viewer",
-                  distance=[float(np.float32(d)) for d in look.distance])
+    return ('name = "custom"\nkind = "burley"\nunit = "mm"\nsource = "made in the viewer"\n'
+            f"distance = {[float(np.float32(d)) for d in look.distance]}\n")
 
 
 def cpp_float(value: float) -> str:
@@ -168,16 +133,14 @@ def export(session: Session, folder: Any, width: int = 1280, height: int = 720) 
     try:
         radiance = session.radiance(look, width, height)
         g = session.gbuffer(width, height)
-        values = np.concatenate([g.material[..., None], g.position, g.normal_geometric, g.normal_shading,
-                                 g.curvature[..., None], tinted(g, look)], 2)
-        names = ["Id.I",
-                 *(f"{n}.{c}" for n in ("Position", "NormalGeometric", "NormalShading") for c in "XYZ"),
-                 "Curvature.V",
-                 *(f"Albedo.{c}" for c in "RGB")]
+        images = {"material": g.material[..., None], "position": g.position,
+                  "normal_geometric": g.normal_geometric, "normal_shading": g.normal_shading,
+                  "curvature": g.curvature[..., None], "albedo": tinted(g, look)}
         if look.method == "texture":
-            values = np.concatenate([values, g.u[..., None], g.v[..., None]], 2)
-            names += ["Uv.X", "Uv.Y"]
+            images["uv"] = np.stack([g.u, g.v], 2)
             write_image(out / "scattered.exr", session.texture(look).light)
+        names = [f"{CHANNELS[key][0]}.{c}" for key in images for c in CHANNELS[key][1]]
+        values = np.concatenate(list(images.values()), 2)
         write_image(out / "gbuffer.exr", values, channels=names)
         for i, (_, map) in enumerate(session.lights(look)):
             if map is not None:
@@ -189,13 +152,13 @@ def export(session: Session, folder: Any, width: int = 1280, height: int = 720) 
         write_image(out / "picture.exr", radiance)
         write_image(out / "picture.png", radiance, exposure=look.exposure, shoulder=look.shoulder,
                     curve=look.curve)
-        texts = {"scene.toml": scene_text(session, look, width, height),
-                 "look.json": json.dumps(look.to_dict(), indent=2) + "\n",
+        texts = {"look.json": json.dumps(look.to_dict(), indent=2) + "\n",
                  "look.cpp": snippet(session, look)}
         if look.profile == "custom":
             texts["profile.toml"] = profile_text(look)
         for name, text in texts.items():
             (out / name).write_text(text, encoding="utf-8")
+        write_scene(out / "scene.toml", session, look, width, height)
     finally:
         session.look.mode = mode
     return sorted(out.iterdir())

@@ -55,6 +55,11 @@ def _at(azimuth: float, change: Callable[[Session], None], zoom: float = 1.0, mm
     return both
 
 
+def _side(mm: float = 1.0, **look: object) -> Callable[[Session], None]:
+    """Near, and lit from the side."""
+    return _at(25, _set(lamps=SIDE, ambient=0.02, **look), 0.5, mm)
+
+
 def _material(name: str, words: str, **look: object) -> Entry:
     return Entry(name, words, _set(ambient=0.08, **{"specular": 0.35, **look}))
 
@@ -71,20 +76,15 @@ GALLERY: dict[str, list[Entry]] = {
                   pores=0.0, roughness=0.35),
     ],
     "Methods": [
-        Entry("method-none", "None: Lambert. Shadows are hard and grey.",
-              _at(25, _set(method="none", transmission=0.0, lamps=SIDE, ambient=0.02), 0.5)),
-        Entry("method-preintegrated", "Pre-integrated: tables, no neighbours.",
-              _at(25, _set(method="preintegrated", lamps=SIDE, ambient=0.02), 0.5)),
-        Entry("method-separable", "Separable: two filters across the screen.",
-              _at(25, _set(method="separable", lamps=SIDE, ambient=0.02), 0.5)),
-        Entry("method-screen", "Screen: the whole profile over the picture.",
-              _at(25, _set(method="screen", lamps=SIDE, ambient=0.02), 0.5)),
-        Entry("method-light", "Light: the sum over the light's own map.",
-              _at(25, _set(method="light", lamps=SIDE, ambient=0.02), 0.5)),
-        Entry("method-texture", "Texture: the head's texture, lit and scattered.",
-              _at(25, _set(method="texture", lamps=SIDE, ambient=0.02), 0.5)),
-        Entry("method-auto", "Auto, the default.",
-              _at(25, _set(method="auto", lamps=SIDE, ambient=0.02), 0.5)),
+        Entry(f"method-{method}", words, _side(method=method, **more))
+        for method, words, more in [
+            ("none", "None: Lambert. Shadows are hard and grey.", {"transmission": 0.0}),
+            ("preintegrated", "Pre-integrated: tables, no neighbours.", {}),
+            ("separable", "Separable: two filters across the screen.", {}),
+            ("screen", "Screen: the whole profile over the picture.", {}),
+            ("light", "Light: the sum over the light's own map.", {}),
+            ("texture", "Texture: the head's texture, lit and scattered.", {}),
+            ("auto", "Auto, the default.", {})]
     ],
     "Lights": [
         Entry("light-front", "From the front: hardly anything to scatter, and hardly any work.",
@@ -96,19 +96,14 @@ GALLERY: dict[str, list[Entry]] = {
     "Mistakes": [
         Entry("wrong-unit",
               "The mesh is in mm, and unit_mm said 10: light reaches a tenth as far as it should, and the "
-              "picture is nearly "
-              "Lambert's. The shader warns of it.", _at(25, _set(lamps=SIDE, ambient=0.02), 0.5, mm=10.0)),
-        Entry("too-soft", "unit_mm said 0.1: skin turns to wax.",
-              _at(25, _set(lamps=SIDE, ambient=0.02), 0.5, mm=0.1)),
+              "picture is nearly Lambert's. The shader warns of it.", _side(mm=10.0)),
+        Entry("too-soft", "unit_mm said 0.1: skin turns to wax.", _side(mm=0.1)),
         Entry("orange-rim",
               "deep_scatter_color (FaceWorks' term) with a strong colour: a rim along nose, lips and ears "
-              "that light has not.",
-              _at(25, _set(method="preintegrated", lamps=SIDE, ambient=0.02, deep_scatter=(2.0, 0.6, 0.2)),
-                  0.5)),
+              "that light has not.", _side(method="preintegrated", deep_scatter=(2.0, 0.6, 0.2))),
         Entry("coarse-shadow-map",
               "A shadow map of 128 texels: its texels are wider than the profile reaches, and edges of "
-              "shadows are steps.",
-              _at(25, _set(lamps=SIDE, ambient=0.02, shadow_size=128), 0.5)),
+              "shadows are steps.", _side(shadow_size=128)),
     ],
 }
 

@@ -8,7 +8,9 @@ from __future__ import annotations
 import hmac
 import secrets
 from typing import Any, Callable
-from urllib.parse import parse_qs
+
+from starlette.requests import HTTPConnection
+from starlette.responses import PlainTextResponse, RedirectResponse, Response
 
 
 def cookie_values(header: str, name: str) -> list[str]:
@@ -67,29 +69,20 @@ class Guard:
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
             return
-        headers: dict[str, str] = {}
-        for name, value in scope.get("headers", []):
-            key, text = name.decode("latin-1").lower(), value.decode("latin-1")
-            headers[key] = f"{headers[key]};{text}" if key == "cookie" and key in headers else text
-        known = self.keys.holds(headers.get("cookie", ""))
+        request = HTTPConnection(scope)
+        known = self.keys.holds(";".join(request.headers.getlist("cookie")))
         # A page of another origin may open a socket, and the browser then sends the cookie along.
-        origin = headers.get("origin", "")
-        if known and origin and origin.split("://", 1)[-1] != headers.get("host"):
-            known = False
-        given = parse_qs(scope.get("query_string", b"").decode("latin-1")).get("token", [""])[0]
-        if known:
+        origin = request.headers.get("origin", "")
+        if known and (not origin or origin.split("://", 1)[-1] == request.headers.get("host")):
             await self.app(scope, receive, send)
         elif scope["type"] == "websocket":
             await receive()
             await send({"type": "websocket.close", "code": 1008})
-        elif self.keys.take(given):
-            cookie = f"{self.keys.cookie}={self.keys.value}; HttpOnly; SameSite=Strict; Path=/"
-            await send({"type": "http.response.start", "status": 303, "headers": [
-                (b"location", scope["path"].encode("latin-1", "replace")), (b"set-cookie", cookie.encode())]})
-            await send({"type": "http.response.body", "body": b""})
+        elif self.keys.take(request.query_params.get("token", "")):
+            answer: Response = RedirectResponse(scope["path"], 303)
+            answer.set_cookie(self.keys.cookie, self.keys.value, httponly=True, samesite="strict")
+            await answer(scope, receive, send)
         else:
-            await send({"type": "http.response.start", "status": 403,
-                        "headers": [(b"content-type", b"text/plain")]})
-            await send({"type": "http.response.body",
-                        "body": b"This address needs its token, which is valid once: take the last address "
-                                b"from the terminal.\n"})
+            answer = PlainTextResponse("This address needs its token, which is valid once: take the last "
+                                       "address from the terminal.\n", 403)
+            await answer(scope, receive, send)

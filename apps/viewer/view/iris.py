@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import files
+from .._show import linear
 
 LINEAR = (".exr", ".hdr")  # files of light; others are of sRGB
 
@@ -31,5 +32,5 @@ def iris_image(path: Any) -> NDArray[np.float32]:
     top, left = (image.shape[0] - n) // 2, (image.shape[1] - n) // 2
     image = np.ascontiguousarray(image[top:top + n, left:left + n], np.float32)
     if Path(str(path)).suffix.lower() not in LINEAR:
-        image = np.where(image <= 0.04045, image / 12.92, ((image + 0.055) / 1.055) ** 2.4).astype(np.float32)
+        image = linear(image)
     return image

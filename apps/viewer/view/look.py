@@ -115,11 +115,12 @@ class Look:
         for key in values:
             if key not in known:
                 raise ValueError(f"a look has no {key!r}; it has {', '.join(sorted(known))}")
-        look = cls(**{k: tuple(v) if k in ("albedo", "deep_scatter", "distance", "iris_color", "gaze") else v
-                      for k, v in values.items() if k != "lamps"})
+        def known_types(given: dict[str, Any]) -> dict[str, Any]:  # JSON has lists alone
+            return {k: tuple(v) if isinstance(v, list) else v for k, v in given.items()}
+
+        look = cls(**known_types({k: v for k, v in values.items() if k != "lamps"}))
         if "lamps" in values:
-            look.lamps = [Lamp(**{k: tuple(v) if k == "color" else v for k, v in lamp.items()})
-                          for lamp in values["lamps"]]
+            look.lamps = [Lamp(**known_types(lamp)) for lamp in values["lamps"]]
         return look
 
 

@@ -46,18 +46,14 @@ class MaterialPanel(Panel):
         self.select("Scattering", METHODS, "method")
         self.field("target_error")
         self.slider("Radius scale", self.look, "radius_scale", 0.1, 5, 0.05)
-        self.field("transmission")
-        self.field("specular")
-        self.field("roughness")
-        self.field("f0")
+        for key in ("transmission", "specular", "roughness", "f0"):
+            self.field(key)
         self.switch("Dual-lobe GGX", self.look, "ggx")
         self.field("roughness2")
         self.field("lobe_mix")
         self.slider("Pores", self.look, "pores", 0, 0.5, 0.01)
-        self.channels(("Albedo scale, red", "Albedo scale, green", "Albedo scale, blue"), "albedo", 0.0, 2.0,
-                      0.01)
-        self.channels(("Deep scatter, red", "Deep scatter, green", "Deep scatter, blue"), "deep_scatter", 0.0,
-                      3.0, 0.05)
+        self.channels("Albedo scale, {}", "albedo", 0.0, 2.0, 0.01)
+        self.channels("Deep scatter, {}", "deep_scatter", 0.0, 3.0, 0.05)
 
 
 class EyesPanel(Panel):
@@ -72,11 +68,8 @@ class EyesPanel(Panel):
         self.field("iris_concavity")
         profiles = {"": "None", **{name: name for name in Profile.library_names()}}
         self.select("Scattering in the iris", profiles, "iris_profile")
-        self.field("limbus_width")
-        self.field("limbus_darkening")
-        self.field("cornea_radius")
-        self.field("chamber_depth")
-        self.field("tear_roughness")
+        for key in ("limbus_width", "limbus_darkening", "cornea_radius", "chamber_depth", "tear_roughness"):
+            self.field(key)
         self.slider("Gaze to the left, degrees", self.look, "gaze", -40, 40, 1, index=0)
         self.slider("Gaze up, degrees", self.look, "gaze", -30, 30, 1, index=1)
 
@@ -119,9 +112,7 @@ class ProfilePanel(Panel):
 
     def build(self) -> None:
         self.select("Profile", [*Profile.library_names(), "custom"], "profile", self.draw_profile)
-        self.channels(("Custom d, red, mm", "Custom d, green, mm", "Custom d, blue, mm"), "distance", 0.01,
-                      5.0, 0.01,
-                      self.draw_profile)
+        self.channels("Custom d, {}, mm", "distance", 0.01, 5.0, 0.01, self.draw_profile)
         text = {"color": "#ccc"}
         lines = [{"type": "line", "showSymbol": False, "data": [], "lineStyle": {"color": color}}
                  for color in ("#f66", "#6d6", "#69f")]
@@ -148,12 +139,8 @@ class ComparePanel(Panel):
     def build(self) -> None:
         session = self.viewer.session
 
-        def keep() -> None:
-            session.other = self.look.copy()
-            self.viewer.changed()
-
-        def drop() -> None:
-            session.other = None
+        def keep(other: Look | None) -> None:
+            session.other = other
             self.viewer.changed()
 
         def swap() -> None:
@@ -164,6 +151,7 @@ class ComparePanel(Panel):
         ui.label("Keep shows the current settings right of a divider; change those on the left. "
                  "Alt and drag moves the divider.").classes("text-xs")
         with ui.row():
-            for name, act in (("Keep", keep), ("Swap", swap), ("Drop", drop)):
+            for name, act in (("Keep", lambda: keep(self.look.copy())), ("Swap", swap),
+                              ("Drop", lambda: keep(None))):
                 ui.button(name, on_click=act).props(f"dense data-pel=wipe-{name.lower()}")
         self.slider("Divider", session, "wipe", 0, 1, 0.01)

@@ -31,16 +31,16 @@ class Pass:
         self.device = device
         self.shader = Shader(device)
         self.outputs: dict[str, NDArray[np.float32]] = {}
-        self._told: dict[str, Any] = {}
+        self._set: dict[str, Any] = {}
         self._structure: Any = None
         self._texture: Texture | None = None
         self._uv = np.zeros((0, 0, 2), np.float32)
 
-    def _tell(self, what: str, value: Any, how: Callable[[], Any]) -> None:
-        if what not in self._told or self._told[what] != value:
+    def _update(self, what: str, value: Any, how: Callable[[], Any]) -> None:
+        if what not in self._set or self._set[what] != value:
             how()
-            self._told[what] = value
-            self._told["committed"] = False
+            self._set[what] = value
+            self._set["committed"] = False
 
     def shade(self, session: Session, g: GBuffer, look: Look, outputs: tuple[str, ...], small: bool,
               albedo: bool) -> Pass:
@@ -57,7 +57,7 @@ class Pass:
                                                   np.float32)
                 self.shader.set_image(slot, self.outputs[slot] if wanted else None)
 
-        self._tell("parts", (memory, outputs), parts)
+        self._update("parts", (memory, outputs), parts)
         materials = session.materials(look)
         if not albedo:
             for m in materials.values():
@@ -73,11 +73,11 @@ class Pass:
                     self.shader.set_eye(id, eyes.get(id))
                 if id in eyes:
                     self.shader.set_iris_texture(id, iris)
-            self._told.pop("texture", None)  # which went with its material
+            self._set.pop("texture", None)  # which went with its material
 
-        told = {k: (m._data.tobytes(), id(m._profile)) for k, m in materials.items()}
-        self._tell("materials",
-                   (told, {k: (e._data.tobytes(), look.iris_profile) for k, e in eyes.items()}, id(iris)),
+        state = {k: (m._data.tobytes(), id(m._profile)) for k, m in materials.items()}
+        self._update("materials",
+                   (state, {k: (e._data.tobytes(), look.iris_profile) for k, e in eyes.items()}, id(iris)),
                    set_materials)
         lights = session.lights(look, small)
 
@@ -86,15 +86,16 @@ class Pass:
             for i, (_, map) in enumerate(lights):
                 self.shader.set_light_image(i, "shadow_map", None if map is None else map.depth)
 
-        self._tell("lights", [(light._data.tobytes(), id(map)) for light, map in lights], set_lights)
+        self._update("lights", [(light._data.tobytes(), id(map)) for light, map in lights], set_lights)
         ambient = session.ambient(look)
-        self._tell("ambient", ambient, lambda: self.shader.set_ambient(Ambient(constant=[ambient] * 3)))
+        self._update("ambient", ambient, lambda: self.shader.set_ambient(Ambient(constant=[ambient] * 3)))
         eye, _ = session.camera(width / height)
-        self._tell("camera", eye.tobytes(), lambda: self.shader.set_camera(Camera(position=eye)))
-        self._tell("options", (look.target_error, session.count, session.mm), lambda: self.shader.set_options(
-            target_error=look.target_error, millimetres_per_unit=session.mm, count_pixels=int(session.count)))
+        self._update("camera", eye.tobytes(), lambda: self.shader.set_camera(Camera(position=eye)))
+        options = {"target_error": look.target_error, "millimetres_per_unit": session.mm,
+                   "count_pixels": int(session.count)}
+        self._update("options", options, lambda: self.shader.set_options(**options))
         self._scattered_texture(session, g, look, small)
-        if not self._told.get("committed"):
+        if not self._set.get("committed"):
             structure = (outputs, albedo, len(eyes), look.method, look.ggx, len(lights),
                          [m.specular > 0 for m in materials.values()],
                          any(look.deep_scatter), look.transmission > 0)
@@ -102,7 +103,7 @@ class Pass:
                 warm_up_programs(self.device, shaders=[self.shader])
                 self._structure = structure
             self.shader.commit()
-            self._told["committed"] = True
+            self._set["committed"] = True
         self.outputs["radiance"][...] = 0
         self.shader.execute()
         return self
@@ -117,26 +118,26 @@ class Pass:
             self.outputs = {"radiance": np.zeros((height, width, 3), np.float32)}
             self.shader.set_image("radiance", self.outputs["radiance"])
 
-        self._tell("images", memory, images)
+        self._update("images", memory, images)
         tints = albedo and tuple(look.albedo) != (1.0, 1.0, 1.0)
         if tints:  # host work: only where a tint is set
             if self.outputs.get("albedo") is None or self.outputs["albedo"].shape != g.albedo.shape:
                 # As far apart as the renderer's own: kernels belong to a layout.
                 self.outputs["albedo"] = np.zeros(
                     (height, width, g.albedo.strides[1] // 4), np.float32)[..., :3]
-                self._told.pop("albedo", None)
+                self._set.pop("albedo", None)
             self.outputs["albedo"][...] = tinted(g, look)
-        self._tell("albedo", (memory, albedo, tints), lambda: self.shader.set_image(
+        self._update("albedo", (memory, albedo, tints), lambda: self.shader.set_image(
             "albedo", None if not albedo else self.outputs["albedo"] if tints else g.albedo))
 
     def _scattered_texture(self, session: Session, g: GBuffer, look: Look, small: bool) -> None:
         if look.method != "texture":
-            self._tell("uv", None, lambda: self.shader.set_image("uv", None))
+            self._update("uv", None, lambda: self.shader.set_image("uv", None))
             return
         if self._uv.shape[:2] != g.u.shape:
             self._uv = np.empty((*g.u.shape, 2), np.float32)
         self._uv[..., 0], self._uv[..., 1] = g.u, g.v
-        self._tell("uv", self._uv.ctypes.data, lambda: self.shader.set_image("uv", self._uv))
+        self._update("uv", self._uv.ctypes.data, lambda: self.shader.set_image("uv", self._uv))
         texture = session.texture(look, small)
-        self._tell("texture", id(texture), lambda: self.shader.set_scattered_texture(SKIN, texture.light))
+        self._update("texture", id(texture), lambda: self.shader.set_scattered_texture(SKIN, texture.light))
         self._texture = texture

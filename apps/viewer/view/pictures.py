@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import files
+from .._show import linear, srgb
 from .._types import Scattering
 from .look import METHODS, MODES, SKIN, Look
 from .passes import OUTPUTS, Pass
@@ -16,12 +17,8 @@ if TYPE_CHECKING:
     from .renderer import GBuffer
     from .session import Session
 
-_BYTES = np.arange(256) / 255
-# of sRGB bytes
-LINEAR = np.where(_BYTES <= 0.04045, _BYTES / 12.92, ((_BYTES + 0.055) / 1.055) ** 2.4).astype(np.float32)
-_X = np.arange(4096) / 4095
-_ENCODED = np.rint(255 * np.where(_X <= 0.0031308, 12.92 * _X,
-                                  1.055 * _X ** (1 / 2.4) - 0.055)).astype(np.uint8)
+LINEAR = linear(np.arange(256) / 255)  # of sRGB bytes
+_ENCODED = srgb(np.arange(4096) / 4095)
 
 _LINEAR_MODES = ("final", "lambert", "diffuse", "specular", "deep_scatter", "irradiance", "reference",
                  "albedo")

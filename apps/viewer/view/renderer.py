@@ -37,26 +37,20 @@ class _Level:
     """The mesh in OpenGL, with as many triangles as `spacing` says."""
 
     spacing: float  # length of an edge, about
-    draw: Any
-    draw_shadow: Any
-    buffers: tuple[Any, Any]
-
-    def release(self) -> None:
-        for old in (self.draw, self.draw_shadow, *self.buffers):
-            old.release()
+    parts: list[Any]  # what draws it, what draws its shadow, and their buffers
 
 
 @dataclass
 class _Target:
     """Images of one size in OpenGL, and the memory that they are read into."""
 
-    frame: Any
-    parts: list[Any]
+    parts: list[Any]  # the framebuffer, and its attachments
     memory: list[NDArray[np.float32]]
 
-    def release(self) -> None:
-        for old in (self.frame, *self.parts):
-            old.release()
+
+def _release(made: _Level | _Target) -> None:
+    for part in made.parts:
+        part.release()
 
 
 class Renderer:
@@ -95,25 +89,21 @@ class Renderer:
         fresh = [self._upload(*level)
                  for level in levels(vertices, np.ascontiguousarray(mesh.triangles, np.uint32))]
         for old in self._levels:
-            old.release()
+            _release(old)
         self._levels = fresh
         self.mesh = mesh
-        used = mesh.positions[np.unique(
-            mesh.triangles)] if len(mesh.triangles) else np.zeros((1, 3), np.float32)
+        used = mesh.positions[np.unique(mesh.triangles)]
         low, high = used.min(0).astype(float), used.max(0).astype(float)
         self.centre, self.radius = (low + high) / 2, max(float(np.linalg.norm(high - low)) / 2, 1e-6)
         self._mm = millimetres_per_unit
 
     def _upload(self, spacing: float, vertices: NDArray[np.float32], triangles: NDArray[np.uint32]) -> _Level:
         buffer, indices = self.context.buffer(vertices.tobytes()), self.context.buffer(triangles.tobytes())
-        draw = self.context.vertex_array(
-            self._gbuffer_program,
+        draw = self.context.vertex_array(self._gbuffer_program,
             [(buffer, "3f 3f 3f 2f 2f", "in_position", "in_normal", "in_albedo", "in_material", "in_uv")],
             indices)
-        return _Level(spacing, draw,
-                      self.context.vertex_array(self._shadow_program, [(buffer, "3f 40x", "in_position")],
-                                                indices),
-                      (buffer, indices))
+        shadow = self.context.vertex_array(self._shadow_program, [(buffer, "3f 40x", "in_position")], indices)
+        return _Level(spacing, [draw, shadow, buffer, indices])
 
     def level(self, length: float) -> int:
         """The coarsest version of the mesh whose edges are at most about `length` long: 0 is the mesh
@@ -124,10 +114,10 @@ class Renderer:
         target = self._targets.pop((width, height), None)
         if target is None:
             while len(self._targets) >= 3:  # a moving picture, one at rest, one that is exported
-                self._targets.pop(next(iter(self._targets))).release()
+                _release(self._targets.pop(next(iter(self._targets))))
             parts = [self.context.texture((width, height), 4, dtype="f4") for _ in range(4)]
             depth = self.context.depth_renderbuffer((width, height))
-            target = _Target(self.context.framebuffer(parts, depth), [*parts, depth],
+            target = _Target([self.context.framebuffer(parts, depth), *parts, depth],
                              [np.empty((height, width, 4), np.float32) for _ in range(4)])
         self._targets[width, height] = target
         return target
@@ -144,7 +134,7 @@ class Renderer:
         assert self.mesh is not None
         self.context.__enter__()  # another renderer of this thread may have been the last
         target = self._target(width, height)
-        frame = target.frame
+        frame = target.parts[0]
         frame.use()
         frame.clear(0.0, 0.0, 0.0, 0.0)
         self.context.enable_only(moderngl.DEPTH_TEST)
@@ -153,22 +143,15 @@ class Renderer:
         turned[:2, 3] = 2 * shift[0] / width, 2 * shift[1] / height
         program["clip"].write((turned @ np.asarray(view_projection, np.float64)).T.astype("f4").tobytes())
         program["pores"].value, program["mm"].value = pores, self._mm
-        eyes = self.mesh.eyes[:2]
-        program["eyes"].value = len(eyes)
-        if eyes:
-            pad = [*eyes, eyes[-1]][:2]
-            program["eye_centre"].value = [tuple(e["centre"]) for e in pad]
-            program["eye_gaze"].value = [tuple(e["gaze"]) for e in pad]
-            # The sclera alone: the shader's eyes have irises of their own.
-            program["eye_size"].value = [(e["radius"], 1e-3 * e["radius"], 1e-4 * e["radius"]) for e in pad]
-            program["sclera"].value, program["iris"].value = tuple(eyes[0]["sclera"]), tuple(eyes[0]["iris"])
-        self._levels[level].draw.render()
+        program["eyes"].value = bool(self.mesh.eyes)
+        if self.mesh.eyes:
+            program["sclera"].value = tuple(self.mesh.eyes[0]["sclera"])
+        self._levels[level].parts[0].render()
         for attachment, memory in enumerate(target.memory):
             frame.read_into(memory, components=4, attachment=attachment, dtype="f4")
         position, geometric, shading, albedo = target.memory
         return GBuffer(position[..., :3], position[..., 3], geometric[..., :3], geometric[..., 3],
-                       shading[..., :3], albedo[..., :3],
-                       shading[..., 3], albedo[..., 3])
+                       shading[..., :3], albedo[..., :3], shading[..., 3], albedo[..., 3])
 
     def shadow_map(self, to_light: ArrayLike, size: int, up: ArrayLike = (0.0, 1.0, 0.0),
                    level: int = 0) -> tuple[NDArray[np.float32], Any]:
@@ -187,7 +170,7 @@ class Renderer:
         frame.clear(1.0, 1.0, 1.0, 1.0)
         self.context.enable_only(moderngl.DEPTH_TEST)
         self._shadow_program["clip"].write(matrix.T.astype("f4").tobytes())
-        self._levels[level].draw_shadow.render()
+        self._levels[level].parts[1].render()
         depth = np.empty((size, size), np.float32)
         frame.read_into(depth, components=1, dtype="f4")
         return depth, light_from_view_projection(matrix, first_row="bottom")

@@ -257,15 +257,15 @@ class Viewer:
                 if small and not event.is_set():
                     asyncio.get_running_loop().call_later(SETTLED, event.set)
 
-        async def tell() -> None:
-            told = ""
+        async def report_busy() -> None:
+            sent_busy = ""
             while True:
                 await asyncio.sleep(0.25)
-                if self.busy != told:
-                    told = self.busy
-                    await socket.send_text(json.dumps({"busy": told}))
+                if self.busy != sent_busy:
+                    sent_busy = self.busy
+                    await socket.send_text(json.dumps({"busy": sent_busy}))
 
-        tasks = [asyncio.create_task(listen()), asyncio.create_task(send()), asyncio.create_task(tell())]
+        tasks = [asyncio.create_task(part()) for part in (listen, send, report_busy)]
         try:
             await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         finally:

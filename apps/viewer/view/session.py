@@ -56,13 +56,10 @@ def eyes_of(mesh: files.Mesh, look: Optional[Look] = None, mm: float = 1.0) -> d
     look = Look() if look is None else look
     found = {}
     for id, ball in zip((EYES, RIGHT_EYE), mesh.eyes):
+        same = ("limbus_width", "limbus_darkening", "cornea_radius", "chamber_depth", "iris_concavity",
+                "iris_color", "iris_seed", "tear_roughness")
         eye = Eye(center=ball["centre"], gaze=direction(mesh.up, ball["gaze"], *look.gaze), up=mesh.up,
-                  pupil_radius=look.pupil,
-                  limbus_width=look.limbus_width, limbus_darkening=look.limbus_darkening,
-                  cornea_radius=look.cornea_radius,
-                  chamber_depth=look.chamber_depth, iris_concavity=look.iris_concavity,
-                  iris_color=look.iris_color,
-                  iris_seed=look.iris_seed, tear_roughness=look.tear_roughness)
+                  pupil_radius=look.pupil, **{name: getattr(look, name) for name in same})
         # The iris lies below the cornea's rim, however steep that is.
         r2, cornea = eye.limbus_radius**2, eye.cornea_radius
         rim = r2 / (cornea + np.sqrt(max(cornea**2 - (1 + eye.cornea_conic) * r2, 0)))
@@ -75,14 +72,9 @@ def eyes_of(mesh: files.Mesh, look: Optional[Look] = None, mm: float = 1.0) -> d
     return found
 
 
-def _halton(i: int, base: int) -> float:
-    """Element i of a sequence that fills 0 to 1 evenly [Halton 1964]."""
-    value, part = 0.0, 1.0
-    while i:
-        part /= base
-        value += part * (i % base)
-        i //= base
-    return value
+# The first elements of a sequence that fills a square evenly, by which pictures are shifted [Halton 1964].
+_HALTON = list(zip((1 / 2, 1 / 4, 3 / 4, 1 / 8, 5 / 8, 3 / 8, 7 / 8),
+                   (1 / 3, 2 / 3, 1 / 9, 4 / 9, 7 / 9, 2 / 9, 5 / 9)))
 
 
 class Session:
@@ -110,9 +102,6 @@ class Session:
         self.report: Optional[Callable[[], None]] = None
         self._shift = (0.0, 0.0)
         self._prepared: Any = None
-
-    # ---- What is shown
-    # -----------------------------------------------------------------------------------------------
 
     def load(self, path: Any, subdivide: Optional[int] = None, up: str = "auto") -> files.Mesh:
         """Shows another mesh. Raises what files.load_mesh and MeshTopology raise; the mesh before it then
@@ -216,9 +205,9 @@ class Session:
 
     def camera(self, aspect: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Eye, and world to clip space in OpenGL's convention."""
-        return self.orbit.matrices(self.mesh.up, self.mesh.front, self.centre,
-                                   self.renderer.radius + float(np.linalg.norm(
-            self.renderer.centre - self.centre)), aspect)
+        apart = float(np.linalg.norm(self.renderer.centre - self.centre))
+        return self.orbit.matrices(self.mesh.up, self.mesh.front, self.centre, self.renderer.radius + apart,
+                                   aspect)
 
     def gbuffer(self, width: int, height: int, small: bool = False) -> GBuffer:
         state = self.drawn_state(width, height, small)
@@ -238,15 +227,11 @@ class Session:
         pores = 0.0 if self.look.mode in ("error", "reference") else self.look.pores
         return (matrix.tobytes(), width, height, pores, self._level(small), self._shift)
 
-    # ---- Shading
-    # -----------------------------------------------------------------------------------------------------
-
     def materials(self, look: Look) -> dict[int, Material]:
         """What the ids of the mesh are made of."""
-        specular = {"specular": look.specular, "roughness": look.roughness, "f0": look.f0,
-                    "roughness2": look.roughness2,
-                    "lobe_mix": look.lobe_mix, "specular_model": "ggx" if look.ggx else "ksk"}
-        skin = Material(scattering=look.method, **specular)
+        skin = Material(scattering=look.method, specular=look.specular, roughness=look.roughness, f0=look.f0,
+                        roughness2=look.roughness2, lobe_mix=look.lobe_mix,
+                        specular_model="ggx" if look.ggx else "ksk")
         sharp = 1.0 / self.mm  # of shadows where nothing scatters: 1 mm
         if look.method == "none" and look.transmission == 0:
             skin.shadow_filter_width = sharp
@@ -307,8 +292,7 @@ class Session:
         return self._textures[small].make(self, look, small)
 
     def shade(self, name: str, look: Look, width: int, height: int, small: bool = False,
-              outputs: tuple[str, ...] = (),
-              albedo: bool = True) -> Pass:
+              outputs: tuple[str, ...] = (), albedo: bool = True) -> Pass:
         """Shades what is seen. `name`: of a pass that keeps its settings and images from picture to picture.
         """
         kept = self._passes.setdefault(name + "/small" if small else name, Pass(self.device))
@@ -335,7 +319,7 @@ class Session:
         """
         built = self.device.stats().programs_built
         started = time.perf_counter()
-        self._shift = (_halton(sample, 2) - 0.5, _halton(sample, 3) - 0.5) if sample else (0.0, 0.0)
+        self._shift = (_HALTON[sample - 1][0] - 0.5, _HALTON[sample - 1][1] - 0.5) if sample else (0.0, 0.0)
         try:
             self.gbuffer(width, height, small)
             self.lights(self.look, small)

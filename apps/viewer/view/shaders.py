@@ -20,13 +20,10 @@ void main() {
 # Pores and folds are gradients of smooth noise in space, faded out where a pixel is wider than they are.
 GBUFFER_FRAGMENT = """
 #version 330 core
-#define EYES 2
 uniform float pores;          // root mean square slope, about
 uniform float mm;             // millimetres per unit
-uniform int eyes;
-uniform vec3 eye_centre[EYES], eye_gaze[EYES];
-uniform vec3 eye_size[EYES];  // radius of ball, iris, pupil
-uniform vec3 sclera, iris;
+uniform bool eyes;
+uniform vec3 sclera;          // the shader's eyes have irises of their own
 in vec3 position, normal, albedo;
 in vec2 uv;
 in float curvature;
@@ -52,14 +49,6 @@ vec3 slope(vec3 p) {
     }
     return s;
 }
-vec3 eye_color(vec3 p) {
-    int e = eyes > 1 && distance(p, eye_centre[1]) < distance(p, eye_centre[0]) ? 1 : 0;
-    float along = clamp(dot(normalize(p - eye_centre[e]), eye_gaze[e]), -1.0, 1.0);
-    float r = eye_size[e].x * acos(along), blend = 0.06 * eye_size[e].x;
-    vec3 c = iris * (1.0 - 0.6 * smoothstep(0.75 * eye_size[e].y, eye_size[e].y, r));
-    c = mix(c, sclera, smoothstep(eye_size[e].y - 0.3 * blend, eye_size[e].y + blend, r));
-    return mix(vec3(0.01), c, smoothstep(eye_size[e].z - 0.2 * blend, eye_size[e].z + 0.2 * blend, r));
-}
 void main() {
     vec3 ng = normalize(normal), n = ng, color = albedo;
     float pixel = length(fwidth(position)) * mm;
@@ -68,8 +57,8 @@ void main() {
         float fine = 1.0 - smoothstep(0.3, 0.9, pixel), coarse = 1.0 - smoothstep(1.5, 5.0, pixel);
         vec3 bump = 1.6 * fine * slope(p / 0.7) + 0.5 * coarse * slope(p / 4.0);
         n = normalize(ng - pores * (bump - ng * dot(ng, bump)));
-    } else if ((id == 2.0 || id == 6.0) && eyes > 0) {
-        color = eye_color(position);
+    } else if ((id == 2.0 || id == 6.0) && eyes) {
+        color = sclera;
     }
     out_position = vec4(position, id);
     out_geometric = vec4(ng, curvature);

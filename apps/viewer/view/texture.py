@@ -37,8 +37,7 @@ class Texture:
         for slot, image in self._inputs.items():
             self._shader.set_image(slot, image)
         self._shader.set_material(1, Material(scattering="none", thickness_taps=0, specular=0.0,
-                                              albedo=(1.0, 1.0, 1.0),
-                                              shadow_filter_width=1.0 / session.mm))
+                                              albedo=(1.0, 1.0, 1.0), shadow_filter_width=1.0 / session.mm))
         self._key: Any = None
         self.light: NDArray[np.float32] = np.zeros((size, size, 3), np.float32)
 

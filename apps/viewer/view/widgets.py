@@ -9,6 +9,7 @@ import numpy as np
 from nicegui import events, ui
 
 from .. import files
+from .._show import linear
 from .._types import SLIDERS
 from .look import Look
 
@@ -23,9 +24,8 @@ def _hex(color: Any) -> str:
 
 
 def _linear(text: str) -> tuple[float, float, float]:
-    c = np.array([int(text[i:i + 2], 16) for i in (1, 3, 5)]) / 255
-    return tuple(np.where(c <= 0.04045, c / 12.92,
-                          ((c + 0.055) / 1.055) ** 2.4).tolist())  # type: ignore[return-value]
+    red, green, blue = linear([int(text[i:i + 2], 16) / 255 for i in (1, 3, 5)]).tolist()
+    return red, green, blue
 
 
 def fail(message: object) -> None:
@@ -73,8 +73,8 @@ class Panel:
         self.viewer.changed()
 
     def slider(self, name: str, owner: Any, attribute: str, low: float, high: float, step: float,
-               marker: str = "",
-               index: Optional[int] = None, then: Callable[[], None] = lambda: None) -> None:
+               marker: str = "", index: Optional[int] = None,
+               then: Callable[[], None] = lambda: None) -> None:
         """A slider for a number, or for element `index` of several."""
         def value() -> Any:
             whole = getattr(owner, attribute)
@@ -84,12 +84,8 @@ class Panel:
             if e.value is None or value() == e.value:
                 return
             whole = getattr(owner, attribute)
-            if index is None:
-                setattr(owner, attribute, type(whole)(e.value))
-            else:
-                values = list(whole)
-                values[index] = float(e.value)
-                setattr(owner, attribute, type(whole)(values))
+            new = e.value if index is None else [*whole[:index], float(e.value), *whole[index + 1:]]
+            setattr(owner, attribute, type(whole)(new))
             then()
             self.viewer.changed(moving=True)
 
@@ -106,11 +102,11 @@ class Panel:
         label, low, high, step = SLIDERS[key]
         self.slider(label, self.look if owner is None else owner, attribute or key, low, high, step, marker)
 
-    def channels(self, names: tuple[str, ...], attribute: str, low: float, high: float, step: float,
+    def channels(self, name: str, attribute: str, low: float, high: float, step: float,
                  then: Callable[[], None] = lambda: None) -> None:
-        """A slider for each element."""
-        for index, name in enumerate(names):
-            self.slider(name, self.look, attribute, low, high, step, index=index, then=then)
+        """A slider for each colour, which goes into the name."""
+        for index, color in enumerate(("red", "green", "blue")):
+            self.slider(name.format(color), self.look, attribute, low, high, step, index=index, then=then)
 
     def select(self, name: str, options: Any, attribute: str, then: Callable[[], None] = lambda: None,
                owner: Any = None, marker: str = "") -> None:
@@ -144,8 +140,8 @@ class Panel:
             f"dense data-pel={marker or attribute}").classes("w-full")
 
     def button(self, name: str, act: Any, marker: str, flat: bool = False) -> None:
-        ui.button(name,
-                  on_click=act).props(f"dense {'flat ' if flat else ''}data-pel={marker}").classes("w-full")
+        style = f"dense {'flat ' if flat else ''}data-pel={marker}"
+        ui.button(name, on_click=act).props(style).classes("w-full")
 
     def upload(self, name: str, act: Any, marker: str, largest: int = 1 << 30) -> None:
         ui.upload(label=name, auto_upload=True, on_upload=act, max_file_size=largest).props(

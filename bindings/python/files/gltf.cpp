@@ -1,13 +1,11 @@
 // glTF scenes for Python: what `pellucid import` makes of a file, as arrays and structures. And profiles
 // from files.
-#include "gltf.h"
-
 #include <pybind11/stl.h>
 
 #include <filesystem>
 #include <optional>
 
-#include "arrays.h"
+#include "files.h"
 #include "gltf/gltf_import.h"
 #include "io/file_error.h"
 #include "io/input_file.h"

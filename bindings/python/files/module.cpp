@@ -6,15 +6,13 @@
 #include <new>
 #include <stdexcept>
 
-#include "arrays.h"
 #include "demo/demo_head.h"
-#include "gltf.h"
+#include "files.h"
 #include "io/file_error.h"
 #include "io/image/image_file.h"
 #include "io/image/image_format.h"
 #include "io/image/tone_map.h"
 #include "io/mesh/mesh_file.h"
-#include "scene.h"
 
 namespace py = pybind11;
 
@@ -42,7 +40,7 @@ py::dict toDict(const io::MeshData& mesh) {
     return d;
 }
 
-py::dict loadMesh(const std::string& path, int levels, bool normals) {
+py::dict loadMesh(const std::string& path, int levels) {
     io::MeshData mesh;
     {
         const py::gil_scoped_release free;
@@ -50,7 +48,7 @@ py::dict loadMesh(const std::string& path, int levels, bool normals) {
         options.splitUvSeams = levels == 0;  // subdivision would round the sides of a seam off by themselves
         mesh = io::loadMesh(path, options);
         if (levels > 0) io::loopSubdivide(mesh, levels);
-        if (normals && mesh.normals.empty()) io::computeNormals(mesh);
+        if (mesh.normals.empty()) io::computeNormals(mesh);
     }
     return toDict(mesh);
 }
@@ -90,21 +88,17 @@ py::object loadHead(const std::string& path, int levels) {
     d["high"] = list(head.frame.high);
     py::list eyes;
     for (const sample::EyeLook& eye : head.eyes) {
-        py::dict e;
-        e["centre"] = list(eye.centre);
-        e["gaze"] = list(eye.gaze);
-        e["radius"] = eye.radius;
-        e["iris_radius"] = eye.irisRadius;
-        e["pupil_radius"] = eye.pupilRadius;
-        e["sclera"] = eye.sclera;
-        e["iris"] = eye.iris;
-        eyes.append(e);
+        using namespace py::literals;
+        eyes.append(py::dict("centre"_a = list(eye.centre), "gaze"_a = list(eye.gaze),
+                             "radius"_a = eye.radius, "iris_radius"_a = eye.irisRadius,
+                             "pupil_radius"_a = eye.pupilRadius, "sclera"_a = eye.sclera,
+                             "iris"_a = eye.iris));
     }
     d["eyes"] = eyes;
     return d;
 }
 
-py::tuple readImage(const std::string& path) {
+py::dict readImage(const std::string& path) {
     io::Image image;
     {
         const py::gil_scoped_release free;
@@ -113,9 +107,7 @@ py::tuple readImage(const std::string& path) {
     py::dict channels;
     for (const io::Channel& c : image.channels)
         channels[py::str(c.name)] = array(c.pixels, {py::ssize_t(image.height), py::ssize_t(image.width)});
-    py::dict attributes;
-    for (const auto& [name, value] : image.attributes) attributes[py::str(name)] = py::cast(value);
-    return py::make_tuple(channels, attributes);
+    return channels;
 }
 
 using Pixels = py::array_t<float, py::array::c_style | py::array::forcecast>;
@@ -132,11 +124,11 @@ void writeExr(const std::string& path, const std::vector<std::string>& names, co
     io::writeExr(path, image);
 }
 
-void writeBytes(const std::string& path, const Bytes& pixels, bool srgb) {
+void writeBytes(const std::string& path, const Bytes& pixels) {
     const int height = int(pixels.shape(0)), width = int(pixels.shape(1)), channels = int(pixels.shape(2));
     const std::span<const uint8_t> values(pixels.data(), size_t(pixels.size()));
     const py::gil_scoped_release free;
-    io::writeImage8(path, width, height, channels, values, srgb);
+    io::writeImage8(path, width, height, channels, values, true);
 }
 
 Bytes toneMapped(const Pixels& rgb, float exposure, float shoulder, const std::string& curve) {

@@ -1,5 +1,4 @@
 // Scenes for Python: what `pellucid shade` reads and shades, as an object whose structures Python changes.
-#include "scene.h"
 
 #include <pybind11/stl.h>
 
@@ -10,7 +9,7 @@
 #include <optional>
 #include <sstream>
 
-#include "arrays.h"
+#include "files.h"
 #include "io/scene/scene_keys.h"
 #include "scene/scene_programs.h"
 
@@ -52,29 +51,20 @@ class Scene {
         scene_ = io::readScene(path);
     }
 
-    const std::string& source() const { return scene_.source; }
-
-    py::dict channels() const {
-        py::dict found;
+    py::dict state() const {
+        py::dict channels;
         for (const io::SlotKey& k : io::slotKeys)
             if (!scene_.channels[k.slot].empty())
-                found[py::str(std::string(k.key))] = scene_.channels[k.slot];
-        return found;
-    }
-    py::list materials() const {
-        py::list found;
+                channels[py::str(std::string(k.key))] = scene_.channels[k.slot];
+        py::list materials, lights;
         for (const io::SceneMaterial& m : scene_.materials)
-            found.append(py::make_tuple(m.id, bytesOf(m.material), m.profile));
-        return found;
+            materials.append(py::make_tuple(m.id, bytesOf(m.material), m.profile));
+        for (const io::SceneLight& l : scene_.lights) lights.append(bytesOf(l.light));
+        using namespace py::literals;
+        return py::dict("channels"_a = channels, "materials"_a = materials, "lights"_a = lights,
+                        "ambient"_a = bytesOf(scene_.ambient), "camera"_a = bytesOf(scene_.camera),
+                        "options"_a = bytesOf(io::withOptionsOf(scene_, pelShaderOptionsDefaults())));
     }
-    py::list lights() const {
-        py::list found;
-        for (const io::SceneLight& l : scene_.lights) found.append(bytesOf(l.light));
-        return found;
-    }
-    py::bytes ambient() const { return bytesOf(scene_.ambient); }
-    py::bytes camera() const { return bytesOf(scene_.camera); }
-    py::bytes options() const { return bytesOf(io::withOptionsOf(scene_, pelShaderOptionsDefaults())); }
 
     void readGBuffer(const std::string& path) {
         const py::gil_scoped_release free;
@@ -234,9 +224,7 @@ class Scene {
     py::array_t<float> image(const std::vector<float>& values, int components) const {
         std::vector<py::ssize_t> shape{gbuffer_->height, gbuffer_->width};
         if (components > 1) shape.push_back(components);
-        py::array_t<float> result(shape);
-        std::memcpy(result.mutable_data(), values.data(), values.size() * sizeof(float));
-        return result;
+        return array(values, shape);
     }
 
     io::SceneFile scene_;
@@ -244,23 +232,48 @@ class Scene {
     std::optional<OnDevice> onDevice_;
 };
 
+// A scene made by a program: materials with their profile and scattered texture, lights with their shadow
+// map, eyes with the texture and the profile of their iris, by names of files. Complete or not at all.
+void writeScene(const std::string& path, const std::map<std::string, std::vector<std::string>>& channels,
+                const std::vector<std::tuple<uint32_t, std::string, std::string, std::string>>& materials,
+                const std::vector<std::tuple<std::string, std::string>>& lights,
+                const std::vector<std::tuple<uint32_t, std::string, std::string, std::string>>& eyes,
+                const std::string& ambient, const std::string& camera, const std::string& options) {
+    io::SceneFile scene;
+    for (const io::SlotKey& k : io::slotKeys)
+        if (const auto found = channels.find(std::string(k.key)); found != channels.end())
+            scene.channels[k.slot] = found->second;
+    for (const auto& [id, bytes, profile, texture] : materials) {
+        io::SceneMaterial& m = scene.materials.emplace_back();
+        m.id = id, m.material = structOf<PelMaterial>(bytes), m.profile = profile;
+        m.scatteredTexture = texture;
+    }
+    for (const auto& [bytes, file] : lights) {
+        io::SceneLight& l = scene.lights.emplace_back();
+        l.light = structOf<PelLight>(bytes), l.shadowMapFile = file;
+    }
+    for (const auto& [id, bytes, texture, profile] : eyes) {
+        io::SceneEye& e = scene.eyes.emplace_back();
+        e.material = id, e.eye = structOf<PelEye>(bytes), e.irisTexture = texture, e.irisProfile = profile;
+    }
+    scene.ambient = structOf<PelAmbient>(ambient);
+    scene.camera = structOf<PelCamera>(camera);
+    scene.options = structOf<PelShaderOptions>(options);
+    io::writeScene(path, scene);
+}
+
 }  // namespace
 
 void bindScene(py::module_& module) {
     py::class_<Scene>(module, "Scene")
         .def(py::init<const std::string&>())
-        .def_property_readonly("source", &Scene::source)
-        .def("channels", &Scene::channels)
-        .def("materials", &Scene::materials)
-        .def("lights", &Scene::lights)
-        .def("ambient", &Scene::ambient)
-        .def("camera", &Scene::camera)
-        .def("options", &Scene::options)
+        .def("state", &Scene::state)
         .def("read_gbuffer", &Scene::readGBuffer)
         .def("set_gbuffer", &Scene::setGBuffer)
         .def("has_gbuffer", &Scene::hasGBuffer)
         .def("shade", &Scene::shade)
         .def("save", &Scene::save);
+    module.def("write_scene", &writeScene);
     py::register_exception_translator([](std::exception_ptr pending) {
         try {
             if (pending) std::rethrow_exception(pending);

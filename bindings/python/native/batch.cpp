@@ -1,11 +1,12 @@
-// Manifests and the files of batches, by the same code as the command's.
-#include "progress.h"
+// Manifests and files of batches, and differences of images, by the same code as the command's.
+#include "native.h"
 
 #ifdef PELLUCID_BATCH
 #include "batch/batch_entry.h"
 #include "batch/batch_index.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
+#include "io/image/image_compare.h"
 #include "io/lut/lut_exr.h"
 
 namespace pel::python {
@@ -13,18 +14,11 @@ namespace pel::python {
 namespace {
 using pellucid::io::BatchManifest;
 
-BatchManifest read(const std::string& path) {
+// By `make()`; what is wrong with it is a ValueError.
+template <class Make>
+BatchManifest manifest(Make&& make) {
     try {
-        return pellucid::io::readManifest(path);
-    } catch (const std::exception& e) {
-        throw py::value_error(e.what());
-    }
-}
-
-BatchManifest parsed(const std::string& path, const std::string& text,
-                     const std::map<std::string, std::string>& profiles) {
-    try {
-        return pellucid::io::parseManifest(path, text, profiles);
+        return make();
     } catch (const std::exception& e) {
         throw py::value_error(e.what());
     }
@@ -53,8 +47,15 @@ py::bytes made(const BatchManifest& m, const Device& device, size_t index) {
 
 void bindBatch(py::module_& module) {
     py::class_<BatchManifest>(module, "Manifest")
-        .def_static("read", &read)
-        .def_static("parse", &parsed)
+        .def_static("read",
+                    [](const std::string& path) {
+                        return manifest([&] { return pellucid::io::readManifest(path); });
+                    })
+        .def_static("parse",
+                    [](const std::string& path, const std::string& text,
+                       const std::map<std::string, std::string>& profiles) {
+                        return manifest([&] { return pellucid::io::parseManifest(path, text, profiles); });
+                    })
         .def("__len__", [](const BatchManifest& m) { return m.entries.size(); })
         .def("entry",
              [](const BatchManifest& m, size_t index) {
@@ -92,6 +93,26 @@ void bindBatch(py::module_& module) {
         const std::string_view bytes = file;
         WithoutGil free;
         return pellucid::io::verifyLutExr(bytes, key);
+    });
+    module.def("compare_images", [](uintptr_t a, uintptr_t b, size_t pixels, uintptr_t mask) {
+        const auto values = [&](uintptr_t p) {
+            return std::span(static_cast<const float*>(pointer(p)), 3 * pixels);
+        };
+        size_t invalid = 0;
+        pellucid::io::ImageDifference d;
+        {
+            const WithoutGil free;
+            d = pellucid::io::compareImages(
+                values(a), values(b),
+                mask ? std::span(static_cast<const uint8_t*>(pointer(mask)), pixels)
+                     : std::span<const uint8_t>(),
+                &invalid);
+        }
+        using namespace py::literals;
+        return py::dict("pixels"_a = d.pixels, "invalid_pixels"_a = invalid, "rmse"_a = d.rmse,
+                        "rmse_all"_a = d.rmseAll, "psnr"_a = d.psnr, "mean"_a = d.mean, "p99"_a = d.p99,
+                        "max"_a = d.max, "delta_e_mean"_a = d.deltaEMean, "delta_e_p99"_a = d.deltaE99,
+                        "delta_e_max"_a = d.deltaEMax);
     });
 }
 

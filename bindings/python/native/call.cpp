@@ -6,7 +6,7 @@
 #include <chrono>
 #include <thread>
 
-#include "progress.h"
+#include "native.h"
 
 namespace pel::python {
 
@@ -19,6 +19,11 @@ pid_t opener = 0;  // the process that first used OpenCL
 
 // The one that ends the interpreter, which releases objects meanwhile.
 std::atomic<std::thread::id> endingThread{};
+
+// What a progress callback raised, kept until the cancelled call has returned on the same thread.
+thread_local std::unique_ptr<py::error_already_set> raised;
+
+thread_local std::shared_ptr<Cancel> watched;
 
 bool interpreterGoes() {
 #if PY_VERSION_HEX >= 0x030D0000
@@ -47,6 +52,25 @@ auto takeGil(Take&& take) {
         stayHere();
     }
 }
+
+// Also where long work notices Ctrl-C. 0 cancels.
+int onProgress(void* user, double fraction, const char* what) {
+    if (watched && watched->asked()) return 0;
+    WithGil gil;
+    try {
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        const py::object callback = static_cast<Device*>(user)->progress;
+        if (callback.is_none()) return 1;
+        const py::object answer = callback(fraction, what);
+        return answer.is_none() || answer.cast<bool>();
+    } catch (py::error_already_set& error) {
+        raised = std::make_unique<py::error_already_set>(error);
+    } catch (const py::cast_error&) {
+        PyErr_SetString(PyExc_TypeError, "a progress callback returns True, False or None");
+        raised = std::make_unique<py::error_already_set>();
+    }
+    return 0;
+}
 }  // namespace
 
 WithoutGil::~WithoutGil() {
@@ -66,6 +90,13 @@ void refuseForked() {
                         "this process was forked from one that had used OpenCL, whose threads did not come "
                         "along: start processes by "
                         "multiprocessing.get_context(\"spawn\"), or open no device before"};
+}
+
+// Raises what a progress callback on this thread raised (or Ctrl-C seen there), if anything. Needs the GIL.
+static void raiseProgressException() {
+    if (!raised) return;
+    const std::unique_ptr<py::error_already_set> error = std::move(raised);
+    throw py::error_already_set(*error);
 }
 
 void call(const std::function<PelError()>& body) {
@@ -126,6 +157,19 @@ pellucid::Event markerOf(const pellucid::Device& device) {
 
 void interpreterEnds() {
     endingThread = std::this_thread::get_id();
+}
+
+void Cancel::watch() {
+    watched = shared_from_this();
+}
+
+Device::Device(pellucid::Device device) : handle(std::move(device)) {
+    pelDeviceSetProgress(handle.get(), onProgress, this);
+}
+Device::~Device() {
+    pelDeviceSetProgress(handle.get(), nullptr, nullptr);
+    WithoutGil free;  // as Owner does; `progress` goes after this, with the GIL
+    handle = pellucid::Device(nullptr);
 }
 
 PelImageDesc imageDesc(const ImageView& v) {

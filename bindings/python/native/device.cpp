@@ -1,7 +1,5 @@
-// Devices and events.
-#include "progress.h"
-
-#include <memory>
+// Devices, events and buffers.
+#include "native.h"
 
 namespace pel::python {
 
@@ -49,12 +47,9 @@ void bindDevice(py::module_& module) {
         opensDevices();
         uint32_t count = 0;
         call([&] { return pelDeviceCount(&count); });
+        const auto describe = structure<pelDeviceInfoDefaults>(pelDeviceEnumerate);
         py::list infos;
-        for (uint32_t i = 0; i < count; ++i) {
-            PelDeviceInfo info = pelDeviceInfoDefaults();
-            call([&] { return pelDeviceEnumerate(i, &info); });
-            infos.append(bytesOf(info));
-        }
+        for (uint32_t i = 0; i < count; ++i) infos.append(describe(i));
         return infos;
     });
     py::class_<Cancel, std::shared_ptr<Cancel>>(module, "Cancel")
@@ -72,47 +67,35 @@ void bindDevice(py::module_& module) {
                                                             pointer(queue));
                         });
                     })
-        .def("address", [](const Device& d) { return reinterpret_cast<uintptr_t>(d.handle.get()); })
-        .def("info",
-             [](const Device& d) {
-                 PelDeviceInfo info = pelDeviceInfoDefaults();
-                 call([&] { return pelDeviceGetInfo(d.handle.get(), &info); });
-                 return bytesOf(info);
-             })
-        .def("stats",
-             [](const Device& d) {
-                 PelDeviceStats stats = pelDeviceStatsDefaults();
-                 call([&] { return pelDeviceGetStats(d.handle.get(), &stats); });
-                 return bytesOf(stats);
-             })
+        .def("address", [](const Device& d) { return reinterpret_cast<uintptr_t>(d.get()); })
+        .def("info", structure<pelDeviceInfoDefaults>(pelDeviceGetInfo))
+        .def("stats", structure<pelDeviceStatsDefaults>(pelDeviceGetStats))
         .def("cl",
              [](const Device& d) {
                  void *context = nullptr, *device = nullptr, *queue = nullptr;
-                 call([&] { return pelDeviceGetCl(d.handle.get(), &context, &device, &queue); });
+                 call([&] { return pelDeviceGetCl(d.get(), &context, &device, &queue); });
                  return py::make_tuple(address(context), address(device), address(queue));
              })
         .def("marker", [](const Device& d) { return markerOf(d.handle); })
         .def_readwrite("progress", &Device::progress);
 
-    py::class_<pellucid::Event, Owner<pellucid::Event>>(module, "Event")
-        .def_static("from_cl",
-                    [](const Device& d, uintptr_t event) {
-                        PelEvent handle = nullptr;
-                        call([&] { return pelEventCreateFromCl(d.handle.get(), pointer(event), &handle); });
-                        return pellucid::Event(handle);
-                    })
+    using pellucid::Buffer, pellucid::Event;
+    py::class_<Event, Owner<Event>>(module, "Event")
+        .def_static("from_cl", maker<Event>(pelEventCreateFromCl))
         .def("wait", &waitInterruptibly)
-        .def("is_done",
-             [](const pellucid::Event& e) {
-                 int done = 0;
-                 call([&] { return pelEventIsDone(e.get(), &done); });
-                 return done != 0;
-             })
-        .def("cl", [](const pellucid::Event& e) {
-            void* event = nullptr;
-            call([&] { return pelEventGetCl(e.get(), &event); });
-            return address(event);
-        });
+        .def("is_done", value<int>(pelEventIsDone))
+        .def("cl", value<void*>(pelEventGetCl));
+
+    py::class_<Buffer, Owner<Buffer>>(module, "Buffer")
+        .def_static("create", maker<Buffer>(pelBufferCreate))
+        .def_static("from_host", maker<Buffer>(pelBufferCreateFromHost))
+        .def_static("from_cl", maker<Buffer>(pelBufferCreateFromCl))
+        .def("size", value<size_t>(pelBufferGetSize))
+        .def("cl", value<void*>(pelBufferGetCl))
+        .def("read", function(pelBufferRead))
+        .def("write", function(pelBufferWrite))
+        .def("map", value<void*>(pelBufferMap))
+        .def("unmap", function(pelBufferUnmap));
 }
 
 }  // namespace pel::python

@@ -1,7 +1,5 @@
-#include <memory>
-
 #include "io/lut/bc6h.h"
-#include "progress.h"
+#include "native.h"
 
 namespace pel::python {
 
@@ -10,11 +8,11 @@ namespace {
 template <class Desc, PelError (*Create)(PelDevice, const Desc*, PelLut*, const PelSubmit*)>
 std::pair<pellucid::Lut, pellucid::Event> created(const Device& d, const py::object& desc,
                                                   const Waits& waits) {
-    PelLut handle = nullptr;
-    const pellucid::Event done = submitted(waits, [&, what = structOf<Desc>(desc)](const PelSubmit* submit) {
-        return Create(d.handle.get(), what, &handle, submit);
+    Argument<const PelSubmit*> submit(waits);
+    pellucid::Lut lut = wrapped<pellucid::Lut>([&, what = structOf<Desc>(desc)](PelLut* handle) {
+        return Create(d.get(), what, handle, submit.get());
     });
-    return {pellucid::Lut(handle), done};
+    return {std::move(lut), pellucid::Event(submit.done)};
 }
 
 // Blocks of three halves per texel, and what they cost.
@@ -50,33 +48,10 @@ void bindLut(py::module_& module) {
         .def_static("shadow", created<PelShadowLutDesc, pelShadowLutCreate>)
         .def_static("specular", created<PelSpecularLutDesc, pelSpecularLutCreate>)
         .def_static("eye", created<PelEyeLutDesc, pelEyeLutCreate>)
-        .def_static("from_texels",
-                    [](const Device& d, const py::object& info, uintptr_t texels, size_t bytes) {
-                        PelLut handle = nullptr;
-                        call([&, what = structOf<PelLutInfo>(info)] {
-                            return pelLutCreateFromTexels(d.handle.get(), what,
-                                                          static_cast<const float*>(pointer(texels)), bytes,
-                                                          &handle);
-                        });
-                        return Lut(handle);
-                    })
-        .def("info",
-             [](const Lut& l) {
-                 PelLutInfo info = pelLutInfoDefaults();
-                 call([&] { return pelLutGetInfo(l.get(), &info); });
-                 return bytesOf(info);
-             })
-        .def("clipped",
-             [](const Lut& l) {
-                 uint64_t clipped = 0;
-                 call([&] { return pelLutCountClipped(l.get(), &clipped); });
-                 return clipped;
-             })
-        .def("read", [](const Lut& l, uint32_t encoding, uintptr_t to, size_t bytes, const Waits& waits) {
-            return submitted(waits, [&](const PelSubmit* submit) {
-                return pelLutRead(l.get(), PelLutEncoding(encoding), pointer(to), bytes, submit);
-            });
-        });
+        .def_static("from_texels", maker<Lut>(pelLutCreateFromTexels))
+        .def("info", structure<pelLutInfoDefaults>(pelLutGetInfo))
+        .def("clipped", value<uint64_t>(pelLutCountClipped))
+        .def("read", function(pelLutRead));
 }
 
 }  // namespace pel::python

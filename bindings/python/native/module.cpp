@@ -1,7 +1,24 @@
-// The extension module pellucid._native.
+// The extension module pellucid._native. Defaults and layout of the plain structures are a table generated
+// from pellucid.h.
 #include "native.h"
 
 using namespace pel::python;
+
+namespace {
+struct StructInfo {
+    const char* name;
+    size_t bytes;
+    void (*defaults)(void* to);
+    std::vector<std::pair<const char*, size_t>> offsets;
+};
+#include "structs.inc"
+
+const StructInfo& find(const std::string& name) {
+    for (const StructInfo& info : structInfos)
+        if (name == info.name) return info;
+    throw py::key_error(name);
+}
+}  // namespace
 
 PYBIND11_MODULE(_native, module) {
     module.doc() = "The C interface, for the Python files of this package alone.";
@@ -15,15 +32,22 @@ PYBIND11_MODULE(_native, module) {
     });
     module.def("version", &pelVersion);
     module.def("error_name", [](int code) { return pelErrorName(PelError(code)); });
-    bindStructs(module);
+    module.def("struct_defaults", [](const std::string& name) {
+        const StructInfo& info = find(name);
+        std::string bytes(info.bytes, '\0');
+        info.defaults(bytes.data());
+        return py::bytes(bytes);
+    });
+    module.def("struct_offsets", [](const std::string& name) {
+        py::dict offsets;
+        for (const auto& [field, offset] : find(name).offsets) offsets[field] = offset;
+        return offsets;
+    });
     bindDevice(module);
-    bindBuffer(module);
     bindMesh(module);
     bindProfile(module);
     bindScatter(module);
-    bindTextureScatter(module);
     bindLut(module);
     bindShader(module);
-    bindCompare(module);
     bindBatch(module);
 }

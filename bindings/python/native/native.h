@@ -6,7 +6,9 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstring>
 #include <functional>
@@ -16,6 +18,7 @@
 #include <span>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -113,16 +116,28 @@ using Owner = std::unique_ptr<T, DeletedWithoutGil<T>>;
 
 using Waits = std::vector<pellucid::Event>;
 
-// Calls `body` with a PelSubmit after `waits`; returns the event.
-template <class Body>
-pellucid::Event submitted(const Waits& waits, Body&& body) {
-    std::vector<PelEvent> handles;
-    for (const pellucid::Event& e : waits) handles.push_back(e.get());
-    PelEvent done = nullptr;
-    const PelSubmit submit{handles.data(), uint32_t(handles.size()), &done};
-    call([&] { return body(&submit); });
-    return pellucid::Event(done);
-}
+// A device, and the Python callable that is called while it works.
+struct Device {
+    pellucid::Device handle;
+    py::object progress = py::none();
+
+    explicit Device(pellucid::Device device);
+    ~Device();
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+    PelDevice get() const { return handle.get(); }
+};
+
+// Ends the call of the thread that watches it, where that call next reports its progress.
+class Cancel : public std::enable_shared_from_this<Cancel> {
+  public:
+    void watch();
+    void ask() { asked_ = true; }
+    bool asked() const { return asked_; }
+
+  private:
+    std::atomic<bool> asked_{false};
+};
 
 // Vertex data as Python passes it: buffer, byte offset, byte stride, count.
 using VertexView = std::tuple<pellucid::Buffer, uint64_t, uint32_t, uint32_t>;
@@ -135,16 +150,179 @@ using ImageView =
     std::tuple<pellucid::Buffer, uint32_t, uint32_t, uint32_t, uint64_t, uint64_t, uint64_t, uint64_t>;
 PelImageDesc imageDesc(const ImageView& v);
 
-void bindStructs(py::module_& module);
+// Argument<C>: a parameter of type C of the C interface, made of the Python value that stands for it. Numbers
+// and enumerations are integers or floats.
+template <class C>
+struct Argument {
+    using Python = std::conditional_t<std::is_enum_v<C>, uint32_t, C>;
+    explicit Argument(Python given) : value(C(given)) {}
+    C get() { return value; }
+    C value;
+};
+// Numbers in memory, and the elements of arrays, are addresses; single structures are the objects that hold
+// them, or None.
+template <class T>
+struct Argument<T*> {
+    static constexpr bool address =
+        std::is_void_v<T> || std::is_arithmetic_v<T> || std::is_same_v<T, const PelGaussian> ||
+        std::is_same_v<T, const PelLight> || std::is_same_v<T, const PelVertexRange>;
+    using Python = std::conditional_t<address, uintptr_t, py::object>;
+    explicit Argument(const Python& given) {
+        if constexpr (address)
+            value = static_cast<T*>(pointer(given));
+        else if (!given.is_none())
+            value = structOf<std::remove_const_t<T>>(given);
+    }
+    T* get() { return value; }
+    T* value = nullptr;
+};
+template <>
+struct Argument<const char*> {
+    using Python = std::string;
+    explicit Argument(std::string given) : text(std::move(given)) {}
+    const char* get() { return text.c_str(); }
+    std::string text;
+};
+template <class Desc, class View, Desc (*describe)(const View&)>
+struct ViewArgument {
+    using Python = std::optional<View>;
+    explicit ViewArgument(const Python& given) {
+        if (given) desc = describe(*given);
+    }
+    const Desc* get() { return desc ? &*desc : nullptr; }
+    std::optional<Desc> desc;
+};
+template <>
+struct Argument<const PelImageDesc*> : ViewArgument<PelImageDesc, ImageView, imageDesc> {
+    using ViewArgument::ViewArgument;
+};
+template <>
+struct Argument<const PelVertexView*> : ViewArgument<PelVertexView, VertexView, vertexView> {
+    using ViewArgument::ViewArgument;
+};
+// Events to wait for; the event of the work comes back.
+template <>
+struct Argument<const PelSubmit*> {
+    using Python = Waits;
+    explicit Argument(Waits given) : waits(std::move(given)) {
+        for (const pellucid::Event& e : waits) handles.push_back(e.get());
+    }
+    const PelSubmit* get() {
+        submit = {handles.data(), uint32_t(handles.size()), &done};
+        return &submit;
+    }
+    Waits waits;
+    std::vector<PelEvent> handles;
+    PelEvent done = nullptr;
+    PelSubmit submit{};
+};
+template <class Wrapper>
+struct HandleArgument {
+    using Python = const Wrapper*;  // None: nullptr
+    explicit HandleArgument(Python given) : object(given) {}
+    auto get() { return object ? object->get() : nullptr; }
+    Python object;
+};
+#define PEL_HANDLE(handle, wrapper)                     \
+    template <>                                         \
+    struct Argument<handle> : HandleArgument<wrapper> { \
+        using HandleArgument::HandleArgument;           \
+    }
+PEL_HANDLE(PelDevice, Device);
+PEL_HANDLE(PelEvent, pellucid::Event);
+PEL_HANDLE(PelBuffer, pellucid::Buffer);
+PEL_HANDLE(PelMeshTopology, pellucid::MeshTopology);
+PEL_HANDLE(PelLiveMesh, pellucid::LiveMesh);
+PEL_HANDLE(PelProfile, pellucid::Profile);
+PEL_HANDLE(PelLut, pellucid::Lut);
+PEL_HANDLE(PelScatter, pellucid::Scatter);
+PEL_HANDLE(PelTextureScatter, pellucid::TextureScatter);
+#undef PEL_HANDLE
+
+// A Python function that calls `f`; returns the event of submitted work.
+template <class... A>
+auto function(PelError (*f)(A...)) {
+    return [f](typename Argument<A>::Python... given) {
+        std::tuple<Argument<A>...> arguments(given...);
+        call([&] { return std::apply([&](Argument<A>&... a) { return f(a.get()...); }, arguments); });
+        if constexpr ((std::is_same_v<A, const PelSubmit*> || ...))
+            return pellucid::Event(std::get<Argument<const PelSubmit*>>(arguments).done);
+    };
+}
+
+// The same for an `f` whose last parameter is where its result goes: `result(value)` is returned.
+template <class Result, class... A, size_t... I>
+auto functionWithout(PelError (*f)(A...), Result result, std::index_sequence<I...>) {
+    using All = std::tuple<A...>;
+    return [f, result](typename Argument<std::tuple_element_t<I, All>>::Python... given) {
+        std::tuple<Argument<std::tuple_element_t<I, All>>...> arguments(given...);
+        auto value = result.initial();
+        call([&] { return f(std::get<I>(arguments).get()..., &value); });
+        return result(value);
+    };
+}
+template <class Result, class... A>
+auto functionOf(PelError (*f)(A...), Result result) {
+    return functionWithout(f, result, std::make_index_sequence<sizeof...(A) - 1>());
+}
+template <auto defaults>
+struct StructResult {
+    auto initial() const { return defaults(); }
+    template <class T>
+    py::bytes operator()(const T& value) const {
+        return bytesOf(value);
+    }
+};
+// The bytes of a structure, from a function such as pelLutGetInfo.
+template <auto defaults, class... A>
+auto structure(PelError (*f)(A...)) {
+    return functionOf(f, StructResult<defaults>());
+}
+
+template <class T>
+struct ValueResult {
+    T initial() const { return {}; }
+    auto operator()(T value) const {
+        if constexpr (std::is_same_v<T, void*>)
+            return address(value);
+        else if constexpr (std::is_same_v<T, const char*>)
+            return std::string(value);
+        else
+            return value;
+    }
+};
+// A number, an address or a text.
+template <class T, class... A>
+auto value(PelError (*f)(A...)) {
+    return functionOf(f, ValueResult<T>());
+}
+
+template <class Wrapper, class H>
+struct HandleResult {
+    H initial() const { return nullptr; }
+    Wrapper operator()(H handle) const { return Wrapper(handle); }
+};
+// An object.
+template <class Wrapper, class... A>
+auto maker(PelError (*f)(A...)) {
+    using H = std::remove_pointer_t<std::tuple_element_t<sizeof...(A) - 1, std::tuple<A...>>>;
+    return functionOf(f, HandleResult<Wrapper, H>());
+}
+
+// An object whose making needs more than arguments passed on: `create(&handle)`.
+template <class Wrapper, class Create>
+Wrapper wrapped(Create&& create) {
+    decltype(std::declval<const Wrapper&>().get()) handle = nullptr;
+    call([&] { return create(&handle); });
+    return Wrapper(handle);
+}
+
 void bindDevice(py::module_& module);
-void bindBuffer(py::module_& module);
 void bindMesh(py::module_& module);
 void bindProfile(py::module_& module);
 void bindScatter(py::module_& module);
-void bindTextureScatter(py::module_& module);
 void bindLut(py::module_& module);
 void bindShader(py::module_& module);
 void bindBatch(py::module_& module);
-void bindCompare(py::module_& module);
 
 }  // namespace pel::python

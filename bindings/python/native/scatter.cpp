@@ -1,55 +1,58 @@
-#include "progress.h"
+// Scattering alone, on the screen and in a texture, and the surface integral.
+#include "native.h"
 
 namespace pel::python {
 
 void bindScatter(py::module_& module) {
-    using pellucid::Scatter;
+    using pellucid::Scatter, pellucid::TextureScatter;
     py::class_<Scatter, Owner<Scatter>>(module, "Scatter")
+        .def_static("create", maker<Scatter>(pelScatterCreate))
+        .def("set_material", function(pelScatterSetMaterial))
+        .def("set_controls", function(pelScatterSetControls))
+        .def("set_image", function(pelScatterSetImage))
+        .def("execute", function(pelScatterExecute))
+        .def("stats", structure<pelScatterStatsDefaults>(pelScatterGetStats));
+
+    py::class_<TextureScatter, Owner<TextureScatter>>(module, "TextureScatter")
         .def_static("create",
-                    [](const Device& d) {
-                        PelScatter handle = nullptr;
-                        call([&] { return pelScatterCreate(d.handle.get(), &handle); });
-                        return Scatter(handle);
+                    [](const Device& d, uint32_t width, uint32_t height, uint32_t vertices, uintptr_t indices,
+                       uint64_t count, uintptr_t uvs) {
+                        PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
+                        desc.width = width, desc.height = height;
+                        desc.numVertices = vertices, desc.numIndices = count;
+                        desc.indices = static_cast<const uint32_t*>(pointer(indices));
+                        desc.uvs = static_cast<const float*>(pointer(uvs));
+                        return wrapped<TextureScatter>(
+                            [&](auto* handle) { return pelTextureScatterCreate(d.get(), &desc, handle); });
                     })
-        .def("set_material",
-             [](const Scatter& s, uint32_t id, const std::optional<pellucid::Profile>& profile, float scale) {
-                 call([&] {
-                     return pelScatterSetMaterial(s.get(), id, profile ? profile->get() : nullptr, scale);
-                 });
-             })
-        .def("set_controls",
-             [](const Scatter& s, uint32_t id, const py::object& controls) {
-                 call([&, c = structOf<PelScatterControls>(controls)] {
-                     return pelScatterSetControls(s.get(), id, c);
-                 });
-             })
-        .def("set_image",
-             [](const Scatter& s, uint32_t slot, const std::optional<ImageView>& image) {
-                 const PelImageDesc desc = image ? imageDesc(*image) : pelImageDescDefaults();
-                 call([&] {
-                     return pelScatterSetImage(s.get(), PelImageSlot(slot), image ? &desc : nullptr);
-                 });
-             })
-        .def("execute",
-             [](const Scatter& s, const py::object& params, const ImageView& irradiance,
-                const std::optional<ImageView>& positions, const std::optional<ImageView>& depth,
-                const std::optional<ImageView>& ids, const ImageView& out, const Waits& waits) {
-                 const auto desc = [](const std::optional<ImageView>& v) {
-                     return v ? imageDesc(*v) : pelImageDescDefaults();
-                 };
-                 const PelImageDesc e = imageDesc(irradiance), p = desc(positions), z = desc(depth),
-                                    i = desc(ids), o = imageDesc(out);
-                 const auto settings = *structOf<PelScatterParams>(params);
-                 return submitted(waits, [&](const PelSubmit* submit) {
-                     return pelScatterExecute(s.get(), &settings, &e, positions ? &p : nullptr,
-                                              depth ? &z : nullptr, ids ? &i : nullptr, &o, submit);
-                 });
-             })
-        .def("stats", [](const Scatter& s) {
-            PelScatterStats stats = pelScatterStatsDefaults();
-            call([&] { return pelScatterGetStats(s.get(), &stats); });
-            return bytesOf(stats);
-        });
+        .def("set_positions", function(pelTextureScatterSetPositions))
+        .def("draw", function(pelTextureScatterDraw))
+        .def("execute", function(pelTextureScatterExecute))
+        .def("stats", structure<pelTextureScatterStatsDefaults>(pelTextureScatterGetStats));
+
+    module.def("surface_integral",
+               [](const Device& d, uintptr_t positions, uint32_t vertices, uintptr_t indices, uint64_t count,
+                  uintptr_t irradiance, uint32_t at, const pellucid::Profile* profile, float radius,
+                  float unit, const std::array<float, 3>& cut, float tolerance, const VertexView& points,
+                  const VertexView& result, const Waits& waits) {
+                   PelSurfaceIntegralDesc desc = pelSurfaceIntegralDescDefaults();
+                   desc.numVertices = vertices;
+                   desc.positions = static_cast<const float*>(pointer(positions));
+                   desc.indices = static_cast<const uint32_t*>(pointer(indices));
+                   desc.numIndices = count;
+                   desc.irradiance = static_cast<const float*>(pointer(irradiance));
+                   desc.irradianceAt = PelIrradianceAt(at);
+                   desc.profile = profile ? profile->get() : nullptr;
+                   desc.diffusionRadius = radius;
+                   desc.millimetresPerUnit = unit;
+                   std::copy(cut.begin(), cut.end(), desc.cut);
+                   desc.tolerance = tolerance;
+                   desc.points = vertexView(points);
+                   desc.result = vertexView(result);
+                   Argument<const PelSubmit*> submit(waits);
+                   call([&] { return pelSurfaceIntegral(d.get(), &desc, submit.get()); });
+                   return pellucid::Event(submit.done);
+               });
 }
 
 }  // namespace pel::python

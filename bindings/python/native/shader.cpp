@@ -1,13 +1,10 @@
 #include <map>
-#include <memory>
 #include <mutex>
-#include <vector>
 
-#include "progress.h"
+#include "native.h"
 
 namespace pel::python {
 
-namespace {
 // A shader, and a lock that lets calls from other threads wait, and later ones for a call that Ctrl-C left
 // behind.
 struct Shader {
@@ -18,138 +15,54 @@ struct Shader {
     PelShader get() const { return handle.get(); }
 };
 
-template <class Body>
-void locked(const Shader& shader, Body&& body) {
-    call([&] {
-        const std::scoped_lock lock(*shader.busy);
-        return body();
-    });
-}
-}  // namespace
+// Locked where the call begins, without the GIL.
+template <>
+struct Argument<PelShader> {
+    using Python = const Shader*;
+    explicit Argument(Python given) : shader(given) {}
+    PelShader get() {
+        lock = std::unique_lock(*shader->busy);
+        return shader->get();
+    }
+    Python shader;
+    std::unique_lock<std::recursive_mutex> lock{};
+};
 
 void bindShader(py::module_& module) {
-    using pellucid::Lut;
     py::class_<Shader, Owner<Shader>>(module, "Shader")
-        .def_static("create",
-                    [](const Device& d) {
-                        PelShader handle = nullptr;
-                        call([&] { return pelShaderCreate(d.handle.get(), &handle); });
-                        return Shader(handle);
-                    })
-        .def("set_options",
-             [](const Shader& s, const py::object& options) {
-                 locked(s, [&, o = structOf<PelShaderOptions>(options)] {
-                     return pelShaderSetOptions(s.get(), o);
-                 });
-             })
-        .def("set_image",
-             [](const Shader& s, uint32_t slot, const std::optional<ImageView>& image) {
-                 const PelImageDesc desc = image ? imageDesc(*image) : pelImageDescDefaults();
-                 locked(s, [&] {
-                     return pelShaderSetImage(s.get(), PelImageSlot(slot), image ? &desc : nullptr);
-                 });
-             })
-        .def("set_material",
-             [](const Shader& s, uint32_t id, const py::object& material, const Lut* curvature,
-                const Lut* shadow) {
-                 const PelMaterial* m = material.is_none() ? nullptr : structOf<PelMaterial>(material);
-                 locked(s, [&] {
-                     return pelShaderSetMaterial(s.get(), id, m, curvature ? curvature->get() : nullptr,
-                                                 shadow ? shadow->get() : nullptr);
-                 });
-             })
+        .def_static("create", maker<Shader>(pelShaderCreate))
+        .def("set_options", function(pelShaderSetOptions))
+        .def("set_image", function(pelShaderSetImage))
+        .def("set_material", function(pelShaderSetMaterial))
         .def("set_normal_map",
              [](const Shader& s, uint32_t id, const std::vector<ImageView>& levels) {
                  std::vector<PelImageDesc> all;
                  for (const ImageView& level : levels) all.push_back(imageDesc(level));
-                 locked(s,
-                        [&] { return pelShaderSetNormalMap(s.get(), id, all.data(), uint32_t(all.size())); });
-             })
-        .def("set_scattered_texture",
-             [](const Shader& s, uint32_t id, const std::optional<ImageView>& texture) {
-                 const PelImageDesc desc = texture ? imageDesc(*texture) : pelImageDescDefaults();
-                 locked(s,
-                        [&] { return pelShaderSetScatteredTexture(s.get(), id, texture ? &desc : nullptr); });
-             })
-        .def("set_eye",
-             [](const Shader& s, uint32_t id, const py::object& eye, const Lut* caustics) {
-                 const PelEye* e = eye.is_none() ? nullptr : structOf<PelEye>(eye);
-                 locked(s, [&] {
-                     return pelShaderSetEye(s.get(), id, e, caustics ? caustics->get() : nullptr);
+                 Argument<PelShader> shader(&s);
+                 call([&] {
+                     return pelShaderSetNormalMap(shader.get(), id, all.data(), uint32_t(all.size()));
                  });
              })
-        .def("set_iris_texture",
-             [](const Shader& s, uint32_t id, const std::optional<ImageView>& texture) {
-                 const PelImageDesc desc = texture ? imageDesc(*texture) : pelImageDescDefaults();
-                 locked(s, [&] { return pelShaderSetIrisTexture(s.get(), id, texture ? &desc : nullptr); });
-             })
-        .def("set_reflection_cube",
-             [](const Shader& s, const std::optional<ImageView>& faces) {
-                 const PelImageDesc desc = faces ? imageDesc(*faces) : pelImageDescDefaults();
-                 locked(s, [&] { return pelShaderSetReflectionCube(s.get(), faces ? &desc : nullptr); });
-             })
-        .def("set_lights",
-             [](const Shader& s, const std::vector<py::object>& lights) {
-                 std::vector<PelLight> all;
-                 for (const py::object& light : lights) all.push_back(*structOf<PelLight>(light));
-                 locked(s, [&] { return pelShaderSetLights(s.get(), all.data(), uint32_t(all.size())); });
-             })
-        .def("set_light_image",
-             [](const Shader& s, uint32_t light, uint32_t slot, const std::optional<ImageView>& image) {
-                 const PelImageDesc desc = image ? imageDesc(*image) : pelImageDescDefaults();
-                 locked(s, [&] {
-                     return pelShaderSetLightImage(s.get(), light, PelLightSlot(slot),
-                                                   image ? &desc : nullptr);
-                 });
-             })
-        .def("set_ambient",
-             [](const Shader& s, const py::object& ambient) {
-                 locked(s,
-                        [&, a = structOf<PelAmbient>(ambient)] { return pelShaderSetAmbient(s.get(), a); });
-             })
-        .def("set_ambient_cube",
-             [](const Shader& s, const std::optional<ImageView>& faces) {
-                 const PelImageDesc desc = faces ? imageDesc(*faces) : pelImageDescDefaults();
-                 locked(s, [&] { return pelShaderSetAmbientCube(s.get(), faces ? &desc : nullptr); });
-             })
-        .def("set_camera",
-             [](const Shader& s, const py::object& camera) {
-                 locked(s, [&, c = structOf<PelCamera>(camera)] { return pelShaderSetCamera(s.get(), c); });
-             })
-        .def("commit", [](const Shader& s) { locked(s, [&] { return pelShaderCommit(s.get()); }); })
-        .def("execute",
-             [](const Shader& s, const Waits& waits) {
-                 return submitted(waits, [&](const PelSubmit* submit) {
-                     const std::scoped_lock lock(*s.busy);
-                     return pelShaderExecute(s.get(), submit);
-                 });
-             })
-        // Blocking, so that the device's progress callback runs.
-        .def("execute_told",
-             [](const Shader& s) { locked(s, [&] { return pelShaderExecute(s.get(), nullptr); }); })
-        .def("material",
-             [](const Shader& s, uint32_t id) {
-                 PelMaterial material = pelMaterialDefaults();
-                 locked(s, [&] { return pelShaderGetMaterial(s.get(), id, &material); });
-                 material.profile = nullptr;  // the shader's own
-                 return bytesOf(material);
-             })
-        .def("warnings",
+        .def("set_scattered_texture", function(pelShaderSetScatteredTexture))
+        .def("set_eye", function(pelShaderSetEye))
+        .def("set_iris_texture", function(pelShaderSetIrisTexture))
+        .def("set_reflection_cube", function(pelShaderSetReflectionCube))
+        .def("set_lights", function(pelShaderSetLights))
+        .def("set_light_image", function(pelShaderSetLightImage))
+        .def("set_ambient", function(pelShaderSetAmbient))
+        .def("set_ambient_cube", function(pelShaderSetAmbientCube))
+        .def("set_camera", function(pelShaderSetCamera))
+        .def("commit", function(pelShaderCommit))
+        .def("execute", function(pelShaderExecute))
+        // So that the device's progress callback runs.
+        .def("execute_blocking",
              [](const Shader& s) {
-                 const char* text = "";
-                 std::string copy;
-                 locked(s, [&] {
-                     const PelError error = pelShaderGetWarnings(s.get(), &text);
-                     copy = text;
-                     return error;
-                 });
-                 return copy;
+                 Argument<PelShader> shader(&s);
+                 call([&] { return pelShaderExecute(shader.get(), nullptr); });
              })
-        .def("stats", [](const Shader& s) {
-            PelShaderStats stats = pelShaderStatsDefaults();
-            locked(s, [&] { return pelShaderGetStats(s.get(), &stats); });
-            return bytesOf(stats);
-        });
+        .def("material", structure<pelMaterialDefaults>(pelShaderGetMaterial))
+        .def("warnings", value<const char*>(pelShaderGetWarnings))
+        .def("stats", structure<pelShaderStatsDefaults>(pelShaderGetStats));
     module.def("warm_up_programs", [](const Device& d, uint32_t groups,
                                       const std::vector<const Shader*>& shaders, uint32_t threads) {
         uint32_t built = 0;
@@ -168,7 +81,7 @@ void bindShader(py::module_& module) {
             work.shaders = handles.data();
             work.numShaders = uint32_t(handles.size());
             work.threads = threads;
-            return pelWarmUpPrograms(d.handle.get(), &work, &built);
+            return pelWarmUpPrograms(d.get(), &work, &built);
         });
         return built;
     });

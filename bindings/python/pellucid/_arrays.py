@@ -1,6 +1,7 @@
 """NumPy arrays, PyOpenCL arrays and buffers as the views that the C interface takes, without copying."""
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, Optional
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import DTypeLike, NDArray
 from . import _in_flight, _native
 from ._struct import to_enum
 from ._types import Format
-from .device import Buffer, Device, Event, _cl_address
+from .device import Buffer, Device
 
 # Formats by type and number of components. One-component integers are ids in the material slot and fractions
 # elsewhere.
@@ -37,8 +38,7 @@ def as_array(value: Any, what: str) -> NDArray[Any]:
     if hasattr(value, "__array_interface__") or isinstance(value, (memoryview, bytearray)):
         return np.asarray(value)
     raise TypeError(f"{what} is a {type(value).__name__}; a NumPy array, or an object with the buffer or "
-                    f"DLPack "
-                    "protocol, is needed")
+                    "DLPack protocol, is needed")
 
 
 def _check_byte_order(dtype: np.dtype[Any], what: str) -> None:
@@ -56,12 +56,10 @@ class Span:
     """
 
     def __init__(self, device: Device, array: NDArray[Any], what: str, output: bool) -> None:
-        if any(s < 0 for n, s in zip(array.shape, array.strides) if n > 1):
-            raise ValueError(f"{what} has a negative stride, which the device cannot follow; pass "
-                             f"array.copy()")
-        if any(s == 0 for n, s in zip(array.shape, array.strides) if n > 1):
-            raise ValueError(f"{what} is broadcast (a stride of 0), which the device cannot follow; pass "
-                             f"array.copy()")
+        least = min((s for n, s in zip(array.shape, array.strides) if n > 1), default=1)
+        if least <= 0:
+            problem = "has a negative stride" if least < 0 else "is broadcast (a stride of 0)"
+            raise ValueError(f"{what} {problem}, which the device cannot follow; pass array.copy()")
         if output and not array.flags.writeable:
             raise ValueError(f"{what} is read-only and the result goes there")
         _check_byte_order(array.dtype, what)
@@ -156,8 +154,7 @@ def vertex_view(device: Device, value: Any, components: int, what: str, output: 
         array = as_array(value, what)
         shape, strides, dtype = array.shape, array.strides, array.dtype
     if dtype != np.float32:
-        raise ValueError(f"{what} is {dtype}; float32 is needed (array.astype(numpy.float32) makes a copy "
-                         f"that is)")
+        raise ValueError(f"{what} is {dtype}; float32 is needed, such as array.astype(numpy.float32)")
     if len(shape) != (2 if components > 1 else 1) or (components > 1 and shape[1] != components):
         raise ValueError(f"{what} has the shape {tuple(shape)}; {wanted} is needed")
     if components > 1 and strides[1] != 4:
@@ -196,8 +193,8 @@ class Image:
     """
 
     def __init__(self, device: Device, data: Any, format: Format | str | None = None, *, width: int = 0,
-                 height: int = 0,
-                 byte_offset: int = 0, pixel_stride: int = 0, row_stride: int = 0, plane_stride: int = 0,
+                 height: int = 0, byte_offset: int = 0, pixel_stride: int = 0, row_stride: int = 0,
+                 plane_stride: int = 0,
                  _slot: str = "the image", _output: bool = False, _ids: bool = False) -> None:
         self.format = None if format is None else to_enum(Format, format, "format")
         if isinstance(data, Buffer):
@@ -219,8 +216,7 @@ class Image:
         _check_byte_order(dtype, _slot)
         if len(shape) not in (2, 3):
             raise ValueError(f"{_slot} has the shape {tuple(shape)}; (height, width) or (height, width, "
-                             f"components) is "
-                             "needed")
+                             "components) is needed")
         components = shape[2] if len(shape) == 3 else 1
         between = strides[2] if len(shape) == 3 and components > 1 else dtype.itemsize
         planar = between != dtype.itemsize
@@ -248,21 +244,30 @@ class Image:
             if (dtype.name, components) == ("float32", 3):
                 return Format.PLANAR_RGB32F
             raise ValueError(f"{slot} has components that lie apart; that works for three of float32 only, "
-                             f"else pass "
-                             "numpy.ascontiguousarray(array)")
+                             "else pass numpy.ascontiguousarray(array)")
         if ids and components == 1 and dtype.name in _ID_FORMATS:
             return _ID_FORMATS[dtype.name]
         if ids and dtype.kind in "iub":
             raise ValueError(f"{slot} has {components} components of {dtype}; ids are one of uint8, uint16 "
-                             f"or uint32 "
-                             "(array.astype(numpy.uint8) makes a copy that is)")
+                             "or uint32 (array.astype(numpy.uint8) makes a copy that is)")
         found = _FORMATS.get((dtype.name, components))
         if found is None:
             raise ValueError(f"{slot} has {components} components of {dtype}, which no format stores; "
-                             f"float32 or float16 "
-                             "with 1 to 4, uint8 with 1 or 4, uint16 with 1 or int16 with 2 would do "
-                             "(array.astype(numpy.float32) makes a copy that is)")
+                             "float32 or float16 with 1 to 4, uint8 with 1 or 4, uint16 with 1 or int16 with "
+                             "2 would do (array.astype(numpy.float32) makes a copy that is)")
         return found
+
+
+def to_image(device: Device, value: Any, what: str, output: bool = False, ids: bool = False) -> Any:
+    """An Image of what may be one already, or None."""
+    if value is None or isinstance(value, Image):
+        return value
+    return Image(device, value, _slot=what, _output=output, _ids=ids)
+
+
+def natives(views: Iterable[Any]) -> list[Any]:
+    """What the native module takes for images and views, None for none."""
+    return [None if v is None else (v._view if isinstance(v, Image) else v).native for v in views]
 
 
 def output_array(out: Optional[NDArray[Any]], shape: tuple[int, ...], dtype: DTypeLike,
@@ -271,10 +276,5 @@ def output_array(out: Optional[NDArray[Any]], shape: tuple[int, ...], dtype: DTy
     if out is None:
         return np.empty(shape, dtype)
     if out.shape != shape or out.dtype != np.dtype(dtype):
-        raise ValueError(f"{what} is {out.dtype} of shape {out.shape}; {np.dtype(dtype)} of shape {shape} is "
-                         f"needed")
+        raise ValueError(f"{what} is {out.dtype} of shape {out.shape}; it must be {np.dtype(dtype)}, {shape}")
     return out
-
-
-__all__ = ["Image", "Vertices", "Span", "View", "as_array", "vertex_view", "output_array", "submit", "Event",
-           "_cl_address"]

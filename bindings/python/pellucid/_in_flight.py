@@ -2,7 +2,7 @@
 whoever lets go of it.
 
 Ctrl-C is noticed where a call tells its progress and where an event is waited for. What does neither runs
-`aside`.
+`interruptible`.
 """
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from . import _native
 
 # By the order of submission. No lock: finalizers and signal handlers submit work, too, and may come in the
 # middle of any line here; each operation on the dictionary is one step.
-_flying: dict[int, tuple[Union[_native.Event, _Aside], tuple[Any, ...]]] = {}
+_flying: dict[int, tuple[Union[_native.Event, _Call], tuple[Any, ...]]] = {}
 _numbers = itertools.count()
 
 
-class _Aside:
+class _Call:
     """A call on a thread of its own."""
 
     result: Any = None
@@ -52,7 +52,7 @@ class _Aside:
         self._done.wait()  # signals come through
 
 
-def aside(call: Callable[[], Any], *used: Any) -> Any:
+def interruptible(call: Callable[[], Any], *used: Any) -> Any:
     """Returns call(), which Ctrl-C can leave behind: it then goes on, and `used` lives until it is done.
 
     For calls of the library that may take long without telling their progress. No signal reaches other
@@ -60,7 +60,7 @@ def aside(call: Callable[[], Any], *used: Any) -> Any:
     """
     if threading.current_thread() is not threading.main_thread():
         return call()
-    running = _Aside(call)
+    running = _Call(call)
     try:
         running.wait()
     except BaseException:
@@ -83,7 +83,7 @@ def kept(device: _native.Device, *used: Any) -> Iterator[None]:
         raise
 
 
-def hold(event: Union[_native.Event, _Aside], *used: Any) -> None:
+def hold(event: Union[_native.Event, _Call], *used: Any) -> None:
     """Keeps `used` alive until `event` is done."""
     sweep()
     _flying[next(_numbers)] = (event, used)
@@ -102,9 +102,9 @@ def in_flight() -> int:
     return len(_flying)
 
 
-def _finished(event: Union[_native.Event, _Aside]) -> bool:
+def _finished(event: Union[_native.Event, _Call]) -> bool:
     try:
-        return event.is_done()
+        return bool(event.is_done())
     except Exception:  # failed work uses nothing any more; whoever waits for it gets the error
         return True
 

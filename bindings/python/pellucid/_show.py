@@ -15,6 +15,12 @@ def srgb(linear: ArrayLike) -> NDArray[np.uint8]:
     return np.rint(255 * np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)).astype(np.uint8)
 
 
+def linear(encoded: ArrayLike) -> NDArray[np.float32]:
+    """The inverse, of values from 0 to 1."""
+    x = np.asarray(encoded, np.float64)
+    return np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4).astype(np.float32)
+
+
 def png(pixels: NDArray[np.uint8]) -> bytes:
     """(height, width, 3) sRGB bytes as a PNG file [ISO/IEC 15948]."""
     height, width, _ = pixels.shape

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _native
 
 E = TypeVar("E", bound=IntEnum)
+T = TypeVar("T")
 S = TypeVar("S", bound="Struct")
 
 
@@ -144,23 +145,31 @@ class Struct(metaclass=_PublicNames):
     __hash__ = None  # type: ignore[assignment]
 
 
-class _Field:
+class _Field(Generic[T]):
+    """An attribute over a field of the C structure."""
+
     def __init__(self, name: str) -> None:
         self.name = name
+
+    @overload
+    def __get__(self, owner: None, kind: Any) -> _Field[T]: ...
+    @overload
+    def __get__(self, owner: Struct, kind: Any) -> T: ...
+    def __get__(self, owner: Struct | None, kind: Any) -> Any:
+        return self if owner is None else self._read(owner, owner._data[self.name][0])
+
+    def _read(self, owner: Struct, stored: Any) -> T:
+        raise NotImplementedError
 
     def _fail(self, owner: Struct, value: Any, right: str) -> ValueError:
         return ValueError(f"{type(owner).__name__}.{self.name} is {value!r}; it must be {right}")
 
 
-class FloatField(_Field):
+class FloatField(_Field[float]):
     """A float32 or float64."""
 
-    @overload
-    def __get__(self, owner: None, kind: Any) -> FloatField: ...
-    @overload
-    def __get__(self, owner: Struct, kind: Any) -> float: ...
-    def __get__(self, owner: Struct | None, kind: Any) -> Any:
-        return self if owner is None else float(owner._data[self.name][0])
+    def _read(self, owner: Struct, stored: Any) -> float:
+        return float(stored)
 
     def __set__(self, owner: Struct, value: float) -> None:
         try:
@@ -169,15 +178,11 @@ class FloatField(_Field):
             raise self._fail(owner, value, "a number") from None
 
 
-class IntField(_Field):
+class IntField(_Field[int]):
     """An unsigned integer or a flag."""
 
-    @overload
-    def __get__(self, owner: None, kind: Any) -> IntField: ...
-    @overload
-    def __get__(self, owner: Struct, kind: Any) -> int: ...
-    def __get__(self, owner: Struct | None, kind: Any) -> Any:
-        return self if owner is None else int(owner._data[self.name][0])
+    def _read(self, owner: Struct, stored: Any) -> int:
+        return int(stored)
 
     def __set__(self, owner: Struct, value: int) -> None:
         limits = np.iinfo(owner._dtype[self.name])
@@ -190,17 +195,11 @@ class IntField(_Field):
         owner._data[self.name] = number
 
 
-class ArrayField(_Field):
+class ArrayField(_Field[NDArray[Any]]):
     """A vector or a matrix (row-major, multiplying column vectors)."""
 
-    @overload
-    def __get__(self, owner: None, kind: Any) -> ArrayField: ...
-    @overload
-    def __get__(self, owner: Struct, kind: Any) -> NDArray[Any]: ...
-    def __get__(self, owner: Struct | None, kind: Any) -> Any:
-        if owner is None:
-            return self
-        values = owner._data[self.name][0].copy()
+    def _read(self, owner: Struct, stored: Any) -> NDArray[Any]:
+        values: NDArray[Any] = stored.copy()
         values.flags.writeable = False
         return values
 
@@ -216,15 +215,11 @@ class ArrayField(_Field):
         owner._data[self.name][0] = values.reshape(shape)
 
 
-class TextField(_Field):
+class TextField(_Field[str]):
     """A string of limited length."""
 
-    @overload
-    def __get__(self, owner: None, kind: Any) -> TextField: ...
-    @overload
-    def __get__(self, owner: Struct, kind: Any) -> str: ...
-    def __get__(self, owner: Struct | None, kind: Any) -> Any:
-        return self if owner is None else bytes(owner._data[self.name][0]).decode("utf-8", "replace")
+    def _read(self, owner: Struct, stored: Any) -> str:
+        return bytes(stored).decode("utf-8", "replace")
 
     def __set__(self, owner: Struct, value: str) -> None:
         data, size = value.encode(), owner._dtype[self.name].itemsize
@@ -233,11 +228,11 @@ class TextField(_Field):
         owner._data[self.name] = data
 
 
-class ProfileField(_Field):
+class ProfileField(_Field[Any]):
     """A diffusion profile, or the name of one of the library; None for none."""
 
-    def __get__(self, owner: Struct | None, kind: Any) -> Any:
-        return self if owner is None else owner._profile
+    def _read(self, owner: Struct, stored: Any) -> Any:
+        return owner._profile
 
     def __set__(self, owner: Struct, value: Any) -> None:
         from .profile import as_profile
@@ -247,40 +242,30 @@ class ProfileField(_Field):
         owner._data[self.name] = 0 if profile is None else profile._handle.address()
 
 
-class EnumField(_Field, Generic[E]):
+class EnumField(_Field[E]):
     """One of a list of names."""
 
     def __init__(self, name: str, kind: type[E]) -> None:
         super().__init__(name)
         self.kind = kind
 
-    @overload
-    def __get__(self, owner: None, kind: Any) -> EnumField[E]: ...
-    @overload
-    def __get__(self, owner: Struct, kind: Any) -> E: ...
-    def __get__(self, owner: Struct | None, kind: Any) -> Any:
-        return self if owner is None else self.kind(int(owner._data[self.name][0]))
+    def _read(self, owner: Struct, stored: Any) -> E:
+        return self.kind(int(stored))
 
     def __set__(self, owner: Struct, value: E | str) -> None:
         owner._data[self.name] = int(to_enum(self.kind, value, f"{type(owner).__name__}.{self.name}"))
 
 
-class StructField(_Field, Generic[S]):
+class StructField(_Field[S]):
     """A structure inside a structure; comes back as a copy."""
 
     def __init__(self, name: str, kind: type[S]) -> None:
         super().__init__(name)
         self.kind = kind
 
-    @overload
-    def __get__(self, owner: None, kind: Any) -> StructField[S]: ...
-    @overload
-    def __get__(self, owner: Struct, kind: Any) -> S: ...
-    def __get__(self, owner: Struct | None, kind: Any) -> Any:
-        if owner is None:
-            return self
+    def _read(self, owner: Struct, stored: Any) -> S:
         inner = self.kind()
-        inner._data[0] = owner._data[self.name][0]
+        inner._data[0] = stored
         return inner
 
     def __set__(self, owner: Struct, value: S) -> None:

@@ -69,8 +69,7 @@ def camera_from_view_projection(view_projection: ArrayLike, depth: str = "-1..1"
 
 
 def light_from_view_projection(view_projection: ArrayLike, depth: str = "-1..1", y_up: bool = True,
-                               first_row: str = "top",
-                               **fields: Any) -> Light:
+                               first_row: str = "top", **fields: Any) -> Light:
     """A light whose shadow map was drawn with this matrix: directional for a parallel projection, a spot for
     a perspective one.
 

@@ -59,7 +59,7 @@ class Device(OfThisProcess):
     _instead = "make one there, pellucid.Device(selector)"
 
     def __init__(self, selector: str | int = "") -> None:
-        self._open(_in_flight.aside(lambda: _native.Device.create(str(selector))))
+        self._open(_in_flight.interruptible(lambda: _native.Device.create(str(selector))))
 
     def _open(self, handle: _native.Device) -> None:
         self._handle = handle
@@ -180,7 +180,7 @@ class Event(OfThisProcess):
     @property
     def done(self) -> bool:
         """Whether the work has finished."""
-        return self._handle.is_done()
+        return bool(self._handle.is_done())
 
     @property
     def cl(self) -> int:
@@ -209,7 +209,7 @@ class Buffer(OfThisProcess):
             self._setup(device, _native.Buffer.create(device._handle, int(initial), 0))
         else:
             values = np.ascontiguousarray(initial)
-            self._setup(device, _in_flight.aside(
+            self._setup(device, _in_flight.interruptible(
                 lambda: _native.Buffer.create(device._handle, values.nbytes, values.ctypes.data), values))
 
     def _setup(self, device: Device, handle: _native.Buffer, owner: Any = None) -> None:

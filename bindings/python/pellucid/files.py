@@ -53,8 +53,7 @@ def standard_head(which: str = "female") -> Path:
     for folder in (Path(__file__).parent / "heads", *(p / "data/heads" for p in Path(__file__).parents)):
         if (folder / f"head_{which}.obj").exists():
             return folder / f"head_{which}.obj"
-    raise FileNotFoundError(f"the head {which!r} did not come with the package; name an OFF, OBJ, PLY or STL "
-                            f"file")
+    raise FileNotFoundError(f"the head {which!r} did not come with the package; name a mesh file")
 
 
 def load_mesh(path: Any, subdivide: Optional[int] = None, up: str = "auto") -> Mesh:
@@ -84,7 +83,7 @@ def load_mesh(path: Any, subdivide: Optional[int] = None, up: str = "auto") -> M
     if head is not None:
         return Mesh(**{k: tuple(v) if k in ("up", "front", "low", "high") else v for k, v in head.items()},
                     source=name)
-    d = _files.load_mesh(name, subdivide or 0, True)
+    d = _files.load_mesh(name, subdivide or 0)
     y = up == "y" or (up == "auto" and name.lower().endswith(".obj"))
     used = d["positions"][np.unique(d["triangles"])]
     return Mesh(d["positions"], d["normals"], d["triangles"], d["uvs"], source=name, warnings=d["warnings"],
@@ -112,7 +111,7 @@ def load_profile(path: Any) -> Profile:
 def read_image(path: Any) -> dict[str, NDArray[np.float32]]:
     """The channels of an EXR, PNG, JPEG, TGA or BMP file by their full names, (height, width) each; integers
     come as 0 to 1."""
-    return dict(_files.read_image(str(path))[0])
+    return dict(_files.read_image(str(path)))
 
 
 def reference(mesh: Any, scene: Any, gbuffer: Any, *, walk: bool = False, samples: int = 64,
@@ -172,8 +171,7 @@ def reference(mesh: Any, scene: Any, gbuffer: Any, *, walk: bool = False, sample
 
 
 def write_image(path: Any, image: ArrayLike, *, exposure: float = 1.0, shoulder: float = 0.8,
-                curve: str = "soft",
-                half: bool = False, channels: Optional[list[str]] = None) -> None:
+                curve: str = "soft", half: bool = False, channels: Optional[list[str]] = None) -> None:
     """Writes linear radiance, complete or not at all.
 
     Parameters
@@ -196,8 +194,8 @@ def write_image(path: Any, image: ArrayLike, *, exposure: float = 1.0, shoulder:
             raise ValueError(f"{pixels.shape[2]} channels need as many names")
         _files.write_exr(name, names, pixels, half)
     else:
-        _files.write_bytes(name, np.ascontiguousarray(pixels if pixels.dtype == np.uint8
-                                                      else tonemap(pixels, exposure, shoulder, curve)), True)
+        shown = pixels if pixels.dtype == np.uint8 else tonemap(pixels, exposure, shoulder, curve)
+        _files.write_bytes(name, np.ascontiguousarray(shown))
 
 
 def tonemap(radiance: ArrayLike, exposure: float = 1.0, shoulder: float = 0.8,

@@ -101,8 +101,7 @@ def load_gltf(path: Any, *, profiles: Union[str, Mapping[str, Any], None] = None
         if picture is not None:
             textures[number] = picture
     return Gltf(Mesh(**mesh, up=(0.0, 1.0, 0.0), front=(0.0, 0.0, 1.0), low=tuple(map(float, used.min(0))),
-                     high=tuple(map(float, used.max(0))),
-                     source=str(path)),
+                     high=tuple(map(float, used.max(0))), source=str(path)),
                 names, taken_for, materials, textures, [_filled(Light, data) for data in native.lights()],
                 _filled(Ambient, native.ambient()),
                 [GltfCamera(*camera) for camera in native.cameras()], str(path), native)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._arrays import Image, View, submit, vertex_view
+from ._arrays import View, natives, submit, to_image, vertex_view
 from ._struct import OfThisProcess
 from ._types import CurvatureParams, LiveMeshStats, ScreenCurvatureParams
 from .device import Device, Event, _filled, _handles
@@ -65,10 +65,11 @@ class LiveMesh(OfThisProcess):
         p = vertex_view(device, positions, 3, "positions")
         n = None if normals is None else vertex_view(device, normals, 3, "normals")
         c = self._target(out)
-        ranges = None if changed is None else [(int(first), int(count)) for first, count in changed]
+        ranges = None if changed is None else np.array(list(changed), np.uint32).reshape(-1, 2)
         views = [v for v in (p, n, c) if v is not None]
-        return Event(submit(device, views, _handles(waits), lambda w: self._handle.update(
-            p.native, None if n is None else n.native, c.native, ranges, w), self))
+        given = [*natives([p, n, c]), *((0, 0) if ranges is None else (ranges.ctypes.data, len(ranges)))]
+        return Event(submit(device, views, _handles(waits), lambda w: self._handle.update(*given, w), self,
+                            ranges))
 
     def _target(self, out: Any) -> View:
         """The view of `out`, the same buffer again for the same array: another one would be written whole."""
@@ -86,8 +87,7 @@ class LiveMesh(OfThisProcess):
 
 
 def screen_curvature(device: Device, normals: Any, positions: Any = None, *, depth: Any = None,
-                     ids: Any = None,
-                     out: Optional[NDArray[np.float32]] = None,
+                     ids: Any = None, out: Optional[NDArray[np.float32]] = None,
                      params: Optional[ScreenCurvatureParams] = None) -> NDArray[np.float32]:
     """Curvature per pixel of a G-buffer, |fwidth N| / |fwidth P|, in 1/length, finite; see
     pelScreenCurvature.
@@ -110,21 +110,13 @@ def screen_curvature(device: Device, normals: Any, positions: Any = None, *, dep
 
 
 def submit_screen_curvature(device: Device, normals: Any, positions: Any, out: Any, *, depth: Any = None,
-                            ids: Any = None,
-                            params: Optional[ScreenCurvatureParams] = None,
+                            ids: Any = None, params: Optional[ScreenCurvatureParams] = None,
                             waits: Iterable[Event] = ()) -> Event:
     """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
-    def image(value: Any, what: str, output: bool = False, ids: bool = False) -> Optional[Image]:
-        if value is None or isinstance(value, Image):
-            return value
-        return Image(device, value, _slot=what, _output=output, _ids=ids)
-
     settings = ScreenCurvatureParams() if params is None else params
-    images = [image(normals, "normals"), image(positions, "positions"), image(depth, "depth"),
-              image(ids, "ids", ids=True),
-              image(out, "out", output=True)]
-    natives: list[Any] = [None if x is None else x._view.native for x in images]
-    n, p, d, i, c = natives
-    views = [x._view for x in images if x is not None]
-    return Event(submit(device, views, _handles(waits),
-                        lambda w: _native.screen_curvature(device._handle, settings._data, n, p, d, i, c, w)))
+    images = [to_image(device, normals, "normals"), to_image(device, positions, "positions"),
+              to_image(device, depth, "depth"), to_image(device, ids, "ids", ids=True),
+              to_image(device, out, "out", output=True)]
+    given = natives(images)
+    return Event(submit(device, [x._view for x in images if x is not None], _handles(waits),
+                        lambda w: _native.screen_curvature(device._handle, settings._data, *given, w)))

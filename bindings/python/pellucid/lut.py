@@ -131,7 +131,7 @@ class Lut(OfThisProcess):
         if texels.dtype != np.float32:
             raise ValueError(f"texels are {texels.dtype}; float32 is needed")
         packed = np.ascontiguousarray(texels)
-        handle = _in_flight.aside(
+        handle = _in_flight.interruptible(
             lambda: _native.Lut.from_texels(device._handle, info._data, packed.ctypes.data, packed.nbytes),
             packed, info)
         return cls._made(device, handle, None)
@@ -158,7 +158,7 @@ class Lut(OfThisProcess):
 
         0 for other kinds. Waits for the table.
         """
-        return _in_flight.aside(self._handle.clipped)
+        return _in_flight.interruptible(self._handle.clipped)
 
     def read(self, encoding: LutEncoding | str = LutEncoding.FLOAT,
              out: Optional[NDArray[Any]] = None) -> NDArray[Any]:

@@ -61,8 +61,7 @@ class MeshTopology(OfThisProcess):
         self._handle = _native.MeshTopology.create(device._handle, self.num_vertices, packed.ctypes.data,
                                                    packed.size,
                                                    int(to_enum(Weld, weld, "weld")), weld_tolerance,
-                                                   _address(held), stride,
-                                                   self.report._data)
+                                                   _address(held), stride, self.report._data)
 
     @classmethod
     def load(cls, device: Device, data: bytes | bytearray | memoryview) -> MeshTopology:
@@ -147,8 +146,7 @@ class MeshTopology(OfThisProcess):
                          params: Optional[CurvatureParams] = None,
                          estimator: CurvatureEstimator | str | None = None,
                          quantity: CurvatureQuantity | str | None = None,
-                         smoothing_passes: Optional[int] = None,
-                         smoothing_radius: Optional[float] = None,
+                         smoothing_passes: Optional[int] = None, smoothing_radius: Optional[float] = None,
                          smoothing_weights: SmoothingWeights | str | None = None,
                          scale: Optional[float] = None, waits: Iterable[Event] = ()) -> Event:
         """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
@@ -159,8 +157,7 @@ class MeshTopology(OfThisProcess):
         return self._submit(positions, normals, out, settings, None, waits)
 
     def _submit(self, positions: Any, normals: Any, out: Any, params: CurvatureParams,
-                report: Optional[MeshReport],
-                waits: Iterable[Event]) -> Event:
+                report: Optional[MeshReport], waits: Iterable[Event]) -> Event:
         views = [vertex_view(self.device, positions, 3, "positions"),
                  vertex_view(self.device, out, _COMPONENTS.get(params.quantity, 1), "out", output=True)]
         p, c = (v.native for v in views)
@@ -168,13 +165,14 @@ class MeshTopology(OfThisProcess):
         if normals is not None:
             views.append(vertex_view(self.device, normals, 3, "normals"))
             n = views[-1].native
-        if report is None:
-            def enqueue(w: list[_native.Event]) -> Any:
-                return self._handle.curvature(params._data, p, n, c, None, w)
-        else:
-            def enqueue(w: list[_native.Event]) -> Any:  # waits for the counts
-                return _in_flight.aside(
-                    lambda: self._handle.curvature(params._data, p, n, c, report._data, w), views, report)
+
+        def enqueue(w: list[_native.Event]) -> Any:
+            def work() -> Any:
+                return self._handle.curvature(params._data, p, n, c, report and report._data, w)
+
+            # A report is waited for.
+            return work() if report is None else _in_flight.interruptible(work, views, report)
+
         return Event(submit(self.device, views, _handles(waits), enqueue, self))
 
     def uv_scale(self, positions: Any, uvs: Any) -> float:
@@ -193,8 +191,11 @@ class MeshTopology(OfThisProcess):
         views = [vertex_view(self.device, positions, 3, "positions"), vertex_view(self.device, uvs, 2, "uvs")]
         p, u = (v.native for v in views)
         scale: list[float] = []
-        submit(self.device, views, [],
-               lambda waits: scale.append(_in_flight.aside(lambda: self._handle.uv_scale(p, u), views)))
+
+        def measure(_: Any) -> None:
+            scale.append(_in_flight.interruptible(lambda: self._handle.uv_scale(p, u), views))
+
+        submit(self.device, views, [], measure)
         return scale[0]
 
 
@@ -232,8 +233,7 @@ def orient_mesh(indices: ArrayLike, num_vertices: Optional[int] = None, *,
     given, normal_stride = (None, 0) if normals is None else _rows(normals, "normals", count)
     found = MeshOrientation()
     _native.orient_mesh(count, oriented.ctypes.data, oriented.size, int(to_enum(Weld, weld, "weld")),
-                        weld_tolerance,
-                        _address(held), stride, _address(given), normal_stride, found._data)
+                        weld_tolerance, _address(held), stride, _address(given), normal_stride, found._data)
     return oriented, found
 
 
@@ -244,8 +244,7 @@ def _address(array: Optional[NDArray[Any]]) -> int:
 def _rows(array: NDArray[np.float32], name: str, count: Optional[int]) -> tuple[NDArray[np.float32], int]:
     """(n, 3) float32 whose components follow one another, and the bytes from row to row."""
     if array.dtype != np.float32 or array.ndim != 2 or array.shape[1] != 3:
-        raise ValueError(f"{name} are {array.dtype} of shape {array.shape}; float32 of shape (n, 3) is "
-                         f"needed")
+        raise ValueError(f"{name} are {array.dtype} of shape {array.shape}; they must be float32, (n, 3)")
     if count is not None and count != len(array):
         raise ValueError(f"there are {count} vertices and {name} has {len(array)} rows")
     if len(array) > 1 and (array.strides[1] != 4 or array.strides[0] <= 0):
@@ -261,8 +260,7 @@ def _triangles(indices: ArrayLike, num_vertices: Optional[int], positions: Optio
                            (triangles.dtype != np.uint32
                             and not 0 <= triangles.min() <= triangles.max() < 2**32)):
         raise ValueError(f"indices are {triangles.dtype} from {triangles.min()} to {triangles.max()}; "
-                         f"integers from 0 "
-                         "are needed")
+                         f"integers from 0 " "are needed")
     stride = 0
     if positions is not None:
         positions, stride = _rows(positions, "positions", num_vertices)

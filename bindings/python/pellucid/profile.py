@@ -14,12 +14,11 @@ from ._types import BurleyFit, ProfileInfo
 from .device import _filled
 
 
-def _triple(value: ArrayLike, what: str) -> list[float]:
+def _triple(value: ArrayLike, what: str) -> NDArray[np.float32]:
     numbers = np.asarray(value, np.float64)
     if numbers.shape not in ((), (3,)):
-        raise ValueError(f"{what} has the shape {numbers.shape}; one number, or three for red, green and "
-                         f"blue, are needed")
-    return [float(x) for x in np.broadcast_to(numbers, 3)]
+        raise ValueError(f"{what} has the shape {numbers.shape}; one number or three (RGB) are needed")
+    return np.ascontiguousarray(np.broadcast_to(numbers, 3), np.float32)
 
 
 class Profile(OfThisProcess):
@@ -44,29 +43,35 @@ class Profile(OfThisProcess):
         return self
 
     @classmethod
+    def _named(cls, name: str, create: Any, *arguments: Any) -> Profile:
+        """Arrays are passed by their addresses."""
+        handle = create(*(a.ctypes.data if isinstance(a, np.ndarray) else a for a in arguments))
+        if name:
+            handle.set_name(name)
+        return cls._made(handle)
+
+    @classmethod
     def skin(cls, name: str = "") -> Profile:
         """Six Gaussians in mm [d'Eon and Luebke, GPU Gems 3, ch. 14]."""
-        return cls._made(_native.Profile.skin(name))
+        return cls._named(name, _native.Profile.skin)
 
     @classmethod
     def gaussians(cls, terms: Sequence[tuple[float, ArrayLike]], name: str = "") -> Profile:
         """1 to 256 pairs of a variance (length², > 0) and a weight (one number or RGB, >= 0)."""
-        return cls._made(_native.Profile.gaussians([(float(v), _triple(w, "a weight")) for v, w in terms],
-                                                   name))
+        rows = np.array([[v, *_triple(w, "a weight")] for v, w in terms], np.float32).reshape(-1, 4)
+        return cls._named(name, _native.Profile.gaussians, rows, len(rows))
 
     @classmethod
     def burley(cls, mean_free_path: ArrayLike, albedo: ArrayLike,
-               fit: BurleyFit | str = BurleyFit.DIFFUSE_TRANSMISSION,
-               name: str = "") -> Profile:
+               fit: BurleyFit | str = BurleyFit.DIFFUSE_TRANSMISSION, name: str = "") -> Profile:
         """From mean free paths (length, > 0) and albedos in [0, 1] [Christensen and Burley 2015]."""
-        return cls._made(_native.Profile.burley(_triple(mean_free_path, "mean_free_path"),
-                                                _triple(albedo, "albedo"),
-                                                int(to_enum(BurleyFit, fit, "fit")), name))
+        return cls._named(name, _native.Profile.burley, _triple(mean_free_path, "mean_free_path"),
+                          _triple(albedo, "albedo"), int(to_enum(BurleyFit, fit, "fit")))
 
     @classmethod
     def burley_distance(cls, distance: ArrayLike, name: str = "") -> Profile:
         """The same from its own length d (> 0), by which other programs know it."""
-        return cls._made(_native.Profile.burley_distance(_triple(distance, "distance"), name))
+        return cls._named(name, _native.Profile.burley_distance, _triple(distance, "distance"))
 
     @classmethod
     def named(cls, material: str) -> Profile:
@@ -89,8 +94,8 @@ class Profile(OfThisProcess):
                name: str = "") -> Profile:
         """The classical dipole from coefficients in 1/length (> 0) and a relative index > 1 [Jensen et al.
         2001]."""
-        return cls._made(_native.Profile.dipole(_triple(absorption, "absorption"),
-                                                _triple(reduced_scattering, "reduced_scattering"), eta, name))
+        return cls._named(name, _native.Profile.dipole, _triple(absorption, "absorption"),
+                          _triple(reduced_scattering, "reduced_scattering"), eta)
 
     @classmethod
     def table(cls, distances: ArrayLike, values: ArrayLike, name: str = "") -> Profile:
@@ -98,9 +103,8 @@ class Profile(OfThisProcess):
         d = np.ascontiguousarray(distances, np.float32)
         r = np.ascontiguousarray(values, np.float32)
         if d.ndim != 1 or r.shape != (len(d), 3):
-            raise ValueError(f"distances have the shape {d.shape} and values {r.shape}; (n,) and (n, 3) are "
-                             f"needed")
-        return cls._made(_native.Profile.table(d.ctypes.data, r.ctypes.data, len(d), name))
+            raise ValueError(f"distances have the shape {d.shape} and values {r.shape}; not (n,) and (n, 3)")
+        return cls._named(name, _native.Profile.table, d, r, len(d))
 
     @property
     def info(self) -> ProfileInfo:

@@ -47,14 +47,12 @@ def surface_integral(device: Device, positions: Any, triangles: Any, irradiance:
     result = np.empty(np.shape(points), np.float32) if out is None else out
     submit_surface_integral(device, positions, triangles, irradiance, points, result, profile=profile,
                             diffusion_radius=diffusion_radius, millimetres_per_unit=millimetres_per_unit,
-                            cut=cut,
-                            tolerance=tolerance).wait()
+                            cut=cut, tolerance=tolerance).wait()
     return result
 
 
 def submit_surface_integral(device: Device, positions: Any, triangles: Any, irradiance: Any, points: Any,
-                            out: Any, *,
-                            profile: Profile | str | None = None, diffusion_radius: float = 0.0,
+                            out: Any, *, profile: Profile | str | None = None, diffusion_radius: float = 0.0,
                             millimetres_per_unit: float = 1.0, cut: Sequence[float] = (0.0, 0.0, 0.0),
                             tolerance: float = 1e-3, waits: Iterable[Event] = ()) -> Event:
     """The same after `waits`, without waiting: leave points and out alone until the event is done."""
@@ -70,8 +68,7 @@ def submit_surface_integral(device: Device, positions: Any, triangles: Any, irra
     places = {(len(p), 3): IrradianceAt.VERTEX, (len(t), 3): IrradianceAt.TRIANGLE,
               (len(t), 3, 3): IrradianceAt.CORNER}
     if e.shape not in places:
-        raise ValueError(f"irradiance has shape {e.shape}; {(len(p), 3)}, {(len(t), 3)} or {(len(t), 3, 3)} "
-                         f"is needed")
+        raise ValueError(f"irradiance has shape {e.shape}; it must be one of {', '.join(map(str, places))}")
     at = IrradianceAt.VERTEX if e.shape == (len(p), 3) else places[e.shape]
     t = np.ascontiguousarray(t, np.uint32)
     views = [vertex_view(device, points, 3, "points"), vertex_view(device, out, 3, "out", output=True)]
@@ -80,8 +77,7 @@ def submit_surface_integral(device: Device, positions: Any, triangles: Any, irra
     handle = None if known is None else known._handle
     return Event(submit(device, views, _handles(waits), lambda w: _native.surface_integral(
         device._handle, p.ctypes.data, len(p), t.ctypes.data, t.size, e.ctypes.data, int(at), handle,
-        diffusion_radius,
-        millimetres_per_unit, list(cut), tolerance, x, s, w)))
+        diffusion_radius, millimetres_per_unit, list(cut), tolerance, x, s, w)))
 
 
 def compare(a: Any, b: Any, mask: Any = None) -> dict[str, Any]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._arrays import Image, submit
+from ._arrays import Image, natives, submit, to_image
 from ._struct import OfThisProcess, to_enum
 from ._types import ImageSlot, ScatterControls, ScatterParams, ScatterStats
 from .device import Device, Event, _filled, _handles
@@ -44,8 +44,7 @@ class Scatter(OfThisProcess):
         """An image that executions read beside those they are given: "scatter_weight", "irradiance_back" or
         "albedo"; None clears it. It stays the caller's, and is read at each execution."""
         s = to_enum(ImageSlot, slot, "slot")
-        if image is not None and not isinstance(image, Image):
-            image = Image(self.device, image, _slot=s.name.lower())
+        image = to_image(self.device, image, s.name.lower())
         self._handle.set_image(int(s), None if image is None else image._view.native)
         if image is None:
             self._images.pop(s, None)
@@ -78,24 +77,15 @@ class Scatter(OfThisProcess):
     def submit_execute(self, irradiance: Any, positions: Any, out: Any, *, depth: Any = None, ids: Any = None,
                        params: Optional[ScatterParams] = None, waits: Iterable[Event] = ()) -> Event:
         """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
-        def image(value: Any, what: str, output: bool = False, ids: bool = False) -> Optional[Image]:
-            if value is None or isinstance(value, Image):
-                return value
-            return Image(self.device, value, _slot=what, _output=output, _ids=ids)
-
         settings = ScatterParams() if params is None else params
-        in_place = out is irradiance
-        target = image(out, "out", output=True)
-        images = [target if in_place else image(irradiance, "irradiance"), image(positions, "positions"),
-                  image(depth, "depth"),
-                  image(ids, "ids", ids=True), target]
-        natives: list[Any] = [None if x is None else x._view.native for x in images]
-        e, p, d, i, o = natives
-        views = [x._view for k, x in enumerate(images) if x is not None and not (in_place and k == 0)]
-        kept = list(self._images.values())
-        views += [x._view for x in kept]
+        target = to_image(self.device, out, "out", output=True)
+        images = [target if out is irradiance else to_image(self.device, irradiance, "irradiance"),
+                  to_image(self.device, positions, "positions"), to_image(self.device, depth, "depth"),
+                  to_image(self.device, ids, "ids", ids=True), target]
+        given, kept = natives(images), list(self._images.values())
+        views = [x._view for x in [*images, *kept] if x is not None]
         return Event(submit(self.device, views, _handles(waits),
-                            lambda w: self._handle.execute(settings._data, e, p, d, i, o, w), self, kept))
+                            lambda w: self._handle.execute(settings._data, *given, w), self, kept))
 
     def stats(self) -> ScatterStats:
         """What the last execution did."""

@@ -72,14 +72,14 @@ class Scene(OfThisProcess):
         self._native = _files.Scene(str(path))
         self._device: Optional[Device] = None
         self.source = str(path)
-        self.channels: dict[str, list[str]] = self._native.channels()
-        made = [(id, _filled(Material, data), profile) for id, data, profile in self._native.materials()]
-        self.materials = {id: material for id, material, _ in made}
-        self.profiles = {id: profile for id, _, profile in made}
-        self.lights = [_filled(Light, data) for data in self._native.lights()]
-        self.ambient = _filled(Ambient, self._native.ambient())
-        self.camera = _filled(Camera, self._native.camera())
-        self.options = _filled(ShaderOptions, self._native.options())
+        state = self._native.state()
+        self.channels: dict[str, list[str]] = state["channels"]
+        self.materials = {id: _filled(Material, data) for id, data, _ in state["materials"]}
+        self.profiles = {id: profile for id, _, profile in state["materials"]}
+        self.lights = [_filled(Light, data) for data in state["lights"]]
+        self.ambient = _filled(Ambient, state["ambient"])
+        self.camera = _filled(Camera, state["camera"])
+        self.options = _filled(ShaderOptions, state["options"])
 
     def __repr__(self) -> str:
         return f"<pellucid.Scene {self.source}: {len(self.materials)} materials, {len(self.lights)} lights>"
@@ -88,8 +88,7 @@ class Scene(OfThisProcess):
         """The G-buffer: a multi-layer EXR file, or channels by name, (height, width) each. They are copied.
         """
         if isinstance(gbuffer, Mapping):
-            self._native.set_gbuffer({name: np.asarray(pixels, np.float32) for name,
-                                      pixels in gbuffer.items()})
+            self._native.set_gbuffer({name: np.asarray(v, np.float32) for name, v in gbuffer.items()})
         else:
             self._native.read_gbuffer(str(gbuffer))
         return self
@@ -109,8 +108,7 @@ class Scene(OfThisProcess):
     def _state(self) -> tuple[Any, ...]:
         return ([(id, m._data.tobytes(), self.profiles.get(id, "")) for id, m in self.materials.items()],
                 [light._data.tobytes() for light in self.lights], self.ambient._data.tobytes(),
-                self.camera._data.tobytes(),
-                self.options._data.tobytes())
+                self.camera._data.tobytes(), self.options._data.tobytes())
 
     def gbuffer_file(self) -> Optional[Path]:
         """The G-buffer beside the scene as the viewer and the demo write it: gbuffer.exr or
@@ -175,8 +173,7 @@ def shade(scene: Scene, device: Optional[Device] = None, outputs: Iterable[str] 
         if name not in _OUTPUTS:
             raise ValueError(f"there is no output {name!r}; there are {', '.join(_OUTPUTS)}")
     if not scene._native.has_gbuffer():
-        raise ValueError(f"{scene.source} has no G-buffer beside it: name one, as in load_scene(path, "
-                         f"gbuffer='frame.exr')")
+        raise ValueError(f"{scene.source} has no G-buffer beside it: load_scene(path, gbuffer=...) names one")
     if device is not None:
         scene._device = device
     elif scene._device is None:

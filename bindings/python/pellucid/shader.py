@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _in_flight, _native
-from ._arrays import Image, submit
+from ._arrays import Image, submit, to_image
 from ._struct import OfThisProcess, to_enum
 from ._types import (
     Ambient,
@@ -53,8 +53,7 @@ class Shader(OfThisProcess):
         """
         s = to_enum(ImageSlot, slot, "slot")
         self._keep(s, image, s.name.lower(), s == ImageSlot.RADIANCE or s.name.startswith("OUT_"),
-                   s == ImageSlot.MATERIAL,
-                   lambda native: self._handle.set_image(int(s), native))
+                   s == ImageSlot.MATERIAL, lambda native: self._handle.set_image(int(s), native))
         return self
 
     def set_light_image(self, light: int, slot: LightSlot | str, image: Any) -> Shader:
@@ -70,8 +69,7 @@ class Shader(OfThisProcess):
         return self
 
     def _keep(self, key: Any, image: Any, what: str, output: bool, ids: bool, use: Any) -> None:
-        if image is not None and not isinstance(image, Image):
-            image = Image(self.device, image, _slot=what, _output=output, _ids=ids)
+        image = to_image(self.device, image, what, output, ids)
         use(None if image is None else image._view.native)
         if image is None:
             self._images.pop(key, None)
@@ -107,15 +105,13 @@ class Shader(OfThisProcess):
         if any(a.ndim != 3 or (a.dtype.name, a.shape[2]) != (chain[0].dtype.name, chain[0].shape[2])
                for a in chain):
             raise ValueError("a normal map needs arrays of shape (height, width, 3 or 4), all of one type; "
-                             "it has "
-                             + ", ".join(f"{a.shape} of {a.dtype}" for a in chain))
+                             "it has " + ", ".join(f"{a.shape} of {a.dtype}" for a in chain))
         if not chain:
             self._handle.set_normal_map(id, [])
             return self
         key = (chain[0].dtype.name, chain[0].shape[2])
         if key not in (("float32", 3), ("uint8", 4)):
-            raise ValueError(f"the normal map has {key[1]} components of {key[0]}; 3 of float32 or 4 of "
-                             f"uint8 are needed")
+            raise ValueError(f"a normal map has {key[1]} components of {key[0]}, not 3 float32 or 4 uint8")
         buffer = Buffer(self.device, np.concatenate([np.ascontiguousarray(a).reshape(-1) for a in chain]))
         images, offset = [], 0
         for a in chain:
@@ -177,7 +173,8 @@ class Shader(OfThisProcess):
         """Replaces all lights, 0 to 64, or sets a single one; images of lights beyond the count are cleared.
         """
         lights = [lights] if isinstance(lights, Light) else list(lights)
-        self._handle.set_lights([Light._bytes_of(light) for light in lights])
+        packed = np.array([Light._bytes_of(light)[0] for light in lights], Light._dtype)
+        self._handle.set_lights(packed.ctypes.data, len(packed))
         for key in [k for k in self._images if isinstance(k, tuple) and isinstance(k[0], int)
                     and k[0] >= len(lights)]:
             del self._images[key]
@@ -234,7 +231,7 @@ class Shader(OfThisProcess):
         PellucidError
             What is missing or does not fit.
         """
-        _in_flight.aside(self._handle.commit)  # compilers take seconds, on some devices minutes
+        _in_flight.interruptible(self._handle.commit)  # compilers take seconds, on some devices minutes
         return self
 
     def execute(self) -> None:
@@ -252,8 +249,8 @@ class Shader(OfThisProcess):
             self.submit().wait()
             return
         images = list(self._images.values())
-        event = submit(self.device, [i._view for i in images], [], lambda waits: self._handle.execute_told(),
-                       self, images)
+        event = submit(self.device, [i._view for i in images], [],
+                       lambda waits: self._handle.execute_blocking(), self, images)
         if event is not None:  # results are on their way back to the arrays
             Event(event).wait()
 
@@ -266,7 +263,9 @@ class Shader(OfThisProcess):
     def material(self, id: int) -> Material:
         """Material `id` as it is shaded: what was left to defaults has its value, after a commit also AUTO.
         Its profile is left out."""
-        return _filled(Material, self._handle.material(id))
+        material = _filled(Material, self._handle.material(id))
+        material._data["profile"] = 0  # the shader's own, which the structure would outlive
+        return material
 
     def warnings(self) -> list[str]:
         """What the last commit found that was set without effect, or unlikely."""
@@ -310,7 +309,7 @@ def warm_up_programs(device: Device, groups: ProgramGroup | int = 0, shaders: Se
         What a shader's commit would raise; CANCELLED.
     """
     handles = [s._handle for s in shaders]
-    return int(_in_flight.aside(
+    return int(_in_flight.interruptible(
         lambda: _native.warm_up_programs(device._handle, int(groups), handles, threads)))
 
 
@@ -319,14 +318,12 @@ def _below(faces: Any, which: str) -> Any:
     if getattr(faces, "ndim", 0) != 4:
         return faces
     if faces.shape[0] != 6:
-        raise ValueError(f"the {which} cube has the shape {faces.shape}; six faces, (6, n, n, 3 or 4), would "
-                         f"be right")
+        raise ValueError(f"the {which} cube has the shape {faces.shape}, not six faces, (6, n, n, 3 or 4)")
     faces = faces.view()
     try:
         faces.shape = (6 * faces.shape[1], *faces.shape[2:])
     except AttributeError:
-        raise ValueError(f"the {which} cube's faces lie apart in memory; numpy.ascontiguousarray puts them "
-                         f"together") from None
+        raise ValueError(f"the {which} cube's faces lie apart; pass numpy.ascontiguousarray(faces)") from None
     return faces
 
 

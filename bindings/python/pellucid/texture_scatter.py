@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from ._arrays import Image, submit, vertex_view
+from ._arrays import natives, submit, to_image, vertex_view
 from ._struct import OfThisProcess
 from ._types import TextureScatterParams, TextureScatterStats
 from .device import Device, Event, _filled, _handles
@@ -39,8 +39,7 @@ class TextureScatter(OfThisProcess):
     def __init__(self, device: Device, width: int, height: int, indices: ArrayLike, uvs: ArrayLike) -> None:
         triangles, coordinates = np.asarray(indices), np.ascontiguousarray(uvs, np.float32)
         if triangles.ndim != 2 or triangles.shape[1] != 3 or triangles.dtype.kind not in "iu":
-            raise ValueError(f"indices are {triangles.dtype} of shape {triangles.shape}; integers of shape "
-                             f"(t, 3) are needed")
+            raise ValueError(f"indices are {triangles.dtype} {triangles.shape}, not integers (t, 3)")
         if triangles.size and not 0 <= triangles.min() <= triangles.max() < 2**32:
             raise ValueError("indices hold numbers that no vertex has")
         if coordinates.ndim != 2 or coordinates.shape[1] != 2:
@@ -48,8 +47,7 @@ class TextureScatter(OfThisProcess):
         packed = np.ascontiguousarray(triangles, np.uint32)
         self.device, self.width, self.height = device, width, height
         self._handle = _native.TextureScatter.create(device._handle, width, height, len(coordinates),
-                                                     packed.ctypes.data,
-                                                     packed.size, coordinates.ctypes.data)
+                                                     packed.ctypes.data, packed.size, coordinates.ctypes.data)
 
     def set_positions(self, positions: Any) -> None:
         """Where the vertices are, (n, 3) float32: before anything else, and again when the mesh moved."""
@@ -72,10 +70,10 @@ class TextureScatter(OfThisProcess):
     def submit_draw(self, values: Any, out: Any, *, unit: bool = False, waits: Iterable[Event] = ()) -> Event:
         """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
         view = vertex_view(self.device, values, 3, "values")
-        image = self._image(out, "out", output=True)
+        image = to_image(self.device, out, "out", output=True)
+        values_native, image_native = natives([view, image])
         return Event(submit(self.device, [view, image._view], _handles(waits),
-                            lambda w: self._handle.draw(view.native, unit, image._view.native, w), self,
-                            image))
+                            lambda w: self._handle.draw(values_native, unit, image_native, w), self, image))
 
     def execute(self, irradiance: Any, albedo: Any = None, *, out: Optional[NDArray[np.float32]] = None,
                 params: Optional[TextureScatterParams] = None) -> NDArray[np.float32]:
@@ -96,24 +94,17 @@ class TextureScatter(OfThisProcess):
         return result
 
     def submit_execute(self, irradiance: Any, albedo: Any, out: Any, *,
-                       params: Optional[TextureScatterParams] = None,
-                       waits: Iterable[Event] = ()) -> Event:
+                       params: Optional[TextureScatterParams] = None, waits: Iterable[Event] = ()) -> Event:
         """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
         settings = TextureScatterParams() if params is None else params
-        profile = None if settings.profile is None else settings.profile._handle
-        in_place = out is irradiance
-        target = self._image(out, "out", output=True)
-        source = target if in_place else self._image(irradiance, "irradiance")
-        colors = None if albedo is None else self._image(albedo, "albedo")
-        views = [x._view
-                 for x in ([] if in_place else [source]) + ([] if colors is None else [colors]) + [target]]
-        e, a, o = source._view.native, None if colors is None else colors._view.native, target._view.native
+        target = to_image(self.device, out, "out", output=True)
+        images = [target if out is irradiance else to_image(self.device, irradiance, "irradiance"),
+                  to_image(self.device, albedo, "albedo"), target]
+        given = natives(images)
+        views = [x._view for x in images if x is not None]
         return Event(submit(self.device, views, _handles(waits),
-                            lambda w: self._handle.execute(settings._data, profile, e, a, o, w), self))
+                            lambda w: self._handle.execute(settings._data, *given, w), self))
 
     def stats(self) -> TextureScatterStats:
         """What the last execution did."""
         return _filled(TextureScatterStats, self._handle.stats())
-
-    def _image(self, value: Any, what: str, output: bool = False) -> Image:
-        return value if isinstance(value, Image) else Image(self.device, value, _slot=what, _output=output)

@@ -1,4 +1,4 @@
-// How values go to Python: numbers as arrays, structures as their bytes.
+// What the files of this module share: numbers go to Python as arrays, structures as their bytes.
 #pragma once
 #include <pybind11/numpy.h>
 
@@ -21,5 +21,8 @@ py::array_t<T> array(const std::vector<T>& values, std::vector<py::ssize_t> shap
     if (!values.empty()) std::memcpy(result.mutable_data(), values.data(), values.size() * sizeof(T));
     return result;
 }
+
+void bindGltf(py::module_& module);  // and profiles from files
+void bindScene(py::module_& module);
 
 }  // namespace pellucid::python
