@@ -13,8 +13,10 @@ from nicegui import Client, core, ui  # noqa: E402
 from nicegui.page import page  # noqa: E402
 from view_session import reset  # noqa: E402
 
+from pellucid.view.export import export  # noqa: E402
 from pellucid.view.look import Look  # noqa: E402
 from pellucid.view.page import Page  # noqa: E402
+from pellucid.view.scene_session import SceneSession  # noqa: E402
 
 
 class Shown:
@@ -36,9 +38,14 @@ def opened(session, act):
             Page(viewer)
             act(list(client.elements.values()), viewer)
 
+    asyncio.run(run())
+
+
+@pytest.fixture
+def fresh(session):
     reset(session)
     session.count, session.wipe = False, 0.5
-    asyncio.run(run())
+    return session
 
 
 def marked(elements, kind):
@@ -49,7 +56,7 @@ def label(slider):
     return next(e.text for e in slider.parent_slot.children if isinstance(e, ui.label) and e.text)
 
 
-def test_the_guide_lists_every_slider_with_its_limits(session):
+def test_the_guide_lists_every_slider_with_its_limits(fresh):
     text = (Path(__file__).parents[3] / "docs/guide/viewer.md").read_text(encoding="utf-8")
     listed = [row for row in re.findall(r"^\| (.+?) \| ([-\d.]+) \| ([-\d.]+) \| ([-\d.]+) \|$", text, re.M)]
     shown = []
@@ -60,13 +67,13 @@ def test_the_guide_lists_every_slider_with_its_limits(session):
             if row not in shown:  # three lamps have the same ones
                 shown.append(row)
 
-    opened(session, look)
+    opened(fresh, look)
     assert listed == shown
 
 
-def test_every_control_sets_the_value_that_it_names(session):
+def test_every_control_sets_the_value_that_it_names(fresh):
     def act(elements, viewer):
-        look = session.look
+        look = fresh.look
         fallow = {f.name for f in fields(Look)} - {"lamps", "iris_texture", "profile"}
         for name, e in marked(elements, ui.slider).items():
             lamp, channel = re.match(r"slider-lamp-(\d)-(\w+)", name), re.match(r"slider-(\w+)-(\d)", name)
@@ -75,7 +82,7 @@ def test_every_control_sets_the_value_that_it_names(session):
                 if lamp:
                     return getattr(look.lamps[int(lamp[1])], lamp[2])
                 if name == "slider-wipe":
-                    return session.wipe
+                    return fresh.wipe
                 if channel:
                     return getattr(look, channel[1])[int(channel[2])]
                 return getattr(look, name[len("slider-"):])
@@ -113,14 +120,30 @@ def test_every_control_sets_the_value_that_it_names(session):
             fallow.discard(name)
         assert not fallow, "values that no control sets"
 
-    opened(session, act)
+    opened(fresh, act)
 
 
-def test_a_preset_sets_the_material_and_keeps_the_light(session):
+def test_a_preset_sets_the_material_and_keeps_the_light(fresh):
     def act(elements, viewer):
-        session.look.ambient, session.look.exposure, session.look.specular = 0.7, 2.0, 0.9
+        fresh.look.ambient, fresh.look.exposure, fresh.look.specular = 0.7, 2.0, 0.9
         marked(elements, ui.select)["preset"].set_value("Jade")
-        assert session.look.profile == "jade" and session.look.specular == 0.6
-        assert (session.look.ambient, session.look.exposure) == (0.7, 2.0)
+        assert fresh.look.profile == "jade" and fresh.look.specular == 0.6
+        assert (fresh.look.ambient, fresh.look.exposure) == (0.7, 2.0)
 
-    opened(session, act)
+    opened(fresh, act)
+
+
+def test_a_scene_has_controls_too(fresh, tmp_path):
+    export(fresh, tmp_path, 96, 54)
+    shown = SceneSession(tmp_path / "scene.toml", device=fresh.device)
+
+    def act(elements, viewer):
+        sliders = marked(elements, ui.slider)
+        for key in ("specular", "roughness"):
+            sliders[f"slider-{key}-1"].set_value(0.9)
+            assert getattr(shown.scene.materials[1], key) == pytest.approx(0.9)
+        sliders["slider-lights-0"].set_value(0.5)
+        marked(elements, ui.select)["profile-1"].set_value("jade")
+        assert shown.scene.profiles[1] == "jade" and shown.look.lights[0] == 0.5 and viewer.changes == 4
+
+    opened(shown, act)

@@ -117,9 +117,9 @@ def test_a_file_for_a_closed_page_is_dropped(monkeypatch):
     from nicegui import Client, core, ui
     from nicegui.page import page
 
-    given, told, closing = [], [], []
+    given, shown, closing = [], [], []
     monkeypatch.setattr(ui, "download", lambda data, name: given.append(name))
-    monkeypatch.setattr(ui, "notify", lambda text, **_: told.append(text))
+    monkeypatch.setattr(ui, "notify", lambda text, **_: shown.append(text))
     changes = []
 
     async def on_thread(work):
@@ -144,4 +144,4 @@ def test_a_file_for_a_closed_page_is_dropped(monkeypatch):
             await panel.deliver(fails, "gone.zip")
 
     asyncio.run(run())
-    assert given == [] and told[:1] == ["the disk is full"] and len(changes) == 3
+    assert given == [] and shown[:1] == ["the disk is full"] and len(changes) == 3

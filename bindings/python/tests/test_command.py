@@ -26,8 +26,8 @@ def test_the_compiled_program_answers():
 def test_its_own_subcommands():
     pytest.importorskip("nicegui", reason="nicegui is not installed")
     for name, flag in (("view", "--unit-mm"), ("gallery", "--pictures-only")):
-        told = run(name, "--help")
-        assert told.returncode == 0 and flag in told.stdout
+        done = run(name, "--help")
+        assert done.returncode == 0 and flag in done.stdout
 
 
 def test_without_the_program(monkeypatch, capsys, tmp_path):

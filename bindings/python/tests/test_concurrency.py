@@ -60,64 +60,40 @@ def test_arrays_live_until_their_work_is_done(device, make_sphere):
     assert _in_flight.in_flight() == 0
 
 
-class Steps:
-    def __init__(self, answer=None):
-        self.seen, self.answer = [], answer
-
-    def __call__(self, fraction, what):
-        self.seen.append((fraction, what))
-        if isinstance(self.answer, Exception):
-            raise self.answer
-        return self.answer
-
-
-def long_work(mesh):
-    """Something that reports its progress."""
-    device = pel.Device()
+@pytest.fixture(scope="module")
+def work(make_sphere):
+    """A device, and a call that reports its progress."""
+    mesh, device = make_sphere(1.0, 600, 900), pel.Device()
     return device, lambda: pel.MeshTopology(device, mesh.triangles, positions=mesh.positions, weld="exact")
 
 
-@pytest.fixture(scope="module")
-def large(make_sphere):
-    return make_sphere(1.0, 600, 900)
+def raising(fraction, what):
+    raise KeyError("mine")
 
 
-def test_progress_is_reported(large):
-    device, work = long_work(large)
-    steps = Steps()
-    device.set_progress(steps)
-    work()
-    fractions = [f for f, _ in steps.seen]
-    assert len(fractions) >= 2 and all(0 <= f <= 1 for f in fractions) and all(what for _, what in steps.seen)
-
-
-def test_progress_cancels(large):
-    device, work = long_work(large)
-    device.set_progress(Steps(answer=False))
-    with pytest.raises(pel.PellucidError) as caught:
-        work()
-    assert caught.value.code is pel.ErrorCode.CANCELLED
+@pytest.mark.parametrize("callback, error, message", [
+    (lambda fraction, what: False, pel.PellucidError, None), (raising, KeyError, "mine"),
+    (lambda fraction, what: {}, TypeError, "returns True, False or None")])
+def test_progress_is_reported_and_cancels(work, callback, error, message):
+    device, run = work
+    seen = []
+    device.set_progress(lambda fraction, what: seen.append((fraction, what)))
+    run()
+    assert len(seen) >= 2 and all(0 <= fraction <= 1 and what for fraction, what in seen)
+    device.set_progress(callback)
+    with pytest.raises(error, match=message) as caught:
+        run()
+    assert error is not pel.PellucidError or caught.value.code is pel.ErrorCode.CANCELLED
     device.set_progress(None)
-    work()
+    run()
 
 
-def test_exceptions_in_progress_come_through(large):
-    device, work = long_work(large)
-    device.set_progress(Steps(answer=KeyError("mine")))
-    with pytest.raises(KeyError, match="mine"):
-        work()
-    device.set_progress(lambda fraction, what: {})
-    with pytest.raises(TypeError, match="returns True, False or None"):
-        work()
-
-
-def test_progress_bar(large, capsys, monkeypatch):
-    device, work = long_work(large)
+def test_progress_is_printed_without_tqdm(work, capsys, monkeypatch):
+    device, run = work
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
     device.set_progress(True)
-    work()
-    monkeypatch.setitem(sys.modules, "tqdm.auto", None)  # as if it were not installed
-    device.set_progress(True)
-    work()
+    run()
+    device.set_progress(None)
     assert "%" in capsys.readouterr().err
 
 
@@ -147,52 +123,9 @@ def test_progress_bar_ends_with_its_work(monkeypatch):
 
 
 def at_once():
-    """Seconds until Ctrl-C is noticed: longer under sanitizers, and where other programs share the processors."""
+    """Seconds until Ctrl-C is noticed: longer under sanitizers, and with other programs at work."""
     share = max(1.0, 2 * os.getloadavg()[0] / (os.cpu_count() or 1))
     return share * (10 if os.environ.get("PELLUCID_SANITIZE") else 1)
-
-
-CTRL_C = textwrap.dedent("""
-    import sys, time
-    import numpy as np
-    import pellucid as pel
-    device = pel.Device()
-    n = 1 << 20
-    grid = np.arange(n, dtype=np.uint32).reshape(1024, 1024)
-    low, right, up, both = grid[:-1, :-1], grid[1:, :-1], grid[:-1, 1:], grid[1:, 1:]
-    quads = np.stack([low, right, up, up, right, both], -1)
-    positions = np.random.default_rng(1).normal(size=(n, 3)).astype(np.float32)
-    topology = pel.MeshTopology(device, quads.ravel(), n)
-    print("go", flush=True)
-    try:
-        if sys.argv[1] == "wait":
-            topology.curvature(positions, positions, smoothing_passes=1000)
-        elif sys.argv[1] == "finish":
-            topology.submit_curvature(positions, positions, np.empty(n, np.float32), smoothing_passes=1000)
-            device.finish()
-        else:
-            while True:
-                pel.MeshTopology(device, quads.ravel(), positions=positions, weld="exact")
-    except KeyboardInterrupt:
-        print("interrupted", time.time(), flush=True)
-        import os
-        os._exit(0)
-""")
-
-
-@pytest.mark.parametrize("what", ["wait", "finish", "host"])
-def test_ctrl_c_within_a_second(what):
-    child = subprocess.Popen([sys.executable, "-c", CTRL_C, what], stdout=subprocess.PIPE, text=True)
-    try:
-        assert child.stdout.readline() == "go\n"
-        time.sleep(0.3)
-        sent = time.time()
-        child.send_signal(signal.SIGINT)
-        word, when = child.stdout.readline().split()
-        assert word == "interrupted" and float(when) - sent < at_once()
-    finally:
-        child.kill()
-        child.wait()
 
 
 EVERY_CALL = textwrap.dedent("""
@@ -215,11 +148,16 @@ EVERY_CALL = textwrap.dedent("""
     image = np.ones((1024, 1024, 3), np.float32)
     shader = pel.Shader(device).set_image("radiance", image.copy()).set_image("normal_shading", image)
     shader.set_material(1, pel.Material()).set_lights([pel.Light()] * 32).commit()
+
+    def finish():
+        topology.submit_curvature(points, None, np.empty(len(points), np.float32), smoothing_passes=400)
+        device.finish()
+
     work = {
         "weld": lambda: pel.MeshTopology(device, quads, positions=points, weld="tolerance",
                                          weld_tolerance=1e-3),
         "save": topology.save, "load": lambda: pel.MeshTopology.load(device, saved),
-        "curvature": lambda: topology.curvature(points.copy(), smoothing_passes=20),
+        "curvature": lambda: topology.curvature(points.copy(), smoothing_passes=400),
         "submit": lambda: topology.submit_curvature(points.copy(), None, np.empty(len(points), np.float32)),
         "report": lambda: topology.curvature(points.copy(), report=True, smoothing_passes=20),
         "uv_scale": lambda: topology.uv_scale(points.copy(), uvs.copy()),
@@ -227,7 +165,7 @@ EVERY_CALL = textwrap.dedent("""
         "read": lambda: table.read("faceworks8"), "bc6h": table.read_bc6h,
         "evaluate": lambda: burley.evaluate(distances),
         "shade": shader.execute, "screen": lambda: pel.screen_curvature(device, image.copy(), image.copy()),
-        "buffer": lambda: pel.Buffer(device, np.zeros(1 << 26, np.uint8)), "finish": device.finish,
+        "buffer": lambda: pel.Buffer(device, np.zeros(1 << 26, np.uint8)), "finish": finish,
     }
 
     class Alarm(Exception):
@@ -327,7 +265,7 @@ FORK = textwrap.dedent("""
 """)
 
 
-def test_a_forked_process_is_told_so():
+def test_calls_in_a_forked_process_raise():
     done = subprocess.run([sys.executable, "-c", FORK], stdout=subprocess.PIPE, text=True, timeout=60)
     assert done.returncode == 0
     assert done.stdout.split("\n")[:14] == ["INVALID_STATE True"] * 12 + ["3", "True"]

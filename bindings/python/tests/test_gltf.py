@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 
 import pellucid as pel
-from pellucid import _command
+from pellucid import _command, _show
 
 files = pytest.importorskip("pellucid.files", reason="this build reads no files")
 
 WAX = {"name": "Candle wax",
        "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.8, 0.7, 1], "metallicFactor": 0,
-                                "roughnessFactor": 0.6,
-                                                      "baseColorTexture": {"index": 0}},
+                                "roughnessFactor": 0.6, "baseColorTexture": {"index": 0}},
        "extensions": {"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 1},
                       "KHR_materials_volume": {"thicknessFactor": 0.02, "attenuationDistance": 0.0015,
                                                "attenuationColor": [0.4, 0.3, 0.1]},
@@ -28,24 +27,19 @@ def ball(rings=24, segments=48):
     a, b = np.meshgrid(np.linspace(0, math.pi, rings + 1), np.linspace(0, 2 * math.pi, segments + 1),
                        indexing="ij")
     points = RADIUS * np.stack([np.sin(a) * np.sin(b), np.cos(a), np.sin(a) * np.cos(b)], -1).reshape(-1, 3)
-    uvs = np.stack([b / (2 * math.pi), a / math.pi], -1).reshape(-1, 2)
     at = (np.arange(rings)[:, None] * (segments + 1) + np.arange(segments)).ravel()
     below = at + segments + 1
-    return points.astype(
-        "<f4"), uvs.astype("<f4"), np.stack([at, below, at + 1, at + 1, below, below + 1], -1).astype("<u4")
+    indices = np.stack([at, below, at + 1, at + 1, below, below + 1], -1)
+    return points.astype("<f4"), (points[:, :2] + RADIUS).astype("<f4"), indices.astype("<u4")
 
 
-def png():
-    from tempfile import TemporaryDirectory
-    with TemporaryDirectory() as folder:
-        files.write_image(f"{folder}/a.png", np.full((2, 2, 3), 200, np.uint8))
-        return open(f"{folder}/a.png", "rb").read()
+PNG = _show.png(np.full((2, 2, 3), 200, np.uint8))
 
 
 @pytest.fixture
 def glb(tmp_path):
     """Two balls, of wax and of plaster, a camera and a lamp."""
-    parts = [a.tobytes() for a in ball()] + [png()]
+    parts = [a.tobytes() for a in ball()] + [PNG]
     starts = np.cumsum([0] + [len(p) for p in parts]).tolist()
     points = len(ball()[0])
     document = {
@@ -80,25 +74,22 @@ def test_a_scene_as_arrays_and_structures(glb):
     assert min(pel.load_gltf(glb).lights[0].color) > 0  # by an exposure that is chosen
     scene = pel.load_gltf(glb, lights=1)
     assert scene.names == {1: "Candle wax", 2: "Plaster"} and scene.taken_for == {1: "volume", 2: "plain"}
-    assert scene.mesh.low == pytest.approx((-20, -20, -20), abs=0.1)  # mm
-    assert scene.mesh.high == pytest.approx((70, 20, 20), abs=0.1)
-    assert set(scene.mesh.ids) == {1, 2} and (scene.mesh.positions[scene.mesh.ids == 2, 0] > 29).all()
-    assert scene.mesh.uvs.shape == (len(scene.mesh.positions), 2)
-    wax, plaster = scene.materials[1], scene.materials[2]
-    assert wax.profile is not None and plaster.profile is None
-    assert wax.profile.info.width[0] > 1.5 * wax.profile.info.width[2] > 0  # red light goes farther
+    mesh, (wax, plaster) = scene.mesh, scene.materials.values()
+    (light,), (camera,) = scene.lights, scene.cameras
+    assert mesh.low == pytest.approx((-20, -20, -20), abs=0.1)  # mm
+    assert mesh.high == pytest.approx((70, 20, 20), abs=0.1) and mesh.uvs.shape == (len(mesh.positions), 2)
+    assert set(mesh.ids) == {1, 2} and (mesh.positions[mesh.ids == 2, 0] > 29).all()
+    assert wax.profile.info.width[0] > 1.5 * wax.profile.info.width[2] > 0 and plaster.profile is None
     assert plaster.f0 == pytest.approx(0.04) and wax.roughness == pytest.approx(0.36)
-    assert list(scene.textures) == [1] and scene.textures[1] == png()
-    (light,) = scene.lights
+    assert scene.textures == {1: PNG}
     assert light.color == pytest.approx((1, 1, 1)) and light.to_light == pytest.approx((0, 0, 1))
-    camera, = scene.cameras
     assert camera.position == pytest.approx((0, 0, 120)) and camera.forward == pytest.approx((0, 0, -1))
     assert camera.vertical_fov == 0.5
-    centimetres = pel.load_gltf(glb, unit_mm=10, lights=0.5, profiles={"Plaster": "marble"})
-    assert np.allclose(centimetres.mesh.positions, scene.mesh.positions / 100,
-                       atol=1e-6) and centimetres.cameras[0].position[2] == pytest.approx(1.2)
-    assert centimetres.lights[0].color[0] == pytest.approx(0.5) and centimetres.taken_for[2] == "profile"
-    assert centimetres.materials[2].profile.info.name == "marble"
+    small = pel.load_gltf(glb, unit_mm=10, lights=0.5, profiles={"Plaster": "marble"})  # centimetres
+    assert np.allclose(small.mesh.positions, mesh.positions / 100, atol=1e-6)
+    assert small.cameras[0].position[2] == pytest.approx(1.2)
+    assert small.lights[0].color[0] == pytest.approx(0.5) and small.taken_for[2] == "profile"
+    assert small.materials[2].profile.info.name == "marble"
     assert {m.profile.info.name for m in pel.load_gltf(glb, profiles="jade").materials.values()} == {"jade"}
 
 
@@ -118,20 +109,15 @@ def test_it_is_saved_as_the_command_does(glb, tmp_path):
         assert (tmp_path / "its" / name).read_bytes() == (tmp_path / "mine" / name).read_bytes(), name
 
 
-def test_what_is_wrong_is_said(glb, tmp_path):
-    with pytest.raises(pel.files.FileError, match="none.glb"):
-        pel.load_gltf(tmp_path / "none.glb")
-    with pytest.raises(pel.files.FileError, match="glb"):
-        pel.load_gltf(tmp_path / "mesh.obj")
-    with pytest.raises(ValueError, match="there are Candle wax, Plaster"):
-        pel.load_gltf(glb, profiles={"Head": "skin"})
-    with pytest.raises(pel.files.FileError, match="granite"):
-        pel.load_gltf(glb, profiles="granite")
-    for bad in ({"unit_mm": 0}, {"lights": math.nan}):
-        with pytest.raises(ValueError, match=next(iter(bad))):
-            pel.load_gltf(glb, **bad)
-    (tmp_path / "file").write_text("")
-    with pytest.raises(pel.files.FileError, match="file/x"):
-        pel.load_gltf(glb).save(tmp_path / "file/x")
-    with pytest.raises(pel.files.FileError, match="none.toml"):
-        pel.files.load_profile(tmp_path / "none.toml")
+@pytest.mark.parametrize("use, error, message", [
+    (lambda glb, f: pel.load_gltf(f / "none.glb"), files.FileError, "none.glb"),
+    (lambda glb, f: pel.load_gltf(f / "mesh.obj"), files.FileError, "glb"),
+    (lambda glb, f: pel.load_gltf(glb, profiles={"Head": "skin"}), ValueError, "are Candle wax, Plaster"),
+    (lambda glb, f: pel.load_gltf(glb, profiles="granite"), files.FileError, "granite"),
+    (lambda glb, f: pel.load_gltf(glb, unit_mm=0), ValueError, "unit_mm"),
+    (lambda glb, f: pel.load_gltf(glb, lights=math.nan), ValueError, "lights"),
+    (lambda glb, f: pel.load_gltf(glb).save(glb / "x"), files.FileError, "balls.glb/x"),
+    (lambda glb, f: files.load_profile(f / "none.toml"), files.FileError, "none.toml")])
+def test_errors(glb, tmp_path, use, error, message):
+    with pytest.raises(error, match=message):
+        use(glb, tmp_path)

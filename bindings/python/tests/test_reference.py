@@ -13,14 +13,10 @@ def test_surface_integral_of_an_evenly_lit_sheet(device):
     triangles = np.vstack([np.stack([a, a + 1, a + 41], 1), np.stack([a + 1, a + 42, a + 41], 1)])
     light = np.array([1, 0.5, 0.25], np.float32)
     points = np.array([[0, 0, 0], [0.3, -1.2, 0]], np.float32)
-    per_vertex = pel.surface_integral(device, positions, triangles,
-                                      np.broadcast_to(light, (len(positions), 3)), points)
-    assert np.allclose(per_vertex, light, atol=3e-4)
-    per_corner = pel.surface_integral(device, positions, triangles,
-                                      np.broadcast_to(light, (len(triangles), 3, 3)), points)
-    per_triangle = pel.surface_integral(device, positions, triangles,
-                                        np.broadcast_to(light, (len(triangles), 3)), points)
-    assert np.allclose(per_corner, per_vertex, atol=1e-5) and np.allclose(per_triangle, per_vertex, atol=1e-5)
+    # Per vertex, per corner, per triangle.
+    for shape in ((len(positions), 3), (len(triangles), 3, 3), (len(triangles), 3)):
+        found = pel.surface_integral(device, positions, triangles, np.broadcast_to(light, shape), points)
+        assert np.allclose(found, light, atol=3e-4)
     out = np.zeros((2, 3), np.float32)
     pel.submit_surface_integral(device, positions, triangles, np.broadcast_to(light, (len(positions), 3)),
                                 points, out,

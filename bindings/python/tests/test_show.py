@@ -25,7 +25,6 @@ def test_a_table_shows_its_texels(device):
     lut = pel.Lut.curvature(device, width=16, height=8)
     assert repr(lut) == "<pellucid.Lut curvature, 16 x 8, skin>"
     assert np.array_equal(pixels(lut._repr_png_()), _show.srgb(lut.read()))
-    assert "specular" in repr(pel.Lut.specular(device, width=4, height=4))
 
 
 def test_plots(device):
@@ -36,18 +35,14 @@ def test_plots(device):
     assert [line.get_color() for line in axes.lines] == ["red", "green", "blue"]
     r, y = axes.lines[0].get_data()
     assert 0.75 < np.trapezoid(y, r) < 1.01  # nearly all of the light
-    assert pixels(profile._repr_png_()).std() > 5
-    assert profile.plot(axes) is axes and len(axes.lines) == 6
-
-
-def test_a_plotted_table_has_readable_axes(device):
-    pytest.importorskip("matplotlib", reason="matplotlib is not installed")
+    assert pixels(profile._repr_png_()).std() > 5 and profile.plot(axes) is axes and len(axes.lines) == 6
     curvature = pel.Lut.curvature(device, width=8, height=8, radius_min=1, radius_max=25, axis="root").plot()
-    assert [t.get_text() for t in curvature.get_yticklabels()] == ["0.04", "0.16", "0.36", "0.64", "1"]
-    assert [t.get_text() for t in curvature.get_xticklabels()] == ["-1", "-0.5", "0", "0.5", "1"]
-    assert curvature.get_xticks()[1] == pytest.approx(0.5 - 0.5 * 0.5**0.5)
     shadow = pel.Lut.shadow(device, width=8, height=8, axis="linear", width_min=2, width_max=4).plot()
-    assert [t.get_text() for t in shadow.get_yticklabels()] == ["0.25", "0.312", "0.375", "0.438", "0.5"]
+    for labels, known in [(curvature.get_yticklabels(), ["0.04", "0.16", "0.36", "0.64", "1"]),
+                          (curvature.get_xticklabels(), ["-1", "-0.5", "0", "0.5", "1"]),
+                          (shadow.get_yticklabels(), ["0.25", "0.312", "0.375", "0.438", "0.5"])]:
+        assert [t.get_text() for t in labels] == known
+    assert curvature.get_xticks()[1] == pytest.approx(0.5 - 0.5 * 0.5**0.5)
     for axes in (curvature, shadow, pel.Lut.specular(device, width=4, height=4).plot(),
                  pel.Lut.eye(device, width=4, height=4, depth=2).plot()):
         axes.figure.canvas.draw()

@@ -43,22 +43,18 @@ def test_draws_scatters_and_is_sampled(device):
     uv = np.stack(np.meshgrid(np.linspace(0.1, 0.9, 8), np.full(8, 0.5)), -1).astype(np.float32)
     shader.set_image("radiance", radiance).set_image("uv", uv)
     shader.set_image("normal_shading", np.tile(np.float32([0, 0, 1]), (8, 8, 1)))
-    shader.set_material(
-        1, pel.Material(scattering="texture", albedo=[1, 1, 1])).set_scattered_texture(1, soft)
-    shader.commit().execute()
+    shader.set_material(1, pel.Material(scattering="texture", albedo=[1, 1, 1]))
+    shader.set_scattered_texture(1, soft).commit().execute()
     assert radiance[0, 0, 0] < 0.1 < 0.9 < radiance[0, 7, 0]
     shader.set_scattered_texture(1, None)
     with pytest.raises(pel.PellucidError, match="pelShaderSetScatteredTexture"):
         shader.commit()
 
 
-def test_wrong_meshes(device):
-    positions, uvs, triangles = plate(3)
-    with pytest.raises(ValueError, match="indices"):
-        pel.TextureScatter(device, 8, 8, triangles.ravel(), uvs)
-    with pytest.raises(ValueError, match="uvs"):
-        pel.TextureScatter(device, 8, 8, triangles, positions)
-    with pytest.raises(pel.PellucidError, match="vertex 0"):
-        pel.TextureScatter(device, 8, 8, triangles, uvs - 1)
-    with pytest.raises(pel.PellucidError, match="of 4"):
-        pel.TextureScatter(device, 8, 8, triangles, uvs[:4])
+@pytest.mark.parametrize("change, error, message", [
+    (lambda p, u, t: (t.ravel(), u), ValueError, "indices"), (lambda p, u, t: (t, p), ValueError, "uvs"),
+    (lambda p, u, t: (t, u - 1), pel.PellucidError, "vertex 0"),
+    (lambda p, u, t: (t, u[:4]), pel.PellucidError, "of 4")])
+def test_wrong_meshes(device, change, error, message):
+    with pytest.raises(error, match=message):
+        pel.TextureScatter(device, 8, 8, *change(*plate(3)))
