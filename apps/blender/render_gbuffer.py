@@ -16,7 +16,7 @@ import traceback
 import bpy
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from gbuffer import eyes, geometry, lights, passes, principled, quiet, scene_file, surface  # noqa: E402
+from gbuffer import eyes, fault, geometry, lights, passes, principled, scene_file, surface  # noqa: E402
 from gbuffer.fault import Fault  # noqa: E402
 
 
@@ -26,8 +26,7 @@ def size(text):
     except ValueError:
         width = height = 0
     if width < 1 or height < 1:
-        raise argparse.ArgumentTypeError(f"'{text}': two whole numbers from 1 on are needed, such as "
-                                         f"1280x720")
+        raise argparse.ArgumentTypeError(f"'{text}': it must be such as 1280x720")
     return width, height
 
 
@@ -52,10 +51,8 @@ def pellucid_command():
 
 def arguments():
     words = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
-    parser = argparse.ArgumentParser(
-        prog="blender -b [FILE.blend] --python render_gbuffer.py --",
-        description="Renders a G-buffer, shadow maps and a scene file for `pellucid shade`.",
-    )
+    parser = argparse.ArgumentParser(prog="blender -b [FILE.blend] --python render_gbuffer.py --",
+                                     description="Renders G-buffer and scene for `pellucid shade`.")
     parser.add_argument("mesh", nargs="?",
                         help="OBJ, PLY, STL or OFF to add; without FILE.blend the only thing there is")
     parser.add_argument("-o", "--output", required=True, metavar="DIR",
@@ -64,8 +61,7 @@ def arguments():
                         help="pixels (default: the .blend file's, else 1024x1024)")
     parser.add_argument("--frame", type=int, help="frame of an animation (default: the current one)")
     parser.add_argument("--unit", type=positive, metavar="MM",
-                        help="millimetres per Blender unit (default: the .blend file's unit scale; 1 without "
-                             "one)")
+                        help="millimetres per Blender unit (default: the .blend file's unit scale, else 1)")
     parser.add_argument("--height", type=positive, metavar="MM", help="scales MESH to this height")
     parser.add_argument("--up", choices=("y", "z"), default="z",
                         help="MESH's up axis: z looks to -y, y looks to +z (default z)")
@@ -77,12 +73,10 @@ def arguments():
                         help="half floats in gbuffer.exr; positions then carry 11 bits")
     parser.add_argument("--pellucid", default=pellucid_command(), metavar="COMMAND",
                         help="the pellucid command, which measures curvature (default: $PELLUCID_COMMAND, "
-                             "else pellucid, else the "
-                             "one that was built or installed with this script)")
+                             "else pellucid, else the one that was built or installed with this script)")
     parser.add_argument("--preset", metavar="NAME",
                         help="of materials that name none: auto (what their shader says: no Subsurface, no "
-                             "scattering), plain, skin, or a "
-                             "material of the library (default: auto; skin for a mesh alone)")
+                             "scattering), plain, skin, or one of the library (auto; skin for a mesh alone)")
     parser.add_argument("--verbose", action="store_true", help="let Blender print what it does")
     parser.add_argument("--no-curvature", action="store_true", help="no curvature, so no direct scattering")
     options = parser.parse_args(words)
@@ -97,7 +91,7 @@ def arguments():
 
 def main():
     options = arguments()
-    quiet.VERBOSE = options.verbose
+    fault.VERBOSE = options.verbose
     fallback = options.preset or (principled.AUTO if bpy.data.filepath else principled.SKIN)
     try:
         os.makedirs(options.output, exist_ok=True)
@@ -134,16 +128,15 @@ def main():
         lights.render_shadow_map(scene, lamp, bounds, options, taken)
     sky = lights.ambient(source, options.output)
     scene_file.write(os.path.join(options.output, "scene.toml"), unit, camera, lamps, sky, materials, found,
-                     not options.no_curvature,
-                     fallback)
+                     not options.no_curvature, fallback)
     print(f"pellucid: {options.output}/gbuffer.exr, {options.output}/scene.toml", flush=True)
 
 
 if __name__ == "__main__":
     try:
         main()
-    except Fault as fault:
-        print(f"render_gbuffer.py: {fault}", file=sys.stderr, flush=True)
+    except Fault as reason:
+        print(f"render_gbuffer.py: {reason}", file=sys.stderr, flush=True)
         os._exit(3)  # Blender turns sys.exit into success
     except SystemExit as stop:
         sys.stdout.flush()

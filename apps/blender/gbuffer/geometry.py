@@ -48,8 +48,7 @@ def load(options, unit):
     elif extension in (".ply", ".stl", ".off"):
         load_ply(path, options.pellucid, options.up)
     else:
-        raise Fault(f"{path}: OBJ, PLY, STL or OFF is needed; open other formats in Blender and save a "
-                    f".blend file")
+        raise Fault(f"{path}: OBJ, PLY, STL or OFF is needed; save other formats as .blend files")
     things = [thing for thing in bpy.data.objects if thing not in before and thing.type == "MESH"]
     if not things or not any(len(thing.data.polygons) for thing in things):
         raise Fault(f"{path}: there are no faces in it")
@@ -72,8 +71,7 @@ def run(command, pellucid):
         done = subprocess.run([pellucid, *command], capture_output=True, text=True)
     except OSError as error:
         raise Fault(f"cannot run '{pellucid}' ({error.strerror}): give its path with --pellucid or "
-                    f"PELLUCID_COMMAND, "
-                    "or leave curvature out with --no-curvature") from None
+                    f"PELLUCID_COMMAND, or leave curvature out with --no-curvature") from None
     if done.returncode:
         raise Fault(f"{pellucid} {command[0]}: {done.stderr.strip()}")
 

@@ -6,8 +6,7 @@ import bpy
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Matrix, Vector
 
-from .fault import warn
-from .quiet import quiet
+from .fault import quiet, warn
 from .surface import AOVS
 
 # Channel of the materials' pass indices. Blender 5 writes its passes' full names.
@@ -66,8 +65,7 @@ def warn_if_out_of_view(scene, camera, things):
         if any(ahead) and not beside:
             return
     warn(f"the camera sees none of the {len(things)} objects, so the picture will be empty: turn it to them, "
-         f"or remove it, and "
-         "one that frames everything is made")
+         "or remove it, and one that frames everything is made")
 
 
 def prepare(scene, size):

@@ -98,5 +98,4 @@ def profile_text(surface, unit):
     distance = [max(r * unit / (4 * math.pi), 1e-4) for r in surface.scattering.radius]
     name = "".join(c for c in surface.name if c.isprintable() and c not in '"\\')[:40] or "material"
     return (f'version = 1\nname = "{name}"\nkind = "burley"\nunit = "mm"\nsource = "Blender: subsurface '
-            f'radius, by render_gbuffer.py"\n'
-            f"distance = [{', '.join(f'{d:.9g}' for d in distance)}]\n")
+            f'radius, by render_gbuffer.py"\n' f"distance = [{', '.join(f'{d:.9g}' for d in distance)}]\n")

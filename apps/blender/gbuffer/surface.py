@@ -9,8 +9,7 @@ from .principled import PRESET, Surface
 
 # Passes of materials ("AOVs") by name, and whether they are colours or single values.
 AOVS = (("NShading", "COLOR"), ("NGeom", "COLOR"), ("Albedo", "COLOR"), ("Curvature", "VALUE"),
-        ("Roughness", "VALUE"),
-        ("ScatterWeight", "VALUE"))
+        ("Roughness", "VALUE"), ("ScatterWeight", "VALUE"))
 
 # Shaders whose colour is the albedo, and the name of that input.
 COLOURS = {"BSDF_PRINCIPLED": "Base Color", "BSDF_DIFFUSE": "Color", "SUBSURFACE_SCATTERING": "Color",

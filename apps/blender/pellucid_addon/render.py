@@ -41,12 +41,12 @@ def steps(scene, folder):
                       os.path.join(folder, "picture.png"), "--exposure", str(settings.exposure), *device]
 
 
-def said(log):
+def failure_reason(log):
     """The last words of a failed step that tell why."""
     lines = [line for line in log.splitlines() if line.strip()]
-    told = [line for line in lines if line.startswith(("render_gbuffer.py:", "pellucid:"))
+    reasons = [line for line in lines if line.startswith(("render_gbuffer.py:", "pellucid:"))
             and "warning" not in line]
-    return (told or lines or ["it said nothing"])[-1]
+    return (reasons or lines or ["it said nothing"])[-1]
 
 
 def save_log(text):
@@ -128,7 +128,7 @@ class PELLUCID_OT_render(bpy.types.Operator):
         self.output.close()
         self.log += f"== {self.what}\n{text}\n"
         if self.process.returncode:
-            raise Failure(f"{self.what}: {said(text)}")
+            raise Failure(f"{self.what}: {failure_reason(text)}")
         return True
 
     def end(self, scene, failure=None):

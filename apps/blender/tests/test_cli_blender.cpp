@@ -27,7 +27,7 @@ const char* const light = R"([[light]]
 to_light = [0.7990018725395203, -0.44943854212760925, 0.39950093626976013]
 )";
 
-// Differences between two pictures where the mask is 1, per channel.
+// Root of the mean square differences of two pictures where the mask is 1, per channel, and the largest one.
 struct Difference {
     double rms[3] = {}, max = 0;
     size_t pixels = 0;
@@ -55,25 +55,22 @@ Difference compare(const std::vector<float>& a, const std::vector<float>& b, con
 }
 
 // The same of the means over pixels of equal N.L: a sphere lit by a sun has one value there, and its mean
-// has little noise.
+// has little noise. Each mean counts as often as it has pixels.
 Difference compareCurves(const std::vector<float>& a, const std::vector<float>& b,
                          const std::vector<float>& mask, const std::vector<double>& cosines) {
     constexpr size_t bins = 100;
-    std::vector<double> sums(3 * bins), counts(bins);
-    for (size_t i = 0; i < mask.size(); ++i) {
-        if (mask[i] != 1) continue;
-        const size_t bin = std::min(size_t((cosines[i] + 1) / 2 * bins), bins - 1);
-        ++counts[bin];
-        for (size_t c = 0; c < 3; ++c) sums[3 * bin + c] += double(a[3 * i + c]) - b[3 * i + c];
-    }
-    Difference e;
-    for (size_t bin = 0; bin < bins; ++bin) {
-        e.pixels += size_t(counts[bin]);
-        for (size_t c = 0; c < 3 && counts[bin] > 0; ++c)
-            e.rms[c] += sums[3 * bin + c] * sums[3 * bin + c] / counts[bin];
-    }
-    for (double& r : e.rms) r = std::sqrt(r / double(e.pixels));
-    return e;
+    std::vector<float> means[2] = {std::vector<float>(3 * bins), std::vector<float>(3 * bins)};
+    std::vector<float> counts(bins), smooth[2] = {a, b};
+    const auto binOf = [&](size_t i) { return std::min(size_t((cosines[i] + 1) / 2 * bins), bins - 1); };
+    for (size_t i = 0; i < mask.size(); ++i) counts[binOf(i)] += float(mask[i] == 1);
+    for (const bool spread : {false, true})
+        for (size_t i = 0; i < mask.size(); ++i)
+            for (size_t c = 0; c < 3 && mask[i] == 1; ++c)
+                for (size_t k = 0; k < 2; ++k) {
+                    float& mean = means[k][3 * binOf(i) + c];
+                    spread ? smooth[k][3 * i + c] = mean : mean += smooth[k][3 * i + c] / counts[binOf(i)];
+                }
+    return compare(smooth[0], smooth[1], mask);
 }
 
 class BlenderGBuffer : public CommandTest {
@@ -97,9 +94,11 @@ class BlenderReference : public BlenderGBuffer {
     std::string root_;
 };
 
-void report(const std::string& what, const Difference& ours, const Difference& lambert) {
-    std::printf("%s: RMSE %.5f %.5f %.5f, Lambert %.5f %.5f %.5f, %zu pixels\n", what.c_str(), ours.rms[0],
+// Ours is nearer to the path-traced picture than Lambert is, `share` times or less.
+void expectNearer(const char* what, const Difference& ours, const Difference& lambert, double share = 1) {
+    std::printf("%s: RMSE %.5f %.5f %.5f, Lambert %.5f %.5f %.5f, %zu pixels\n", what, ours.rms[0],
                 ours.rms[1], ours.rms[2], lambert.rms[0], lambert.rms[1], lambert.rms[2], ours.pixels);
+    for (int c = 0; c < 3; ++c) EXPECT_LT(ours.rms[c], share * lambert.rms[c]) << what << ", channel " << c;
 }
 
 }  // namespace
@@ -169,69 +168,37 @@ TEST_F(BlenderReference, ScatteringComesCloserToThePathTracedSphere) {
 
     const std::vector<float> burley = rgb(io::readImage(root_ + "sphere10_side_BURLEY.exr"));
     const std::vector<float> walk = rgb(io::readImage(root_ + "sphere10_side_RW.exr"));
-    const Difference whole = compare(out, burley, mask), wholeLambert = compare(lambert, burley, mask);
-    report("sphere, Burley, whole", whole, wholeLambert);
-    report("sphere, random walk, whole", compare(out, walk, mask), compare(lambert, walk, mask));
-    const Difference nearBurley = compare(out, burley, band),
-                     nearBurleyLambert = compare(lambert, burley, band);
-    report("sphere, Burley, |N.L| < 0.2", nearBurley, nearBurleyLambert);
-    const Difference nearWalk = compare(out, walk, band), nearWalkLambert = compare(lambert, walk, band);
-    report("sphere, random walk, |N.L| < 0.2", nearWalk, nearWalkLambert);
-    for (int c = 0; c < 3; ++c) {
-        EXPECT_LT(whole.rms[c], wholeLambert.rms[c]);
-        EXPECT_LT(nearBurley.rms[c], nearBurleyLambert.rms[c]);
-        EXPECT_LT(nearWalk.rms[c], nearWalkLambert.rms[c]);
-    }
+    expectNearer("Burley", compare(out, burley, mask), compare(lambert, burley, mask));
+    expectNearer("Burley, |N.L| < 0.2", compare(out, burley, band), compare(lambert, burley, band));
+    expectNearer("random walk, |N.L| < 0.2", compare(out, walk, band), compare(lambert, walk, band));
+    expectNearer("Burley, means over equal N.L", compareCurves(out, burley, mask, cosines),
+                 compareCurves(lambert, burley, mask, cosines));
     // Where it matters most: red light near the terminator.
-    EXPECT_LT(nearBurley.rms[0], tolerance::blenderTerminator * nearBurleyLambert.rms[0]);
+    EXPECT_LT(compare(out, burley, band).rms[0],
+              tolerance::blenderTerminator * compare(lambert, burley, band).rms[0]);
 
     // Blender's random walk reflects more than the albedo it was given, by one factor per channel wherever
-    // the light is. With the albedo as it is measured, in the light and in every other pixel, the others
-    // come closer over the whole sphere too.
-    std::vector<float> measured = mask, others = mask;
-    for (size_t i = 0; i < mask.size(); ++i) {
-        if (i % 2 || cosines[i] < 0.5) measured[i] = 0;
-        if (i % 2 == 0) others[i] = 0;
-    }
-    const auto factor = [&](const std::vector<float>& picture,
-                            size_t c) {  // by which the walk is brighter, least squares
-        double both = 0, square = 0;
-        for (size_t i = 0; i < mask.size(); ++i) {
-            const double p = picture[3 * i + c];
-            if (measured[i] == 1) both += walk[3 * i + c] * p, square += p * p;
+    // the light is. Brighter by that factor, measured in the light and in every other pixel, ours comes
+    // closer over the other pixels of the whole sphere too, and closer than Lambert's does.
+    std::vector<float> others = mask, bright = out, brightLambert = lambert;
+    for (size_t i = 0; i < mask.size(); i += 2) others[i] = 0;
+    for (std::vector<float>* picture : {&bright, &brightLambert})
+        for (size_t c = 0; c < 3; ++c) {
+            double both = 0, square = 0;  // least squares
+            for (size_t i = 0; i < mask.size(); i += 2)
+                if (mask[i] == 1 && cosines[i] >= 0.5) {
+                    const double p = (*picture)[3 * i + c];
+                    both += walk[3 * i + c] * p, square += p * p;
+                }
+            for (size_t i = 0; i < mask.size(); ++i) (*picture)[3 * i + c] *= float(both / square);
         }
-        return both / square;
-    };
-    std::vector<float> brightLambert = lambert;  // which the same is done for
-    for (size_t c = 0; c < 3; ++c) {
-        const double brighter = factor(out, c), lambertBrighter = factor(lambert, c);
-        for (size_t i = 0; i < mask.size(); ++i) brightLambert[3 * i + c] *= float(lambertBrighter);
-        const std::string name = std::string("ViewLayer.DiffCol.") + "RGB"[c];
-        for (io::Channel& channel : gbuffer.channels)
-            if (channel.name == name)
-                for (float& value : channel.pixels) value *= float(brighter);
-        std::printf("albedo of %c as measured: %.4f times what it was given\n", "RGB"[c], brighter);
-    }
-    io::writeExr(path("gbuffer.exr"), gbuffer);
-    const std::vector<float> bright =
-        shade(path("gbuffer.exr"), std::string(names) + "curvature = \"Curvature.X\"\n" + light + material);
-    ASSERT_EQ(bright.size(), out.size());
-    const Difference closer = compare(bright, walk, others), closerLambert = compare(lambert, walk, others);
-    report("sphere, random walk, albedo as measured, the other pixels", closer, closerLambert);
-    const Difference curve = compareCurves(bright, walk, mask, cosines),
-                     curveLambert = compareCurves(lambert, walk, mask, cosines);
-    report("the same, means over equal N.L", curve, curveLambert);
-    const Difference curveBright = compareCurves(brightLambert, walk, mask, cosines);
-    report("the same, against Lambert with its albedo as measured", curve, curveBright);
-    const Difference curveBurley = compareCurves(out, burley, mask, cosines),
-                     curveBurleyLambert = compareCurves(lambert, burley, mask, cosines);
-    report("sphere, Burley, means over equal N.L", curveBurley, curveBurleyLambert);
-    for (int c = 0; c < 3; ++c) {
-        EXPECT_LT(closer.rms[c], closerLambert.rms[c]);
-        EXPECT_LT(curve.rms[c], tolerance::blenderCurve * curveLambert.rms[c]);
-        EXPECT_LT(curve.rms[c], curveBright.rms[c]);
-        EXPECT_LT(curveBurley.rms[c], curveBurleyLambert.rms[c]);
-    }
+    expectNearer("random walk, albedo as measured, other pixels", compare(bright, walk, others),
+                 compare(lambert, walk, others));
+    const Difference curve = compareCurves(bright, walk, mask, cosines);
+    expectNearer("the same, means over equal N.L", curve, compareCurves(lambert, walk, mask, cosines),
+                 tolerance::blenderCurve);
+    expectNearer("against Lambert with its albedo as measured", curve,
+                 compareCurves(brightLambert, walk, mask, cosines));
 }
 
 // The same names and habits in a file made here: layers, half and float mixed, depth of 1e10 and zeros
@@ -259,14 +226,13 @@ TEST_F(BlenderGBuffer, ConventionsOnAFileOfOurOwn) {
             for (int i = 0; i < 3; ++i)
                 expected.push_back(hit ? float(0.25 * (i + 1) * std::max(lit, 0.0)) : 0);
         }
-    image.addInterleaved(std::vector<std::string>{"ViewLayer.Depth.Z"}, depth);
-    image.addInterleaved(
-        std::vector<std::string>{"ViewLayer.DiffCol.R", "ViewLayer.DiffCol.G", "ViewLayer.DiffCol.B"}, albedo,
-        io::ChannelType::Half);
-    image.addInterleaved(std::vector<std::string>{"ViewLayer.IndexOB.X"}, id, io::ChannelType::Half);
-    image.addInterleaved(
-        std::vector<std::string>{"ViewLayer.NShading.R", "ViewLayer.NShading.G", "ViewLayer.NShading.B"},
-        normal);
+    using Names = std::vector<std::string>;
+    image.addInterleaved(Names{"ViewLayer.Depth.Z"}, depth);
+    image.addInterleaved(Names{"ViewLayer.DiffCol.R", "ViewLayer.DiffCol.G", "ViewLayer.DiffCol.B"}, albedo,
+                         io::ChannelType::Half);
+    image.addInterleaved(Names{"ViewLayer.IndexOB.X"}, id, io::ChannelType::Half);
+    image.addInterleaved(Names{"ViewLayer.NShading.R", "ViewLayer.NShading.G", "ViewLayer.NShading.B"},
+                         normal);
     io::writeExr(path("gbuffer.exr"), image);
     const std::vector<float> out =
         shade(path("gbuffer.exr"), std::string(names) + light + "[[material]]\nid = 1\n");

@@ -9,8 +9,6 @@
 #include "cli/cli_run.h"
 #include "io/image/image_file.h"
 #include "io/scene/scene_file.h"
-#include "sample/gbuffer.h"
-#include "sample/shadow_map.h"
 #include "tolerances.h"
 
 using namespace pellucid;
@@ -281,94 +279,4 @@ TEST_F(BlenderScript, SaysWhatIsWrong) {
                      path("out") + "' --pellucid /nowhere/pellucid"),
               3);
     EXPECT_TRUE(contains(said(), "--pellucid or PELLUCID_COMMAND")) << said();
-}
-
-// The conventions without Blender: a torus rendered by the sample host, stored under the script's names, half
-// and float mixed, must shade as the same images do under names of their own.
-class BlenderNames : public CommandTest {};
-
-TEST_F(BlenderNames, ShadeAsAnyOthers) {
-    const int size = 96;
-    const sample::Scene scene(sample::makeTorus(20, 8, 64, 32).view());
-    const sample::Camera camera = sample::frameHead(scene.bounds(), {}, {}, 1);
-    sample::GBufferOptions options;
-    options.detail.enabled = true;
-    const sample::GBuffer g = sample::renderGBuffer(scene, camera, size, size, options);
-    const sample::ShadowMap map =
-        sample::renderShadowMap(scene, sample::DirectionalLight{{0.6, -0.48, 0.64}}, 128);
-
-    io::Image named, plain;
-    const auto add = [&](const std::string& pass, const std::string& components, const sample::Image& image,
-                         io::ChannelType type) {
-        for (size_t c = 0; c < components.size(); ++c) {
-            const std::vector<float> plane(image.plane(int(c)), image.plane(int(c)) + image.planeSize());
-            named.channels.push_back({"ViewLayer." + pass + "." + components[c], type, plane});
-            plain.channels.push_back({"plain" + pass + components[c], type, plane});
-        }
-    };
-    named.width = named.height = plain.width = plain.height = size;
-    add("Position", "XYZ", g.position, io::ChannelType::Float);
-    add("Depth", "Z", g.viewDepth, io::ChannelType::Float);
-    add("NShading", "RGB", g.shadingNormal, io::ChannelType::Half);
-    add("NGeom", "RGB", g.geometricNormal, io::ChannelType::Half);
-    add("Albedo", "RGB", g.albedo, io::ChannelType::Half);
-    add("Curvature", "X", g.curvature, io::ChannelType::Half);
-    add("IndexMA", "X", g.coverage, io::ChannelType::Half);
-    io::writeExr(path("blender.exr"), named);
-    io::writeExr(path("plain.exr"), plain);
-    io::Image depths;
-    depths.width = depths.height = map.size;
-    for (const char* channel : {"R", "G", "B", "A"})
-        depths.channels.push_back({channel, io::ChannelType::Float, map.depth});
-    io::writeExr(path("shadow_sun.exr"), depths);
-
-    std::string matrix;
-    for (const float v : map.worldToUvz.toFloats())
-        matrix += (matrix.empty() ? "" : ", ") + std::to_string(v);
-    const std::string rest =
-        "[camera]\nposition = [" + std::to_string(camera.eye.x) + ", " + std::to_string(camera.eye.y) + ", " +
-        std::to_string(camera.eye.z) +
-        "]\n[[light]]\ntype = \"directional\"\nto_light = [0.6, -0.48, 0.64]\n[light.shadow_map]\n"
-        "file = \"shadow_sun.exr\"\nchannel = \"R\"\nprojection = \"parallel\"\nworld_to_shadow = [" +
-        matrix + "]\ndepth_range = " + std::to_string(map.depthRange) +
-        "\n[[material]]\nid = 1\ncurvature_lut = \"skin\"\ndeep_scatter_color = [0.7, 0.16, 0.05]\n"
-        "specular = 0.35\n[[curvature_lut]]\nname = \"skin\"\nwidth = 64\nheight = 64\n";
-    const auto channels = [](const char* pattern) {
-        std::string text = "version = 1\n[channels]\n";
-        const std::pair<const char*, std::pair<const char*, const char*>> keys[] = {
-            {"material", {"IndexMA", "X"}},          {"position", {"Position", "XYZ"}},
-            {"normal_shading", {"NShading", "RGB"}}, {"normal_geometric", {"NGeom", "RGB"}},
-            {"albedo", {"Albedo", "RGB"}},           {"curvature", {"Curvature", "X"}}};
-        for (const auto& [key, names] : keys) {
-            text += std::string(key) + " = [";
-            for (const char* c = names.second; *c; ++c) {
-                char name[64];
-                std::snprintf(name, sizeof name, pattern, names.first, *c);
-                text += (c == names.second ? "\"" : ", \"") + std::string(name) + "\"";
-            }
-            text += "]\n";
-        }
-        return text;
-    };
-    std::vector<std::string> pictures;
-    for (const auto& [file, pattern] : {std::pair("blender", "%s.%c"), std::pair("plain", "plain%s%c")}) {
-        const std::string toml = write(std::string(file) + ".toml", channels(pattern) + rest);
-        const Result result = run({"shade", path(std::string(file) + ".exr"), "--scene", toml, "-o",
-                                   path("out.exr"), "--stats", "--json"});
-        ASSERT_EQ(result.exitCode, 0) << result.err;
-        // Direct, deep scatter, specular, thickness; and the wide shadow and its table, by the map.
-        EXPECT_EQ(result.json().at("stats").at("features").size(), 6u);
-        pictures.push_back(read(path("out.exr")));
-        const io::Image out = io::readImage(path("out.exr"));
-        // Background is left alone, whatever its depth and position say; the object is lit.
-        double sum = 0;
-        for (size_t i = 0; i < out.pixelCount(); ++i) {
-            if (g.material[i] == 0) {
-                ASSERT_EQ(out.channel("R").pixels[i], 0);
-            }
-            sum += out.channel("R").pixels[i];
-        }
-        EXPECT_GT(sum, 100);
-    }
-    EXPECT_EQ(pictures[0], pictures[1]);
 }
