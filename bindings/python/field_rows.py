@@ -16,7 +16,7 @@ ROW = re.compile(
     r"X\((?P<kind>\w+), (?P<name>\w+), (?P<default>\([^)]*\)|[^,]+), (?P<min>[^,]+), (?P<max>[^,]+), "
     r'(?P<special>[^,]+), "(?P<unit>[^"]*)", "(?P<key>\w+)", '
     r"(?:PEL_NO_SLIDER|PEL_SLIDER\((?P<slider>[^)]*)\)), "
-    r'(?P<words>"(?:[^"\\]|\\.)*"(?: "(?:[^"\\]|\\.)*")*)\)' r"|PEL_EACH_(?P<list>\w+)_FIELD\(X\)")
+    r'(?P<words>"(?:[^"\\]|\\.)*"(?: "(?:[^"\\]|\\.)*")*)\)|PEL_EACH_(?P<list>\w+)_FIELD\(X\)')
 
 
 class Row(NamedTuple):
@@ -54,7 +54,7 @@ def row(m: re.Match[str]) -> Row:
     words = "".join(re.findall(r'"((?:[^"\\]|\\.)*)"', m["words"])).replace('\\"', '"')
     special = None if m["special"] == "PEL_NONE" else number(m["special"])
     return Row(m["kind"], m["name"], default, number(m["min"]), number(m["max"]), special, m["unit"],
-        m["key"], slider, words)
+               m["key"], slider, words)
 
 
 def parse(path: str | Path) -> dict[str, list[Row]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 import copy
 import time
 from dataclasses import dataclass, field
-from typing import Any, Callable, Optional
+from typing import Any, Callable, Optional, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,8 @@ from .pictures import LINEAR, picture, srgb_bytes
 from .reference import Reference
 from .renderer import GBuffer, Renderer
 from .texture import Texture
+
+T = TypeVar("T")
 
 
 @dataclass
@@ -77,6 +79,16 @@ _HALTON = list(zip((1 / 2, 1 / 4, 3 / 4, 1 / 8, 5 / 8, 3 / 8, 7 / 8),
                    (1 / 3, 2 / 3, 1 / 9, 4 / 9, 7 / 9, 2 / 9, 5 / 9)))
 
 
+def _kept(cache: dict[Any, T], key: Any, most: int, make: Callable[[], T]) -> T:
+    """What belongs to the key, made once; the oldest go."""
+    if key not in cache:
+        made = make()
+        while len(cache) >= most:
+            cache.pop(next(iter(cache)))
+        cache[key] = made
+    return cache[key]
+
+
 class Session:
     """Owns the renderer and the device. One thread makes it and uses it."""
 
@@ -91,7 +103,7 @@ class Session:
         self.count = False  # fill every counter of the shader, at some cost
         self._passes: dict[str, Pass] = {}
         self._maps: dict[Any, ShadowMap] = {}
-        self._profiles: dict[str, Profile] = {}
+        self._profiles: dict[Any, Profile] = {}
         # by size: the state they were drawn in
         self._gbuffers: dict[tuple[int, int], tuple[Any, GBuffer]] = {}
         self._irises: dict[str, NDArray[np.float32]] = {}  # by file
@@ -178,12 +190,8 @@ class Session:
         picture."""
         level = self._level(small)
         key = (lamp.azimuth, lamp.elevation, size, level)
-        if key not in self._maps:
-            while len(self._maps) > 8:
-                self._maps.pop(next(iter(self._maps)))
-            self._maps[key] = ShadowMap(
-                *self.renderer.shadow_map(self.to_light(lamp), size, self.mesh.up, level))
-        return self._maps[key]
+        return _kept(self._maps, key, 9, lambda: ShadowMap(
+            *self.renderer.shadow_map(self.to_light(lamp), size, self.mesh.up, level)))
 
     def _level(self, small: bool) -> int:
         """Which version of the mesh serves: while something moves, one whose edges are few pixels of a small
@@ -194,14 +202,10 @@ class Session:
         return self.renderer.level(5 * 2 * self.orbit.distance * np.tan(np.radians(self.orbit.fov) / 2) / 270)
 
     def profile(self, look: Look) -> Profile:
-        key = f"custom {look.distance}" if look.profile == "custom" else look.profile
-        if key not in self._profiles:
-            while len(self._profiles) > 32:
-                self._profiles.pop(next(iter(self._profiles)))
-            own = look.profile == "custom"
-            made = Profile.burley_distance(look.distance, "custom") if own else Profile.named(key)
-            self._profiles[key] = made
-        return self._profiles[key]
+        if look.profile == "custom":
+            return _kept(self._profiles, look.distance, 33,
+                         lambda: Profile.burley_distance(look.distance, "custom"))
+        return _kept(self._profiles, look.profile, 33, lambda: Profile.named(look.profile))
 
     def camera(self, aspect: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Eye, and world to clip space in OpenGL's convention."""
@@ -260,10 +264,7 @@ class Session:
         raises, and ValueError."""
         if not look.iris_texture:
             return None
-        if look.iris_texture not in self._irises:
-            self._irises.clear()
-            self._irises[look.iris_texture] = iris_image(look.iris_texture)
-        return self._irises[look.iris_texture]
+        return _kept(self._irises, look.iris_texture, 1, lambda: iris_image(look.iris_texture))
 
     def lights(self, look: Look, small: bool = False) -> list[tuple[Light, Optional[ShadowMap]]]:
         found: list[tuple[Light, Optional[ShadowMap]]] = []
@@ -287,9 +288,8 @@ class Session:
 
     def texture(self, look: Look, small: bool = False) -> Texture:
         """The look's light, scattered in the mesh's texture."""
-        if small not in self._textures:
-            self._textures[small] = Texture(self, 512 if small else 1024)
-        return self._textures[small].make(self, look, small)
+        made = _kept(self._textures, small, 2, lambda: Texture(self, 512 if small else 1024))
+        return made.make(self, look, small)
 
     def shade(self, name: str, look: Look, width: int, height: int, small: bool = False,
               outputs: tuple[str, ...] = (), albedo: bool = True) -> Pass:

@@ -31,22 +31,11 @@ class Gltf {
         made_ = io::importGltf(path, {profiles, unitMm, lights});
     }
 
-    py::dict mesh() const {
+    // Of each material: name, what it was taken for, structure, profile or None, picture or None.
+    py::dict parts() const {
         const io::MeshData& mesh = made_.gltf.mesh;
         const auto vertices = py::ssize_t(mesh.vertexCount());
-        py::dict d;
-        d["positions"] = array(mesh.positions, {vertices, 3});
-        d["normals"] = array(mesh.normals, {vertices, 3});
-        d["triangles"] = array(mesh.triangles, {py::ssize_t(mesh.triangleCount()), 3});
-        d["uvs"] = mesh.uvs.empty() ? py::object(py::none()) : array(mesh.uvs, {vertices, 2});
-        d["ids"] = array(idsOfVertices(made_.gltf), {vertices});
-        d["warnings"] = mesh.warnings;
-        return d;
-    }
-    // (name, what it was taken for, structure, profile as a scene file names it, profile or None, picture or
-    // None)
-    py::list materials() const {
-        py::list found;
+        py::list materials, lights, cameras;
         for (size_t i = 0; i < made_.looks.size(); ++i) {
             const io::GltfLook& look = made_.looks[i];
             const io::GltfMaterial& material = made_.gltf.materials[i];
@@ -60,23 +49,22 @@ class Gltf {
             if (material.baseColorImage >= 0 &&
                 !made_.gltf.images[size_t(material.baseColorImage)].bytes.empty())
                 picture = py::bytes(made_.gltf.images[size_t(material.baseColorImage)].bytes);
-            found.append(py::make_tuple(material.name, look.how, bytesOf(look.material.material), named,
-                                        profile, picture));
+            materials.append(
+                py::make_tuple(material.name, look.how, bytesOf(look.material.material), profile, picture));
         }
-        return found;
-    }
-    py::list lights() const {
-        py::list found;
-        for (const io::SceneLight& light : made_.scene.lights) found.append(bytesOf(light.light));
-        return found;
-    }
-    py::bytes ambient() const { return bytesOf(made_.scene.ambient); }
-    py::list cameras() const {
-        py::list found;
+        for (const io::SceneLight& light : made_.scene.lights) lights.append(bytesOf(light.light));
         for (const io::GltfCamera& c : made_.gltf.cameras)
-            found.append(py::make_tuple(py::tuple(py::cast(c.position)), py::tuple(py::cast(c.forward)),
-                                        py::tuple(py::cast(c.up)), c.verticalFov, c.aspect));
-        return found;
+            cameras.append(py::make_tuple(py::tuple(py::cast(c.position)), py::tuple(py::cast(c.forward)),
+                                          py::tuple(py::cast(c.up)), c.verticalFov, c.aspect));
+        using namespace py::literals;
+        const py::dict of(
+            "positions"_a = array(mesh.positions, {vertices, 3}),
+            "normals"_a = array(mesh.normals, {vertices, 3}),
+            "triangles"_a = array(mesh.triangles, {py::ssize_t(mesh.triangleCount()), 3}),
+            "uvs"_a = mesh.uvs.empty() ? py::object(py::none()) : array(mesh.uvs, {vertices, 2}),
+            "ids"_a = array(idsOfVertices(made_.gltf), {vertices}), "warnings"_a = mesh.warnings);
+        return py::dict("mesh"_a = of, "materials"_a = materials, "lights"_a = lights,
+                        "ambient"_a = bytesOf(made_.scene.ambient), "cameras"_a = cameras);
     }
     void save(const std::string& folder) const {
         const py::gil_scoped_release free;
@@ -100,11 +88,7 @@ void bindGltf(py::module_& module) {
                [](const std::string& nameOrPath) { return io::findProfile(nameOrPath).profile; });
     py::class_<Gltf>(module, "Gltf")
         .def(py::init<const std::string&, const std::vector<std::string>&, double, std::optional<double>>())
-        .def("mesh", &Gltf::mesh)
-        .def("materials", &Gltf::materials)
-        .def("lights", &Gltf::lights)
-        .def("ambient", &Gltf::ambient)
-        .def("cameras", &Gltf::cameras)
+        .def("parts", &Gltf::parts)
         .def("save", &Gltf::save);
 }
 

@@ -98,8 +98,10 @@ class Scene {
         const io::SceneFile scene = changed(materials, lights, ambient, camera, options);
         const auto o = structOf<PelShaderOptions>(options);
         std::vector<PelImageSlot> wanted;
+        std::vector<std::string> names;
         for (const io::OutputKey& k : io::outputKeys)
-            if (std::ranges::find(outputs, k.key) != outputs.end()) wanted.push_back(k.slot);
+            if (std::ranges::find(outputs, k.key) != outputs.end())
+                wanted.push_back(k.slot), names.emplace_back(k.key);
 
         std::vector<float> radiance;
         std::vector<std::vector<float>> parts;
@@ -116,18 +118,12 @@ class Scene {
             for (std::string line; std::getline(lines, line);) warnings.push_back(line);
             for (const std::string& sentence : io::unlikely(*gbuffer_, scene)) warnings.push_back(sentence);
         }
-        py::dict result;
-        result["radiance"] = image(radiance, 3);
         py::dict others;
         for (size_t i = 0; i < wanted.size(); ++i)
-            for (const io::OutputKey& k : io::outputKeys)
-                if (k.slot == wanted[i])
-                    others[py::str(std::string(k.key))] =
-                        image(parts[i], wanted[i] == PEL_SLOT_OUT_THICKNESS ? 1 : 3);
-        result["outputs"] = others;
-        result["stats"] = bytesOf(stats);
-        result["warnings"] = warnings;
-        return result;
+            others[py::str(names[i])] = image(parts[i], wanted[i] == PEL_SLOT_OUT_THICKNESS ? 1 : 3);
+        using namespace py::literals;
+        return py::dict("radiance"_a = image(radiance, 3), "outputs"_a = others, "stats"_a = bytesOf(stats),
+                        "warnings"_a = warnings);
     }
 
     // Files are named relative to the folder that the scene is written to.

@@ -30,9 +30,12 @@ from .texture_scatter import TextureScatter
 _driver.offer()
 
 
+_OF_FILES = ("load_mesh", "load_profile", "read_image", "tonemap", "write_image")
+
+
 def __getattr__(name: str) -> Any:
     # Of a module that not every build has.
-    if name in ("load_mesh", "load_profile", "read_image", "tonemap", "write_image"):
+    if name in _OF_FILES:
         from . import files
 
         return getattr(files, name)
@@ -44,9 +47,7 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted([*__all__, "__doc__", "__version__", "files", "load_gltf", "load_mesh", "load_profile",
-                   "read_image",
-                   "tonemap", "write_image"])
+    return sorted([*__all__, *_OF_FILES, "__doc__", "__version__", "files", "load_gltf"])
 
 
 _number = _native.version()
@@ -54,8 +55,6 @@ __version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"
 
 __all__ = [  # noqa: PLE0604
     "Buffer", "Device", "Event", "Image", "LiveMesh", "Lut", "MeshTopology", "PellucidError", "Profile",
-    "Scatter",
-    "Scene", "Shaded", "Shader", "TextureScatter", "Vertices", "compare", "devices", "load_scene",
-    "orient_mesh",
-    "shade", "warm_up_programs", "screen_curvature", "set_error_callback", "submit_screen_curvature",
-    "submit_surface_integral", "surface_integral", *_type_names]
+    "Scatter", "Scene", "Shaded", "Shader", "TextureScatter", "Vertices", "compare", "devices", "load_scene",
+    "orient_mesh", "screen_curvature", "set_error_callback", "shade", "submit_screen_curvature",
+    "submit_surface_integral", "surface_integral", "warm_up_programs", *_type_names]

@@ -90,10 +90,11 @@ def load_gltf(path: Any, *, profiles: Union[str, Mapping[str, Any], None] = None
     else:
         words = [f"{material}={os.fspath(profile)}" for material, profile in (profiles or {}).items()]
     native = _files.Gltf(str(path), words, unit_mm, lights)
-    mesh = native.mesh()
+    parts = native.parts()
+    mesh = parts["mesh"]
     used = mesh["positions"][mesh["ids"] > 0]
     materials, names, taken_for, textures = {}, {}, {}, {}
-    for number, (name, taken, data, _, profile, picture) in enumerate(native.materials(), 1):
+    for number, (name, taken, data, profile, picture) in enumerate(parts["materials"], 1):
         names[number], taken_for[number] = name, taken
         materials[number] = _filled(Material, data)
         if profile is not None:
@@ -102,6 +103,6 @@ def load_gltf(path: Any, *, profiles: Union[str, Mapping[str, Any], None] = None
             textures[number] = picture
     return Gltf(Mesh(**mesh, up=(0.0, 1.0, 0.0), front=(0.0, 0.0, 1.0), low=tuple(map(float, used.min(0))),
                      high=tuple(map(float, used.max(0))), source=str(path)),
-                names, taken_for, materials, textures, [_filled(Light, data) for data in native.lights()],
-                _filled(Ambient, native.ambient()),
-                [GltfCamera(*camera) for camera in native.cameras()], str(path), native)
+                names, taken_for, materials, textures, [_filled(Light, data) for data in parts["lights"]],
+                _filled(Ambient, parts["ambient"]), [GltfCamera(*camera) for camera in parts["cameras"]],
+                str(path), native)

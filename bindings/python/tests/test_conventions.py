@@ -92,16 +92,13 @@ def test_a_camera_finds_places_from_depth(depth, y_up, infinite):
     assert np.allclose(world[:, :3] / world[:, 3:], POINTS, atol=3e-4)
 
 
-def test_what_is_wrong_is_named():
-    with pytest.raises(ValueError, match="depth is '0..2'"):
-        clip_to_image("0..2")
-    with pytest.raises(ValueError, match="'top' or 'bottom'"):
-        light_from_view_projection(np.eye(4), first_row="left")
-    with pytest.raises(ValueError, match="4 x 4"):
-        camera_from_view_projection(np.eye(3))
-    with pytest.raises(ValueError, match="no inverse"):
-        camera_from_view_projection(np.zeros((4, 4)))
-    with pytest.raises(ValueError, match="makes no depth"):
-        light_from_view_projection(np.diag([1.0, 1, 0, 1]))
-    with pytest.raises(ValueError, match="finite"):
-        light_from_view_projection(np.full((4, 4), np.nan))
+@pytest.mark.parametrize("use, message", [
+    (lambda: clip_to_image("0..2"), "depth is '0..2'"),
+    (lambda: light_from_view_projection(np.eye(4), first_row="left"), "'top' or 'bottom'"),
+    (lambda: camera_from_view_projection(np.eye(3)), "4 x 4"),
+    (lambda: camera_from_view_projection(np.zeros((4, 4))), "no inverse"),
+    (lambda: light_from_view_projection(np.diag([1.0, 1, 0, 1])), "makes no depth"),
+    (lambda: light_from_view_projection(np.full((4, 4), np.nan)), "finite")])
+def test_errors(use, message):
+    with pytest.raises(ValueError, match=message):
+        use()

@@ -1,4 +1,5 @@
 """Contexts, queues, buffers and events that PyOpenCL made."""
+import functools
 import gc
 import weakref
 
@@ -65,12 +66,11 @@ def test_what_waiting_work_uses_is_kept_until_it_is_done(queue, sphere, kind):
     array = np.full({"table read": (8, 8, 3), "curvature": n}.get(kind, 64), 7, np.float32)
     gone = []
     weakref.finalize(array, gone.append, kind)
-    event = {"buffer read": lambda: buffer.submit_read(array, waits=waits),  # noqa: F821
-             "buffer write": lambda: buffer.submit_write(array, waits=waits),  # noqa: F821
-             "table read": lambda: table.submit_read("float", array, waits=waits),  # noqa: F821
-             "curvature": lambda: topology.submit_curvature(sphere.positions, sphere.normals,
-                                                            array, waits=waits)}[kind]()  # noqa: F821
-    del array  # noqa: F821
+    submit = {"buffer read": buffer.submit_read, "buffer write": buffer.submit_write,
+              "table read": functools.partial(table.submit_read, "float"),
+              "curvature": functools.partial(topology.submit_curvature, sphere.positions, sphere.normals)}
+    event = submit[kind](array, waits=waits)
+    del array
     gc.collect()
     assert not gone and not event.done
     gate.set_status(cl.command_execution_status.COMPLETE)
@@ -87,17 +87,14 @@ def test_nothing_of_the_hosts_is_kept(queue, sphere):
     def work():
         device = pel.Device.from_cl(queue)
         topology = pel.MeshTopology(device, sphere.triangles, positions=sphere.positions, weld="exact")
-        topology.submit_curvature(sphere.positions, sphere.normals,
-                                  np.empty(len(sphere.positions), np.float32))
-        pel.LiveMesh(topology).update(sphere.positions, sphere.normals,
-                                      np.empty(len(sphere.positions), np.float32))
-        lut = pel.Lut.curvature(device, width=8, height=8)
+        out = np.empty(len(sphere.positions), np.float32)
+        topology.submit_curvature(sphere.positions, sphere.normals, out)
+        pel.LiveMesh(topology).update(sphere.positions, sphere.normals, np.empty_like(out))
         image = np.ones((4, 16, 3), np.float32)
-        shader = pel.Shader(
-            device).set_image("radiance", np.empty_like(image)).set_image("normal_shading", image)
-        shader.set_image("curvature", image[..., 0]).set_material(
-            1, pel.Material(), lut).set_ambient(pel.Ambient(constant=(1, 1, 1)))
-        shader.commit().submit()
+        shader = pel.Shader(device).set_image("radiance", np.empty_like(image))
+        shader.set_image("normal_shading", image).set_image("curvature", image[..., 0])
+        shader.set_material(1, pel.Material(), pel.Lut.curvature(device, width=8, height=8))
+        shader.set_ambient(pel.Ambient(constant=(1, 1, 1))).commit().submit()
         shader.execute()
         with pytest.raises(pel.PellucidError):
             pel.Buffer.from_cl(device, cl.Buffer(cl.Context([queue.device]), cl.mem_flags.READ_WRITE, 64))

@@ -1,4 +1,4 @@
-"""Scattering alone."""
+"""Scattering alone: on the screen, in the texture of a mesh, and by the surface integral."""
 import numpy as np
 import pytest
 
@@ -59,3 +59,104 @@ def test_materials_controls_and_images(device):
     scatter.set_material(1, None)
     with pytest.raises(pel.PellucidError, match="is not set"):
         scatter.set_controls(1, scatter_taps=8)
+
+
+def plate(columns=9):
+    """A square of 20 x 20, all of the texture."""
+    v, u = np.mgrid[0:columns, 0:columns].astype(np.float32) / (columns - 1)
+    uvs = np.stack([u, v], -1).reshape(-1, 2)
+    positions = np.concatenate([20 * uvs, np.zeros((len(uvs), 1), np.float32)], 1).astype(np.float32)
+    a = (np.arange(columns - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
+    return positions, uvs, np.concatenate([np.stack([a, a + 1, a + columns + 1], 1),
+                                           np.stack([a, a + columns + 1, a + columns], 1)])
+
+
+def test_draws_scatters_and_is_sampled(device):
+    positions, uvs, triangles = plate()
+    texture = pel.TextureScatter(device, 64, 48, triangles, uvs)
+    with pytest.raises(pel.PellucidError, match="pelTextureScatterSetPositions comes first"):
+        texture.execute(np.ones((48, 64, 3), np.float32))
+    texture.set_positions(positions)
+    place = texture.draw(positions)
+    assert np.allclose(place[..., 0], 20 * (np.arange(64) + 0.5) / 64, atol=1e-4)
+    normals = texture.draw(np.tile(np.float32([0, 0, 3]), (len(uvs), 1)), unit=True)
+    assert np.allclose(normals, [0, 0, 1], atol=1e-6)
+    edge = np.repeat((place[..., :1] > 10).astype(np.float32), 3, -1)
+    soft = texture.execute(edge)
+    assert np.allclose(soft[:, :2], 0, atol=2e-3) and np.allclose(soft[:, -2:], 1, atol=2e-3)
+    assert (soft[24, 28] > 0.01).all() or soft[24, 28, 0] > soft[24, 28, 2]  # red reaches furthest
+    stats = texture.stats()
+    assert stats.texels_covered == stats.texels_total == 64 * 48 and stats.gaussians == 6
+    few = texture.execute(edge, params=pel.TextureScatterParams(profile="marble", gaussians=4))
+    assert few.shape == edge.shape and texture.stats().gaussians == 4 and texture.stats().profile_error < 0.1
+    colors = np.full_like(edge, 0.5)
+    assert np.allclose(texture.execute(edge, colors, params=pel.TextureScatterParams(albedo_after=1)),
+                       0.5 * soft, atol=1e-6)
+    texture.execute(edge, out=edge)
+    assert np.array_equal(edge, soft)
+    # A shader samples it.
+    shader, radiance = pel.Shader(device), np.zeros((8, 8, 3), np.float32)
+    uv = np.stack(np.meshgrid(np.linspace(0.1, 0.9, 8), np.full(8, 0.5)), -1).astype(np.float32)
+    shader.set_image("radiance", radiance).set_image("uv", uv)
+    shader.set_image("normal_shading", np.tile(np.float32([0, 0, 1]), (8, 8, 1)))
+    shader.set_material(1, pel.Material(scattering="texture", albedo=[1, 1, 1]))
+    shader.set_scattered_texture(1, soft).commit().execute()
+    assert radiance[0, 0, 0] < 0.1 < 0.9 < radiance[0, 7, 0]
+    shader.set_scattered_texture(1, None)
+    with pytest.raises(pel.PellucidError, match="pelShaderSetScatteredTexture"):
+        shader.commit()
+
+
+@pytest.mark.parametrize("change, error, message", [
+    (lambda p, u, t: (t.ravel(), u), ValueError, "indices"), (lambda p, u, t: (t, p), ValueError, "uvs"),
+    (lambda p, u, t: (t, u - 1), pel.PellucidError, "vertex 0"),
+    (lambda p, u, t: (t, u[:4]), pel.PellucidError, "of 4")])
+def test_wrong_meshes(device, change, error, message):
+    with pytest.raises(error, match=message):
+        pel.TextureScatter(device, 8, 8, *change(*plate(3)))
+
+
+def test_surface_integral_of_an_evenly_lit_sheet(device):
+    # Far from its border a plane gives back what it gets, whatever the profile.
+    x, y = np.meshgrid(np.linspace(-30, 30, 41), np.linspace(-30, 30, 41))
+    positions = np.stack([x, y, np.zeros_like(x)], -1).reshape(-1, 3).astype(np.float32)
+    a = (np.arange(40)[:, None] * 41 + np.arange(40)).ravel()
+    triangles = np.vstack([np.stack([a, a + 1, a + 41], 1), np.stack([a + 1, a + 42, a + 41], 1)])
+    light = np.array([1, 0.5, 0.25], np.float32)
+    points = np.array([[0, 0, 0], [0.3, -1.2, 0]], np.float32)
+    # Per vertex, per corner, per triangle.
+    for shape in ((len(positions), 3), (len(triangles), 3, 3), (len(triangles), 3)):
+        found = pel.surface_integral(device, positions, triangles, np.broadcast_to(light, shape), points)
+        assert np.allclose(found, light, atol=3e-4)
+    out = np.zeros((2, 3), np.float32)
+    pel.submit_surface_integral(device, positions, triangles, np.broadcast_to(light, (len(positions), 3)),
+                                points, out,
+                                profile=pel.Profile.burley([1, 1, 1], [0.8, 0.8, 0.8]), cut=[2, 2, 2]).wait()
+    assert np.allclose(out, light, atol=3e-4)
+    slanted = (positions[:, :1] > 0) * light
+    plain = pel.surface_integral(device, positions, triangles, slanted, points)
+    pel.submit_surface_integral(device, positions, triangles, slanted, points, out).wait()
+    assert np.array_equal(out, plain), "the same defaults with and without waiting"
+    with pytest.raises(ValueError, match="irradiance has shape"):
+        pel.surface_integral(device, positions, triangles, light, points)
+    with pytest.raises(pel.PellucidError, match="tolerance"):
+        pel.surface_integral(device, positions, triangles, np.zeros_like(positions), points, tolerance=0)
+
+
+def test_compare():
+    a = np.zeros((4, 5, 3), np.float32)
+    b = a.copy()
+    b[..., 1] = 0.25
+    d = pel.compare(b, a)
+    assert d["pixels"] == 20 and d["rmse"] == [0, 0.25, 0]
+    assert d["mean"] == [0, 0.25, 0] and d["max"] == [0, 0.25, 0]
+    assert d["rmse_all"] == pytest.approx(0.25 / 3**0.5) and d["delta_e_mean"] > 10
+    b[0, 0] = np.nan
+    d = pel.compare(b, a, mask=np.arange(20).reshape(4, 5) < 5)
+    assert d["pixels"] == 4 and d["invalid_pixels"] == 1
+    assert pel.compare(a, a)["psnr"] == float("inf")
+    for wrong in (a[:2], a[..., :2]):
+        with pytest.raises(ValueError, match="shape"):
+            pel.compare(a, wrong)
+    with pytest.raises(ValueError, match="mask"):
+        pel.compare(a, a, mask=np.ones((2, 2)))
