@@ -17,18 +17,6 @@ void edgeCurvature(const std::vector<float>& positions, const std::vector<float>
                    const std::vector<uint32_t>& indices, uint32_t passes, CurvatureScratch& scratch,
                    std::vector<float>& curvature);
 
-// RGB look-up tables as FaceWorks' generator makes them: `samples` of the integral per texel, on one thread.
-struct LutGaussian {
-    float sigma;  // mm
-    float weight[3];
-};
-// Row 0 is the smallest curvature; radii in mm.
-void sampledCurvatureLut(const std::vector<LutGaussian>& profile, int width, int height, float radiusMin,
-                         float radiusMax, int samples, std::vector<float>& texels);
-// Row 0 is the widest penumbra; widths in mm.
-void sampledShadowLut(const std::vector<LutGaussian>& profile, int width, int height, float widthMin,
-                      float widthMax, float sharpening, int samples, std::vector<float>& texels);
-
 // The shading pass as a scalar loop with OpenMP: one material of FaceWorks, one directional light with a
 // parallel shadow map, tables of 512 x 512 RGB texels. `disk`: x and y of the taps; without taps there is no
 // deep scatter.

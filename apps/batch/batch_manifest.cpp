@@ -1,7 +1,8 @@
 #include "batch/batch_manifest.h"
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
-#include <iomanip>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -44,11 +45,10 @@ struct Request {
 template <size_t N>
 uint32_t indexOf(const TomlReader& reader, const char* key, const std::string& value,
                  const std::string_view (&names)[N]) {
+    const auto found = std::ranges::find(names, value);
+    if (found != std::end(names)) return uint32_t(found - names);
     std::string known;
-    for (size_t i = 0; i < N; ++i) {
-        if (names[i] == value) return uint32_t(i);
-        known.append(i ? ", " : "").append(names[i]);
-    }
+    for (const std::string_view name : names) known.append(known.empty() ? "" : ", ").append(name);
     reader.fail(key, "holds '" + value + "'; one of " + known + " would be right");
 }
 
@@ -150,16 +150,16 @@ class Expansion {
     // Checked before expansion: the product of five short lists can exceed the memory.
     void refuseTooMany(const TomlReader& reader, const Request& r) {
         double asked = double(r.encodings.size()) * double(r.sizes.size());
-        if (r.kind != PEL_LUT_SPECULAR) asked *= double(r.profiles.size()) * double(r.radii.size());
-        if (r.kind != PEL_LUT_SPECULAR) asked *= double(r.forms.size()) * double(r.axes.size());
+        if (r.kind != PEL_LUT_SPECULAR)
+            asked *= double(r.profiles.size()) * double(r.radii.size()) * double(r.forms.size()) *
+                     double(r.axes.size());
+        if (asked_ + asked > double(mostEntries)) {
+            char digits[32];
+            std::snprintf(digits, sizeof digits, "%.0f", asked);
+            reader.fail("size", std::string("asks for ") + digits + " tables, and a manifest may ask for " +
+                                    std::to_string(mostEntries) + " in all; split it");
+        }
         asked_ += asked;
-        if (asked_ <= double(mostEntries)) return;
-        asked_ -= asked;
-        std::ostringstream text;
-        text.imbue(std::locale::classic());
-        text << "asks for " << std::fixed << std::setprecision(0) << asked
-             << " tables, and a manifest may ask for " << mostEntries << " in all; split it";
-        reader.fail("size", text.str());
     }
 
     const Known& profile(const TomlReader& reader, const std::string& name) {
@@ -210,20 +210,21 @@ class Expansion {
             key.out << known.key;
             key("diffusion_radius", radius);
         }
-        if (r.kind == PEL_LUT_CURVATURE) {
-            PelCurvatureLutDesc& desc = entry.info.curvature = r.curvature;
+        const auto fill = [&](auto& desc, const auto& given) {
+            desc = given;
             desc.width = size.width, desc.height = size.height;
-            desc.form = PelCurvatureForm(indexOf(reader, "form", form, curvatureForms));
             desc.axis = PelLutAxis(indexOf(reader, "axis", axis, lutAxes));
             desc.diffusionRadius = radius;
             desc.profile = entry.profile.get();
+        };
+        if (r.kind == PEL_LUT_CURVATURE) {
+            PelCurvatureLutDesc& desc = entry.info.curvature;
+            fill(desc, r.curvature);
+            desc.form = PelCurvatureForm(indexOf(reader, "form", form, curvatureForms));
             key("form", form)("axis", axis)("radius_min", desc.radiusMin)("radius_max", desc.radiusMax);
         } else if (r.kind == PEL_LUT_SHADOW) {
-            PelShadowLutDesc& desc = entry.info.shadow = r.shadow;
-            desc.width = size.width, desc.height = size.height;
-            desc.axis = PelLutAxis(indexOf(reader, "axis", axis, lutAxes));
-            desc.diffusionRadius = radius;
-            desc.profile = entry.profile.get();
+            PelShadowLutDesc& desc = entry.info.shadow;
+            fill(desc, r.shadow);
             key("width_min", desc.widthMin)("width_max", desc.widthMax)("sharpening", desc.sharpening);
             // Left out of the key at their values of version 1, so that older files keep their names.
             if (desc.axis != PEL_AXIS_LINEAR) key("axis", axis);
@@ -262,23 +263,19 @@ class Expansion {
     // r.name with each {key} replaced by its value.
     static std::string namedBy(const TomlReader& reader, const Request& r,
                                const std::map<std::string, std::string>& values) {
-        std::string name;
-        for (size_t at = 0; at < r.name.size();) {
-            const size_t open = std::min(r.name.find('{', at), r.name.size());
-            name.append(r.name, at, open - at);
-            if (open == r.name.size()) break;
-            const size_t close = r.name.find('}', open);
-            const auto value = close == std::string::npos
-                                   ? values.end()
-                                   : values.find(r.name.substr(open + 1, close - open - 1));
+        std::string name = r.name;
+        for (size_t open = 0; (open = name.find('{', open)) != std::string::npos;) {
+            const size_t close = name.find('}', open), length = std::min(close, name.size()) - open;
+            const auto value =
+                close == std::string::npos ? values.end() : values.find(name.substr(open + 1, length - 1));
             if (value == values.end()) {
                 std::string known;
                 for (const auto& [key, unused] : values) known += (known.empty() ? "{" : ", {") + key + "}";
-                reader.fail("name", "holds '" + r.name.substr(open, close - open + 1) + "'; one of " + known +
+                reader.fail("name", "holds '" + name.substr(open, length + 1) + "'; one of " + known +
                                         " would be right");
             }
-            name += value->second;
-            at = close + 1;
+            name.replace(open, length + 1, value->second);
+            open += value->second.size();
         }
         constexpr std::string_view allowed =
             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.+";

@@ -40,4 +40,15 @@ BatchManifest readManifest(const std::string& path);
 BatchManifest parseManifest(const std::string& path, const std::string& text,
                             const std::map<std::string, std::string>& profiles);
 
+// The bytes of an entry's file. Waits for this entry only, so that several threads keep a device busy.
+// Throws pellucid::Error.
+std::string makeEntryFile(const Device& device, const BatchEntry& entry);
+
+// The index says which tables of a manifest are in a folder, and what each of them is (docs/guide/batch.md),
+// one line per table. That of tables.toml is tables.index.json, so that several manifests can share a folder.
+// `there`: for each entry, whether its file exists.
+std::string batchIndexName(const std::string& manifestPath);
+std::string batchIndex(const BatchManifest& manifest, const std::string& manifestPath,
+                       const std::vector<bool>& there);
+
 }  // namespace pellucid::io

@@ -1,12 +1,114 @@
 #include "gltf/gltf_document.h"
 
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "io/input_file.h"
 
 namespace pellucid::io {
+void GltfValue::fail(const std::string& message) const {
+    throw FileError(*file_, (where_.empty() ? "the scene" : where_) + " " + message);
+}
+
+bool GltfValue::has(const char* key) const {
+    return json_->is_object() && json_->contains(key);
+}
+
+GltfValue GltfValue::operator[](const char* key) const {
+    if (!json_->is_object()) fail("is no object");
+    const auto at = json_->find(key);
+    if (at == json_->end()) fail(std::string("has no '") + key + "'");
+    return GltfValue(*file_, *at, where_.empty() ? key : where_ + "." + key);
+}
+
+GltfValue GltfValue::operator[](size_t index) const {
+    return GltfValue(*file_, (*json_)[index], where_ + "[" + std::to_string(index) + "]");
+}
+
+size_t GltfValue::count(const char* key) const {
+    return has(key) ? (*this)[key].size() : 0;
+}
+
+bool GltfValue::hasExtension(const char* name) const {
+    return has("extensions") && (*this)["extensions"].has(name);
+}
+
+GltfValue GltfValue::extension(const char* name) const {
+    return (*this)["extensions"][name];
+}
+
+size_t GltfValue::size() const {
+    if (!json_->is_array()) fail("is no array");
+    return json_->size();
+}
+
+double GltfValue::anyNumber() const {
+    if (!json_->is_number()) fail("is not a number");
+    return json_->get<double>();
+}
+
+double GltfValue::number(double low, double high) const {
+    const double value = anyNumber();
+    if (value >= low && value <= high) return value;
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text << "is " << value << "; " << low << " to " << high << " is possible";
+    fail(text.str());
+}
+
+uint64_t GltfValue::whole(uint64_t most) const {
+    const double value = anyNumber();  // some programs write whole numbers with a point
+    if (!(value >= 0 && value <= double(most)) || value != std::floor(value))
+        fail("is " + json_->dump() + "; a whole number from 0 to " + std::to_string(most) +
+             " would be right");
+    return uint64_t(value);
+}
+
+const std::string& GltfValue::text() const {
+    if (!json_->is_string()) fail("is no text");
+    return json_->get_ref<const std::string&>();
+}
+
+double GltfValue::number(const char* key, double otherwise, double low, double high) const {
+    return has(key) ? (*this)[key].number(low, high) : otherwise;
+}
+
+uint64_t GltfValue::whole(const char* key, uint64_t otherwise, uint64_t most) const {
+    return has(key) ? (*this)[key].whole(most) : otherwise;
+}
+
+std::string GltfValue::text(const char* key, const std::string& otherwise) const {
+    return has(key) ? (*this)[key].text() : otherwise;
+}
+
+bool GltfValue::flag(const char* key) const {
+    if (!has(key)) return false;
+    const GltfValue value = (*this)[key];
+    if (!value.json_->is_boolean()) value.fail("is neither true nor false");
+    return value.json_->get<bool>();
+}
+
+void GltfValue::numbers(const char* key, double* values, size_t count, double low, double high) const {
+    if (!has(key)) return;
+    const GltfValue list = (*this)[key];
+    if (list.size() != count)
+        list.fail("has " + std::to_string(list.size()) + " values; " + std::to_string(count) +
+                  " would be right");
+    for (size_t i = 0; i < count; ++i) values[i] = list[i].number(low, high);
+}
+
+size_t GltfValue::reference(const char* key, const char* array, size_t available) const {
+    const GltfValue value = (*this)[key];
+    const uint64_t index = value.whole(uint64_t{1} << 53);
+    if (index >= available)
+        value.fail("is " + std::to_string(index) + "; there are " + std::to_string(available) + " " + array);
+    return size_t(index);
+}
+
 namespace {
 
 // "glTF", "JSON", "BIN"
@@ -65,20 +167,15 @@ std::string fromBase64(const GltfValue& value, const std::string& text, size_t a
     return out;
 }
 
-int hexDigit(char c) {
-    return c >= '0' && c <= '9'   ? c - '0'
-           : c >= 'a' && c <= 'f' ? c - 'a' + 10
-           : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                  : -1;
-}
-
 // A path below the scene's folder. An untrusted file must not make the program read other files.
 std::string relativePath(const GltfValue& value, const std::string& uri) {
     std::string path;
     for (size_t i = 0; i < uri.size(); ++i) {
-        const bool escaped =
-            uri[i] == '%' && i + 2 < uri.size() && hexDigit(uri[i + 1]) >= 0 && hexDigit(uri[i + 2]) >= 0;
-        path += escaped ? char(hexDigit(uri[i + 1]) * 16 + hexDigit(uri[i + 2])) : uri[i];
+        const char* digits = uri.c_str() + i + 1;
+        unsigned code = 0;
+        const bool escaped = uri[i] == '%' && i + 2 < uri.size() &&
+                             std::from_chars(digits, digits + 2, code, 16).ptr == digits + 2;
+        path += escaped ? char(code) : uri[i];
         if (escaped) i += 2;
     }
     bool outside = path.empty() || path[0] == '/' || path.find('\\') != std::string::npos ||
@@ -104,44 +201,31 @@ bool isKnown(const std::string& extension) {
     return false;
 }
 
-// How components are stored [glTF 2.0, 3.6.2.2].
+template <class T>
+double stored(const char* at, double largest) {
+    T value;
+    std::memcpy(&value, at, sizeof value);
+    return std::max(double(value) / largest, std::is_signed_v<T> && largest > 1 ? -1.0 : -INFINITY);
+}
+
+// How components are stored [glTF 2.0, 3.6.2.2], by componentType.
+constexpr struct {
+    uint64_t type, bytes;
+    double largest;  // 1 as a fraction
+    double (*read)(const char* at, double largest);
+} componentTypes[] = {{5120, 1, 127, stored<int8_t>},    {5121, 1, 255, stored<uint8_t>},
+                      {5122, 2, 32767, stored<int16_t>}, {5123, 2, 65535, stored<uint16_t>},
+                      {5125, 4, 1, stored<uint32_t>},    {5126, 4, 1, stored<float>}};
+
 uint64_t bytesOf(const GltfValue& accessor, uint64_t type) {
-    switch (type) {
-        case 5120:
-        case 5121:
-            return 1;
-        case 5122:
-        case 5123:
-            return 2;
-        case 5125:
-        case 5126:
-            return 4;
-    }
+    for (const auto& known : componentTypes)
+        if (known.type == type) return known.bytes;
     accessor["componentType"].fail("is " + std::to_string(type) + "; 5120 to 5123, 5125 and 5126 are known");
 }
 
-template <class T>
-double stored(const char* at) {
-    T value;
-    std::memcpy(&value, at, sizeof value);
-    return double(value);
-}
-
 double component(const char* at, uint64_t type, bool normalized) {
-    switch (type) {
-        case 5120:
-            return normalized ? std::max(stored<int8_t>(at) / 127, -1.0) : stored<int8_t>(at);
-        case 5121:
-            return normalized ? stored<uint8_t>(at) / 255 : stored<uint8_t>(at);
-        case 5122:
-            return normalized ? std::max(stored<int16_t>(at) / 32767, -1.0) : stored<int16_t>(at);
-        case 5123:
-            return normalized ? stored<uint16_t>(at) / 65535 : stored<uint16_t>(at);
-        case 5125:
-            return stored<uint32_t>(at);
-        default:
-            return stored<float>(at);
-    }
+    const auto& known = componentTypes[type - 5120 - (type > 5123)];
+    return known.read(at, normalized ? known.largest : 1);
 }
 
 }  // namespace
@@ -213,8 +297,7 @@ void GltfDocument::spend(const GltfValue& value, double bytes) const {
 }
 
 GltfDocument::Span GltfDocument::view(const GltfValue& owner, const char* key) const {
-    const GltfValue top = root(),
-                    view = top["bufferViews"][owner.reference(key, "bufferViews", top.count("bufferViews"))];
+    const GltfValue view = root().element("bufferViews", owner, key);
     const std::string& buffer = buffers_[view.reference("buffer", "buffers", buffers_.size())];
     const uint64_t offset = view.whole("byteOffset", 0, mostBytes),
                    length = view["byteLength"].whole(mostBytes);
@@ -255,9 +338,10 @@ void GltfDocument::read(const GltfValue& owner, const Layout& l, Store&& store) 
     for (uint64_t i = 0; i < l.count; ++i) store(i, span.data + offset + i * stride);
 }
 
-// The elements that a sparse accessor replaces.
+// All elements of an accessor, and those that replace some of them if it is sparse.
 template <class Store>
-void GltfDocument::readSparse(const GltfValue& accessor, const Layout& l, Store&& store) const {
+void GltfDocument::readAll(const GltfValue& accessor, const Layout& l, Store&& store) const {
+    if (accessor.has("bufferView")) read(accessor, l, store);
     if (!accessor.has("sparse")) return;
     const GltfValue sparse = accessor["sparse"], where = sparse["indices"];
     Layout index{sparse["count"].whole(l.count), where["componentType"].whole(mostBytes), 1, 0, false};
@@ -276,34 +360,27 @@ void GltfDocument::readSparse(const GltfValue& accessor, const Layout& l, Store&
 }
 
 std::vector<float> GltfDocument::floats(const GltfValue& owner, const char* key, size_t components) const {
-    const GltfValue top = root(),
-                    accessor = top["accessors"][owner.reference(key, "accessors", top.count("accessors"))];
+    const GltfValue accessor = root().element("accessors", owner, key);
     const Layout l = layout(accessor);
     if (l.components != components)
         accessor["type"].fail("has " + std::to_string(l.components) + " numbers each; " + owner.where() +
                               "." + key + " needs " + std::to_string(components));
     std::vector<float> values(l.count * components);
-    const auto store = [&](uint64_t i, const char* bytes) {
+    readAll(accessor, l, [&](uint64_t i, const char* bytes) {
         for (size_t c = 0; c < components; ++c)
             values[i * components + c] = float(component(bytes + c * l.componentBytes, l.type, l.normalized));
-    };
-    if (accessor.has("bufferView")) read(accessor, l, store);
-    readSparse(accessor, l, store);
+    });
     return values;
 }
 
 std::vector<uint32_t> GltfDocument::indices(const GltfValue& owner, const char* key) const {
-    const GltfValue top = root(),
-                    accessor = top["accessors"][owner.reference(key, "accessors", top.count("accessors"))];
+    const GltfValue accessor = root().element("accessors", owner, key);
     const Layout l = layout(accessor);
     if (l.components != 1 || l.type == 5126 || l.type == 5120 || l.type == 5122)
         accessor.fail("holds no indices: unsigned SCALARs would be right");
     std::vector<uint32_t> values(l.count);
-    const auto store = [&](uint64_t i, const char* bytes) {
-        values[i] = uint32_t(component(bytes, l.type, false));
-    };
-    if (accessor.has("bufferView")) read(accessor, l, store);
-    readSparse(accessor, l, store);
+    readAll(accessor, l,
+            [&](uint64_t i, const char* bytes) { values[i] = uint32_t(component(bytes, l.type, false)); });
     return values;
 }
 

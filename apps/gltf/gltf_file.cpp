@@ -4,12 +4,116 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <numbers>
 
-#include "gltf/gltf_materials.h"
+#include "gltf/gltf_document.h"
 #include "io/input_file.h"
 
 namespace pellucid::io {
 namespace {
+
+void warnOnce(std::vector<std::string>& warnings, const std::string& text) {
+    if (std::ranges::find(warnings, text) == warnings.end()) warnings.push_back(text);
+}
+
+// Features that are not imported are added to `warnings`.
+GltfMaterial readGltfMaterial(const GltfDocument& document, const GltfValue& material,
+                              std::vector<std::string>& warnings) {
+    GltfMaterial m;
+    m.name = material.text("name", "");
+    const auto texture = [&](const GltfValue& owner, const char* key) {
+        if (owner.has(key))
+            warnOnce(warnings, "textures other than the base colour's are left out; factors alone count");
+    };
+    if (material.has("pbrMetallicRoughness")) {
+        const GltfValue pbr = material["pbrMetallicRoughness"];
+        double color[4] = {1, 1, 1, 1};
+        pbr.numbers("baseColorFactor", color, 4, 0, 1);
+        m.baseColor = {color[0], color[1], color[2]};
+        m.metallic = pbr.number("metallicFactor", 1, 0, 1);
+        m.roughness = pbr.number("roughnessFactor", 1, 0, 1);
+        texture(pbr, "metallicRoughnessTexture");
+        if (pbr.has("baseColorTexture")) {
+            const GltfValue info = pbr["baseColorTexture"], top = document.root();
+            const GltfValue named = top.element("textures", info, "index");
+            if (info.whole("texCoord", 0, 255) != 0 || info.hasExtension("KHR_texture_transform"))
+                warnOnce(warnings,
+                         "textures with coordinates of their own are left out: TEXCOORD_0 alone is read");
+            else if (named.has("source"))
+                m.baseColorImage = int(named.reference("source", "images", top.count("images")));
+            else
+                warnOnce(warnings, "textures that are neither PNG nor JPEG are left out");
+        }
+    }
+    for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"}) texture(material, key);
+    const auto with = [&](const char* name, auto&& read) {
+        if (material.hasExtension(name)) read(material.extension(name));
+    };
+    with("KHR_materials_ior", [&](const GltfValue& e) {
+        m.ior = e.number("ior", 1.5, 0, 100);
+        if (m.ior != 0 && m.ior < 1) e["ior"].fail("is below 1");
+    });
+    with("KHR_materials_specular", [&](const GltfValue& e) {
+        m.specular = e.number("specularFactor", 1, 0, 1);
+        texture(e, "specularTexture");
+    });
+    with("KHR_materials_transmission", [&](const GltfValue& e) {
+        m.transmission = e.number("transmissionFactor", 0, 0, 1);
+        texture(e, "transmissionTexture");
+    });
+    with("KHR_materials_diffuse_transmission", [&](const GltfValue& e) {
+        m.diffuseTransmission = e.number("diffuseTransmissionFactor", 0, 0, 1);
+        e.numbers("diffuseTransmissionColorFactor", m.diffuseTransmissionColor.data(), 3, 0, 1);
+        texture(e, "diffuseTransmissionTexture"), texture(e, "diffuseTransmissionColorTexture");
+    });
+    with("KHR_materials_volume", [&](const GltfValue& e) {
+        m.thickness = e.number("thicknessFactor", 0, 0, 1e6);
+        m.attenuationDistance = e.number("attenuationDistance", INFINITY, 1e-9, INFINITY);
+        e.numbers("attenuationColor", m.attenuationColor.data(), 3, 0, 1);
+        texture(e, "thicknessTexture");
+    });
+    for (const char* name :
+         {"KHR_materials_scatter", "KHR_materials_volume_scatter"})  // the draft's name, the later one
+        with(name, [&](const GltfValue& e) {
+            Triple color{};
+            e.numbers("multiscatterColor", color.data(), 3, 0, 1);
+            e.numbers("multiscatterColorFactor", color.data(), 3, 0, 1);
+            m.multiscatterColor = color;
+            m.scatterAnisotropy = e.number("scatterAnisotropy", 0, -1, 1);
+            texture(e, "multiscatterColorTexture");
+        });
+    if (material.hasExtension("KHR_materials_pbrSpecularGlossiness")) {
+        const GltfValue e = material.extension("KHR_materials_pbrSpecularGlossiness");
+        double color[4] = {1, 1, 1, 1};
+        e.numbers("diffuseFactor", color, 4, 0, 1);
+        m.baseColor = {color[0], color[1], color[2]};
+        m.metallic = 0;
+        m.roughness = 1 - e.number("glossinessFactor", 1, 0, 1);
+        texture(e, "diffuseTexture");
+    }
+    return m;
+}
+
+// A light of KHR_lights_punctual, at the origin.
+GltfLight readGltfLight(const GltfValue& light) {
+    GltfLight l;
+    const std::string kinds[] = {"directional", "point", "spot"}, type = light["type"].text();
+    const auto kind = std::ranges::find(kinds, type);
+    if (kind == std::end(kinds))
+        light["type"].fail("is '" + type.substr(0, 20) + "'; directional, point or spot would be right");
+    l.kind = GltfLight::Kind(kind - kinds);
+    light.numbers("color", l.color.data(), 3, 0, 1e6);
+    l.intensity = light.number("intensity", 1, 0, 1e12);
+    l.range = light.number("range", 0, 0, 1e12);
+    l.outerCone = std::numbers::pi / 4;
+    if (light.has("spot")) {
+        const GltfValue spot = light["spot"];
+        l.innerCone = spot.number("innerConeAngle", 0, 0, std::numbers::pi / 2);
+        l.outerCone = spot.number("outerConeAngle", l.outerCone, 0, std::numbers::pi / 2);
+        if (l.innerCone > l.outerCone) spot.fail("has an inner cone wider than its outer one");
+    }
+    return l;
+}
 
 // Row-major, multiplies column vectors.
 using Matrix = std::array<double, 16>;
@@ -30,20 +134,21 @@ Triple point(const Matrix& m, const Triple& p) {
             m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]};
 }
 
+Triple cross(const Triple& a, const Triple& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+double dot(const Triple& a, const Triple& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Triple row(const Matrix& m, size_t i) {
+    return {m[4 * i], m[4 * i + 1], m[4 * i + 2]};
+}
+
 // Transforms a normal by the cofactors of the upper left 3 x 3 matrix, which is also correct for mirrored
 // parts.
 Triple turned(const Matrix& m, const Triple& n) {
-    return {(m[5] * m[10] - m[6] * m[9]) * n[0] + (m[6] * m[8] - m[4] * m[10]) * n[1] +
-                (m[4] * m[9] - m[5] * m[8]) * n[2],
-            (m[2] * m[9] - m[1] * m[10]) * n[0] + (m[0] * m[10] - m[2] * m[8]) * n[1] +
-                (m[1] * m[8] - m[0] * m[9]) * n[2],
-            (m[1] * m[6] - m[2] * m[5]) * n[0] + (m[2] * m[4] - m[0] * m[6]) * n[1] +
-                (m[0] * m[5] - m[1] * m[4]) * n[2]};
-}
-
-double determinant(const Matrix& m) {
-    return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
-           m[2] * (m[4] * m[9] - m[5] * m[8]);
+    return {dot(cross(row(m, 1), row(m, 2)), n), dot(cross(row(m, 2), row(m, 0)), n),
+            dot(cross(row(m, 0), row(m, 1)), n)};
 }
 
 Triple unit(const Triple& v, const Triple& otherwise) {
@@ -100,9 +205,8 @@ class Builder {
     std::vector<size_t> roots() const {
         std::vector<size_t> found;
         if (root_.count("scenes")) {
-            const size_t index =
-                root_.has("scene") ? root_.reference("scene", "scenes", root_.count("scenes")) : 0;
-            const GltfValue scene = root_["scenes"][index];
+            const GltfValue scene =
+                root_.has("scene") ? root_.element("scenes", root_, "scene") : root_["scenes"][size_t{0}];
             for (size_t i = 0; i < scene.count("nodes"); ++i) found.push_back(nodeIndex(scene["nodes"][i]));
             return found;
         }
@@ -138,13 +242,11 @@ class Builder {
             for (const Part& part : partsOf(node.reference("mesh", "meshes", root_.count("meshes"))))
                 place(part, m);
         }
-        if (node.has("camera"))
-            addCamera(root_["cameras"][node.reference("camera", "cameras", root_.count("cameras"))], m);
+        if (node.has("camera")) addCamera(root_.element("cameras", node, "camera"), m);
         if (node.hasExtension("KHR_lights_punctual")) {
-            const GltfValue all = root_["extensions"]["KHR_lights_punctual"];
-            GltfLight light = readGltfLight(
-                all["lights"]
-                   [node.extension("KHR_lights_punctual").reference("light", "lights", all.count("lights"))]);
+            GltfLight light =
+                readGltfLight(root_.extension("KHR_lights_punctual")
+                                  .element("lights", node.extension("KHR_lights_punctual"), "light"));
             light.position = point(m, {0, 0, 0});
             light.forward = unit({-m[2], -m[6], -m[10]}, {0, 0, -1});
             scene_.lights.push_back(light);
@@ -163,7 +265,7 @@ class Builder {
         c.forward = unit({-m[2], -m[6], -m[10]}, {0, 0, -1});
         c.up = unit({m[1], m[5], m[9]}, {0, 1, 0});
         // Sheared axes can coincide; any other direction will do then.
-        if (std::abs(c.up[0] * c.forward[0] + c.up[1] * c.forward[1] + c.up[2] * c.forward[2]) > 0.999999)
+        if (std::abs(dot(c.up, c.forward)) > 0.999999)
             c.up = std::abs(c.forward[1]) < 0.9 ? Triple{0, 1, 0} : Triple{0, 0, 1};
         scene_.cameras.push_back(c);
     }
@@ -272,7 +374,7 @@ class Builder {
             warn("some normals are zero or not finite: all are made from the triangles");
         normalsEverywhere_ &= !bad;
         uvsEverywhere_ &= !uvs.empty();
-        const bool mirrored = determinant(m) < 0;
+        const bool mirrored = dot(cross(row(m, 0), row(m, 1)), row(m, 2)) < 0;
         for (size_t i = 0; i < part.triangles.size(); i += 3)
             for (const size_t k : {size_t{0}, size_t{mirrored ? 2u : 1u}, size_t{mirrored ? 1u : 2u}})
                 mesh.triangles.push_back(uint32_t(first + part.triangles[i + k]));

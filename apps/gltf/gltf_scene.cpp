@@ -1,4 +1,4 @@
-#include "gltf/gltf_scene.h"
+#include "gltf/gltf_import.h"
 
 #include <algorithm>
 #include <cmath>

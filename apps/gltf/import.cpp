@@ -70,12 +70,7 @@ void run(const Arguments& a) {
         parseSize(a.size, width, height);
     else if (camera >= 0 && gltf.cameras[size_t(camera)].aspect > 0)
         height = uint32_t(std::clamp(1024 / gltf.cameras[size_t(camera)].aspect, 1.0, 8192.0));
-    try {
-        std::filesystem::create_directories(a.output);
-        io::checkWritable(a.output + "/scene.toml");
-    } catch (const std::exception& e) {
-        throw UsageError("-o " + a.output + ": " + e.what());
-    }
+    checkFolder(a.output, "scene.toml");
     for (const std::string& warning : mesh.warnings) run.warn(warning);
     reportMaterials(run, a, imported);
     if (!imported.lampAdded && !a.lights && imported.lightFactor != 1)
@@ -86,14 +81,13 @@ void run(const Arguments& a) {
     params.smoothingPasses = a.smoothing;
     const MeshCurvature curvature = meshCurvature(run, mesh, params, {PEL_WELD_EXACT, 0});
     reportMesh(run, curvature.report);
-    if (canDraw()) {
-        drawImport(run, a.output, imported, {curvature.values, width, height, camera});
-        run.report["gbuffer"] = "gbuffer.exr";
-    } else {
-        run.note(
-            "this build has no renderer: draw a G-buffer of mesh.obj with the channels that scene.toml "
-            "names");
-    }
+#ifdef PELLUCID_SAMPLE
+    drawImport(run, a.output, imported, {curvature.values, width, height, camera});
+    run.report["gbuffer"] = "gbuffer.exr";
+#else
+    run.note(
+        "this build has no renderer: draw a G-buffer of mesh.obj with the channels that scene.toml names");
+#endif
     io::writeImported(a.output, imported);
     run.report["light_factor"] = imported.lightFactor;
     run.report["lights"] = imported.scene.lights.size();
@@ -104,37 +98,27 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void addImport(Command& app) {
-    Command* command = app.addCommand("import", "Take over a glTF scene: mesh, materials, lights, G-buffer");
+void addImport(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("import", "Take over a glTF scene: mesh, materials, lights, G-buffer");
     auto a = std::make_shared<Arguments>();
-    command->addOption("scene", a->file, "glTF 2.0: .glb or .gltf")->required();
-    command
-        ->addOption("-o,--output", a->output, "folder for scene.toml, mesh.obj, gbuffer.exr; made if need be")
-        ->required();
-    command
-        ->addOption("--profile", a->profiles,
-                    "PROFILE of all materials, or MATERIAL=PROFILE of one, in place of what the file says")
-        ->typeName(profileWord)
-        ->oneEach();
-    command->addOption("--unit-mm", a->unitMm, "millimetres per unit; glTF's unit is the metre")
-        ->check(inRange(1e-6, 1e9))
-        ->showDefault();
-    command
-        ->addOption("--size", a->size, "pixels of the G-buffer, WxH (default: 1024 wide, the camera's shape)")
-        ->typeName("SIZE");
-    command
-        ->addOption("--camera", a->camera,
-                    "number of the camera, from 0 on; first, or none to frame everything")
-        ->typeName("CAMERA")
-        ->showDefault();
-    command
-        ->addOption("--lights", a->lights,
-                    "factor of the lights' brightness in lux and candela (default: chosen by how bright the "
-                    "scene becomes)")
-        ->check(inRange(1e-9, 1e9));
-    command->addOption("--smooth", a->smoothing, "smoothing passes of the curvature")
-        ->check(inRange(0, 1000))
-        ->showDefault();
+    option(*command, "scene", a->file, "glTF 2.0: .glb or .gltf", required);
+    option(*command, "-o,--output", a->output,
+           "folder for scene.toml, mesh.obj, gbuffer.exr; made if need be", required);
+    option(*command, "--profile", a->profiles,
+           "PROFILE of all materials, or MATERIAL=PROFILE of one, in place of what the file says",
+           Word{profileWord}, oneEach);
+    option(*command, "--unit-mm", a->unitMm, "millimetres per unit; glTF's unit is the metre",
+           inRange(1e-6, 1e9), shown);
+    option(*command, "--size", a->size,
+           "pixels of the G-buffer, WxH (default: 1024 wide, the camera's shape)", Word{"SIZE"});
+    option(*command, "--camera", a->camera,
+           "number of the camera, from 0 on; first, or none to frame everything", Word{"CAMERA"}, shown);
+    option(*command, "--lights", a->lights,
+           "factor of the lights' brightness in lux and candela (default: chosen by how bright the scene "
+           "becomes)",
+           inRange(1e-9, 1e9));
+    option(*command, "--smooth", a->smoothing, "smoothing passes of the curvature", inRange(0, 1000), shown);
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });
 }

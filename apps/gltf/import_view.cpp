@@ -142,10 +142,6 @@ void addShadowMap(const std::string& folder, const sample::Scene& scene, size_t 
 
 }  // namespace
 
-bool canDraw() {
-    return true;
-}
-
 void drawImport(Run& run, const std::string& folder, io::ImportedGltf& imported, const ImportView& v) {
     const io::GltfScene& gltf = imported.gltf;
     io::SceneFile& scene = imported.scene;

@@ -14,8 +14,6 @@ struct ImportView {
     int camera;  // index, or -1: frames everything
 };
 
-// Whether this build has the renderer.
-bool canDraw();
 // Renders into `folder`: gbuffer.exr, and shadow maps of directional and spot lights; writes the scene's
 // channels, camera and lights.
 void drawImport(Run& run, const std::string& folder, io::ImportedGltf& imported, const ImportView& view);

@@ -1,14 +1,13 @@
 // Run time against error of whole methods: every way to scatter, over its settings, on one scene, against the
 // surface integral.
 //
-//   sweep_error_time make SCENE SCALE FILE [PIXELS] [HEAD.obj]   renders a scene and makes its references
-//   sweep_error_time measure FILE [REPEATS] [PICTURES] [METHOD]  prints JSON lines of all methods, or of one
+//   sweep_error_time SCENE SCALE [PIXELS] [REPEATS] [PICTURES] [METHOD] [HEAD.obj]
 //
-// SCENE is side, ear or sphere; SCALE multiplies the profile's radius; a picture has PIXELS a side, 512. Into
-// the folder PICTURES, if given, go pictures of one setting of each method, raw floats. Times are of all
-// kernels that a frame has beyond those of plain lighting (irradiance given, nothing scattered), medians.
-// Errors are RMSE of radiance with an albedo of 0.8 over the pixels of skin. bench/diffusion/methods runs all
-// of it.
+// prints JSON lines of all methods, or of one. SCENE is side, ear or sphere; SCALE multiplies the profile's
+// radius; a picture has PIXELS a side, 512. Into the folder PICTURES, if given, go pictures of one setting of
+// each method, raw floats. Times are of all kernels that a frame has beyond those of plain lighting
+// (irradiance given, nothing scattered), medians. Errors are RMSE of radiance with an albedo of 0.8 over the
+// pixels of skin. bench/diffusion/methods runs all of it.
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -74,72 +73,6 @@ std::vector<Setting> settings() {
     return all;
 }
 
-// --- a scene in a file ---
-
-template <class T>
-void put(std::ostream& out, const std::vector<T>& values) {
-    const uint64_t count = values.size();
-    out.write(reinterpret_cast<const char*>(&count), sizeof count);
-    out.write(reinterpret_cast<const char*>(values.data()), std::streamsize(count * sizeof(T)));
-}
-template <class T>
-void get(std::istream& in, std::vector<T>& values) {
-    uint64_t count = 0;
-    in.read(reinterpret_cast<char*>(&count), sizeof count);
-    if (!in || count > 1u << 28) throw std::runtime_error("the file of the scene is damaged; make it again");
-    values.resize(count);
-    in.read(reinterpret_cast<char*>(values.data()), std::streamsize(count * sizeof(T)));
-}
-
-struct Stored {
-    LitScene scene;
-    std::string name;
-    double scale = 1;
-};
-
-// What shade() reads of a scene.
-template <class Stream, class Vectors>
-void each(Stream& stream, LitScene& s, const Vectors& vectors) {
-    vectors(stream, s.positions), vectors(stream, s.normals), vectors(stream, s.irradiance);
-    vectors(stream, s.truth), vectors(stream, s.covered), vectors(stream, s.subsets);
-    vectors(stream, s.gbuffer.curvature.data), vectors(stream, s.gbuffer.material),
-        vectors(stream, s.map.depth);
-}
-
-void store(const std::string& path, Stored& stored) {
-    std::ofstream out(path, std::ios::binary);
-    LitScene& s = stored.scene;
-    out << stored.name << "\n";
-    std::vector<double> numbers{stored.scale, s.unit,      double(s.width),    double(s.height), s.toLight.x,
-                                s.toLight.y,  s.toLight.z, double(s.map.size), s.map.depthRange};
-    put(out, numbers);
-    put(out, std::vector<double>(s.map.worldToUvz.m.begin(), s.map.worldToUvz.m.end()));
-    each(out, s, [](std::ostream& to, const auto& values) { put(to, values); });
-    if (!out.flush()) throw std::runtime_error("cannot write " + path);
-}
-
-Stored load(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    if (!in) throw std::runtime_error("cannot read " + path + "; `make` writes it");
-    Stored stored;
-    std::getline(in, stored.name);
-    std::vector<double> numbers, matrix;
-    get(in, numbers);
-    get(in, matrix);
-    if (numbers.size() != 9 || matrix.size() != 16)
-        throw std::runtime_error(path + " is of another version; make it again");
-    LitScene& s = stored.scene;
-    stored.scale = numbers[0], s.unit = numbers[1];
-    s.width = int(numbers[2]), s.height = int(numbers[3]);
-    s.toLight = {numbers[4], numbers[5], numbers[6]};
-    s.map.size = int(numbers[7]), s.map.depthRange = numbers[8];
-    std::ranges::copy(matrix, s.map.worldToUvz.m.begin());
-    each(in, s, [](std::istream& from, auto& values) { get(from, values); });
-    return stored;
-}
-
-// --- commands ---
-
 // Christensen-Burley with the radii of a usual Blender material: d = 0.292, 0.109, 0.054 mm.
 Profile usualProfile() {
     const float path[3] = {1.05f * 0.29205f, 1.05f * 0.10902f, 1.05f * 0.05411f},
@@ -147,9 +80,8 @@ Profile usualProfile() {
     return Profile::burley(path, albedos, PEL_BURLEY_SEARCHLIGHT);
 }
 
-int makeScene(const std::string& scene, double scale, const std::string& file, int size,
-              const std::string& headFile) {
-    const Device device("");
+LitScene sceneOf(const Device& device, const std::string& scene, double scale, int size,
+                 const std::string& headFile) {
     SceneRequest request;
     request.size = size;
     request.mapSize = 2048;
@@ -157,17 +89,14 @@ int makeScene(const std::string& scene, double scale, const std::string& file, i
     if (scene == "ear") request.azimuth = 70, request.lightAzimuth = 200, request.lightElevation = 10;
     if (scene == "sphere") request.azimuth = 0;
     const Body body = scene == "sphere" ? ball(10, 320) : head(headFile, "head", 3);
-    Stored stored{make(device, body, request, usualProfile()),
-                  scene == "side"  ? "head, light from the side"
-                  : scene == "ear" ? "head and ear, light from behind"
-                                   : "sphere of 10 mm",
-                  scale};
-    store(file, stored);
-    return 0;
+    return make(device, body, request, usualProfile());
 }
 
-void print(const Stored& stored, const Setting& setting, double seconds, const std::vector<float>& picture) {
-    const LitScene& s = stored.scene;
+void print(const LitScene& s, const std::string& scene, double scale, const Setting& setting, double seconds,
+           const std::vector<float>& picture) {
+    const char* name = scene == "side"  ? "head, light from the side"
+                       : scene == "ear" ? "head and ear, light from behind"
+                                        : "sphere of 10 mm";
     std::vector<float> shown = picture, truth = s.truth;
     for (std::vector<float>* values : {&shown, &truth})
         for (float& v : *values) v *= albedo;
@@ -182,8 +111,8 @@ void print(const Stored& stored, const Setting& setting, double seconds, const s
     std::printf(
         "{\"scene\": \"%s\", \"scale\": %g, \"method\": \"%s\", \"setting\": \"%s\", \"pixels\": %zu, "
         "\"ms\": %.4g, \"rmse\": [%.4g, %.4g, %.4g], \"unlit\": [%.4g, %.4g, %.4g]}\n",
-        stored.name.c_str(), stored.scale, setting.method.c_str(), setting.setting.c_str(), pixels,
-        seconds * 1e3, all.rmse[0], all.rmse[1], all.rmse[2], unlit.rmse[0], unlit.rmse[1], unlit.rmse[2]);
+        name, scale, setting.method.c_str(), setting.setting.c_str(), pixels, seconds * 1e3, all.rmse[0],
+        all.rmse[1], all.rmse[2], unlit.rmse[0], unlit.rmse[1], unlit.rmse[2]);
     std::fflush(stdout);
 }
 
@@ -194,29 +123,28 @@ void write(const std::string& folder, const std::string& name, const std::vector
     if (!out.flush()) throw std::runtime_error("cannot write into " + folder);
 }
 
-int measure(const std::string& file, int repeats, const std::string& pictures, const std::string& only) {
+void measure(const std::string& scene, double scale, int pixels, int repeats, const std::string& pictures,
+             const std::string& only, const std::string& headFile) {
     const Device device("");
     const Profile profile = usualProfile();
-    const Stored stored = load(file);
-    const LitScene& s = stored.scene;
+    const LitScene s = sceneOf(device, scene, scale, pixels, headFile);
     Setting plain{"Lambert", "", {}};
     plain.request.scattering = PEL_SCATTERING_NONE;
     plain.request.traced = true;
     plain.request.repeats = repeats;
     double plainSeconds = 0;
-    shade(device, s, profile, stored.scale, &plainSeconds, plain.request);
-    print(stored, plain, 0, s.irradiance);
+    shade(device, s, profile, scale, &plainSeconds, plain.request);
+    print(s, scene, scale, plain, 0, s.irradiance);
     write(pictures, "Lambert", s.irradiance);
     write(pictures, "surface integral", s.truth);
     for (Setting& setting : settings()) {
         if (!only.empty() && setting.method != only) continue;
         setting.request.repeats = repeats;
         double seconds = 0;
-        const std::vector<float> picture = shade(device, s, profile, stored.scale, &seconds, setting.request);
-        print(stored, setting, std::max(seconds - plainSeconds, 0.0), picture);
+        const std::vector<float> picture = shade(device, s, profile, scale, &seconds, setting.request);
+        print(s, scene, scale, setting, std::max(seconds - plainSeconds, 0.0), picture);
         if (setting.shown) write(pictures, setting.method, picture);
     }
-    return 0;
 }
 
 }  // namespace
@@ -224,18 +152,18 @@ int measure(const std::string& file, int repeats, const std::string& pictures, c
 int main(int argc, char** argv) {
     const std::vector<std::string> a(argv + 1, argv + argc);
     const auto text = [&](size_t i, const std::string& otherwise) { return i < a.size() ? a[i] : otherwise; };
+    const double scale = std::atof(text(1, "").c_str());
+    const int pixels = std::atoi(text(2, "512").c_str()), repeats = std::atoi(text(3, "7").c_str());
+    if (!(scale > 0) || pixels < 1 || repeats < 1 || (a[0] != "side" && a[0] != "ear" && a[0] != "sphere")) {
+        std::cerr
+            << "sweep_error_time side|ear|sphere SCALE [PIXELS] [REPEATS] [PICTURES] [METHOD] [HEAD.obj]\n";
+        return 2;
+    }
     try {
-        if (a.size() >= 4 && a[0] == "make" && (a[1] == "side" || a[1] == "ear" || a[1] == "sphere") &&
-            std::atof(a[2].c_str()) > 0 && std::atoi(text(4, "512").c_str()) > 0)
-            return makeScene(a[1], std::atof(a[2].c_str()), a[3], std::atoi(text(4, "512").c_str()),
-                             text(5, PELLUCID_SOURCE_DIR "/data/heads/head_female.obj"));
-        if (a.size() >= 2 && a[0] == "measure" && std::atoi(text(2, "7").c_str()) > 0)
-            return measure(a[1], std::atoi(text(2, "7").c_str()), text(3, ""), text(4, ""));
+        measure(a[0], scale, pixels, repeats, text(4, ""), text(5, ""),
+                text(6, PELLUCID_SOURCE_DIR "/data/heads/head_female.obj"));
     } catch (const std::exception& e) {
         std::cerr << "sweep_error_time: " << e.what() << "\n";
         return 1;
     }
-    std::cerr << "sweep_error_time make side|ear|sphere SCALE FILE [PIXELS] [HEAD.obj]\n"
-                 "sweep_error_time measure FILE [REPEATS] [PICTURES] [METHOD]\n";
-    return 2;
 }

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <stdexcept>
 
-#include "case.h"
+#include "measure.h"
 
 namespace pellucid::bench {
 namespace {
@@ -40,71 +40,53 @@ void check(cl_int code, const char* call) {
     if (code != CL_SUCCESS) throw std::runtime_error(std::string(call) + " gave " + std::to_string(code));
 }
 
-// Kernels, two buffers, and the fastest way found to use them.
+// A program and two buffers.
 class Limits {
   public:
-    Limits(const Device& device, size_t bytes) : device_(device), bytes_(bytes) {
+    Limits(const Device& device, size_t bytes)
+        : device_(device), bytes_(bytes), a_(device, bytes), b_(device, bytes) {
         void *context = nullptr, *id = nullptr, *queue = nullptr;
         pellucid::check(pelDeviceGetCl(device.get(), &context, &id, &queue));
         queue_ = static_cast<cl_command_queue>(queue);
-        cl_int code = CL_SUCCESS;
-        program_ = clCreateProgramWithSource(static_cast<cl_context>(context), 1,
-                                             const_cast<const char**>(&source_), nullptr, &code);
-        check(code, "clCreateProgramWithSource");
         const auto device1 = static_cast<cl_device_id>(id);
-        check(clBuildProgram(program_, 1, &device1, "-cl-std=CL1.2", nullptr, nullptr), "clBuildProgram");
-        a_ = Buffer(device, bytes);
-        b_ = Buffer(device, bytes);
+        const char* text = source;
+        cl_int code = CL_SUCCESS;
+        const cl_program program =
+            clCreateProgramWithSource(static_cast<cl_context>(context), 1, &text, nullptr, &code);
+        check(code, "clCreateProgramWithSource");
+        program_.reset(program, clReleaseProgram);
+        check(clBuildProgram(program, 1, &device1, "-cl-std=CL1.2", nullptr, nullptr), "clBuildProgram");
     }
-    ~Limits() {
-        if (program_) clReleaseProgram(program_);
-    }
-    Limits(const Limits&) = delete;
 
     // lanes 0: the driver's own copy.
     void copy(int lanes) {
-        if (lanes == 0) {
-            check(clEnqueueCopyBuffer(queue_, mem(a_), mem(b_), 0, 0, bytes_, 0, nullptr, nullptr),
-                  "clEnqueueCopyBuffer");
-            check(clFinish(queue_), "clFinish");
-            return;
-        }
-        Kernel kernel(program_, lanes == 4 ? "copy4" : "copy16");
-        kernel.set(0, mem(a_));
-        kernel.set(1, mem(b_));
-        kernel.run(queue_, bytes_ / (sizeof(float) * size_t(lanes)));
+        const cl_mem from = mem(a_), to = mem(b_);
+        if (lanes)
+            return run("copy" + std::to_string(lanes), bytes_ / (sizeof(float) * size_t(lanes)), from, to);
+        check(clEnqueueCopyBuffer(queue_, from, to, 0, 0, bytes_, 0, nullptr, nullptr),
+              "clEnqueueCopyBuffer");
+        check(clFinish(queue_), "clFinish");
     }
     double multiplyAdd(int lanes, size_t items) {
-        Kernel kernel(program_, lanes == 1 ? "chains1" : lanes == 8 ? "chains8" : "chains16");
-        const float a = 0.999f, b = 1e-3f;
-        kernel.set(0, mem(b_));
-        kernel.set(1, a);
-        kernel.set(2, b);
-        kernel.run(queue_, items);
+        run("chains" + std::to_string(lanes), items, mem(b_), 0.999f, 1e-3f);
         return double(items) * lanes * operationsPerLane;
     }
 
   private:
-    struct Kernel {
-        cl_kernel kernel;
-        Kernel(cl_program program, const char* name) {
-            cl_int code = CL_SUCCESS;
-            kernel = clCreateKernel(program, name, &code);
-            check(code, "clCreateKernel");
-        }
-        ~Kernel() { clReleaseKernel(kernel); }
-        Kernel(const Kernel&) = delete;
-        template <class T>
-        void set(cl_uint index, const T& value) const {
-            check(clSetKernelArg(kernel, index, sizeof value, &value), "clSetKernelArg");
-        }
-        void run(cl_command_queue queue, size_t items) const {
-            const size_t local = 64;
-            check(clEnqueueNDRangeKernel(queue, kernel, 1, nullptr, &items, &local, 0, nullptr, nullptr),
-                  "clEnqueueNDRangeKernel");
-            check(clFinish(queue), "clFinish");
-        }
-    };
+    template <class... Arguments>
+    void run(const std::string& name, size_t items, const Arguments&... arguments) {
+        cl_int code = CL_SUCCESS;
+        const cl_kernel kernel = clCreateKernel(program_.get(), name.c_str(), &code);
+        check(code, "clCreateKernel");
+        const std::shared_ptr<void> release(kernel,
+                                            [](void* k) { clReleaseKernel(static_cast<cl_kernel>(k)); });
+        cl_uint index = 0;
+        (check(clSetKernelArg(kernel, index++, sizeof arguments, &arguments), "clSetKernelArg"), ...);
+        const size_t local = 64;
+        check(clEnqueueNDRangeKernel(queue_, kernel, 1, nullptr, &items, &local, 0, nullptr, nullptr),
+              "clEnqueueNDRangeKernel");
+        check(clFinish(queue_), "clFinish");
+    }
     static cl_mem mem(const Buffer& buffer) {
         void* mem = nullptr;
         pellucid::check(pelBufferGetCl(buffer.get(), &mem));
@@ -113,10 +95,9 @@ class Limits {
 
     Device device_;
     size_t bytes_;
-    const char* source_ = source;
-    cl_command_queue queue_ = nullptr;
-    cl_program program_ = nullptr;
     Buffer a_, b_;
+    cl_command_queue queue_ = nullptr;
+    std::shared_ptr<std::remove_pointer_t<cl_program>> program_;
 };
 
 double seconds() {
@@ -125,9 +106,9 @@ double seconds() {
 
 }  // namespace
 
-std::vector<Factory> deviceCases(const Device& device, Size size) {
+std::vector<Factory> deviceCases(const Device& device, bool quick) {
     const auto limits = std::make_shared<std::shared_ptr<Limits>>();
-    const size_t bytes = size_t(size.quick ? 32 : 128) << 20;
+    const size_t bytes = size_t(quick ? 32 : 128) << 20;
     const auto open = [=] {
         if (!*limits) *limits = std::make_shared<Limits>(device, bytes);
         return *limits;

@@ -2,7 +2,7 @@
 // against the tracer of tests/reference, with the same table.
 #include <random>
 
-#include "case.h"
+#include "measure.h"
 #include "reference/eye.h"
 #include "reference/eye_square.h"
 
@@ -35,9 +35,9 @@ double covered(const PelEyeLutDesc& desc, uint32_t i, uint32_t j) {
     return on / 64.0;
 }
 
-Case tableCase(const Device& device, Size size) {
+Case tableCase(const Device& device, bool quick) {
     PelEyeLutDesc desc = pelEyeLutDescDefaults();
-    if (size.quick) desc.width = desc.height = 32, desc.depth = 16;
+    if (quick) desc.width = desc.height = 32, desc.depth = 16;
     const auto lut = std::make_shared<Lut>();
     Case c;
     c.what =
@@ -75,8 +75,8 @@ struct EyeFrame {
     Lut caustics;
     PelEyeLutDesc desc{};
 
-    EyeFrame(const Device& device, Size size)
-        : width(size.quick ? 480 : 1920), height(size.quick ? 270 : 1080), shader(device) {
+    EyeFrame(const Device& device, bool quick)
+        : width(quick ? 480 : 1920), height(quick ? 270 : 1080), shader(device) {
         const reference::EyeSquare square(width, height, share);
         position = square.position, id = square.id;
         target = Buffer(device, size_t(width) * height * 12);
@@ -160,20 +160,20 @@ struct EyeFrame {
 
 }  // namespace
 
-std::vector<Factory> eyeCases(const Device& device, Size size) {
+std::vector<Factory> eyeCases(const Device& device, bool quick) {
     const auto frame = [=] {
-        const auto made = std::make_shared<EyeFrame>(device, size);
+        const auto made = std::make_shared<EyeFrame>(device, quick);
         Case c;
         c.what = std::to_string(made->width) + "x" + std::to_string(made->height) + ", 5 % an eye";
         c.items = double(made->width) * made->height;
         c.unit = "pixels";
         c.run = [=] { made->shader.execute(); };
-        const int samples = size.quick ? 200 : 1000;
+        const int samples = quick ? 200 : 1000;
         c.error = [=] { return made->error(samples); };
         c.truth = "the tracer in double precision with the same table, at drawn pixels of the eye; absolute";
         return c;
     };
-    return {{"table-eye", "tables", [=] { return tableCase(device, size); }},
+    return {{"table-eye", "tables", [=] { return tableCase(device, quick); }},
             {"shade-eye", "shading", frame}};
 }
 

@@ -77,7 +77,6 @@ std::vector<PelLight> Frame::lights(const FrameSettings& settings) const {
     for (uint32_t i = 1; i < settings.lights; ++i)
         std::swap(lights[i].toLight[i % 3], lights[i].toLight[(i + 1) % 3]);
     for (PelLight& light : lights) light.shadowFilterTexels = 0;
-    if (!lights.empty()) lights[0].shadowFilterTexels = settings.filterTexels;
     return lights;
 }
 
@@ -94,28 +93,24 @@ Shader Frame::shader(const FrameSettings& settings) const {
     shader.set(lights(settings)).set(images_.camera);
     if (settings.terms != Terms::plain) {
         shader.set(images_.ambient);
-        for (uint32_t i = settings.filterTexels ? 1 : 0; i < settings.lights; ++i)
+        for (uint32_t i = 0; i < settings.lights; ++i)
             shader.set(i, PEL_LIGHT_WIDE_SHADOW,
                        imageDesc(wideShadow_, PEL_FORMAT_R32F, images_.width, images_.height));
     }
     if (settings.terms == Terms::scattering) {
         set(PEL_SLOT_NORMAL_GEOMETRIC, geometric_, PEL_FORMAT_RGB32F);
-        if (!settings.blurNormals) set(PEL_SLOT_NORMAL_BLURRED, blurred_, PEL_FORMAT_RGB32F);
+        set(PEL_SLOT_NORMAL_BLURRED, blurred_, PEL_FORMAT_RGB32F);
         set(PEL_SLOT_CURVATURE, curvature_, PEL_FORMAT_R32F);
         shader.setMaterial(1, material(settings), curvatureLut_, shadowLut_);
     } else {
         shader.setMaterial(1, material(settings));
     }
-    if (settings.taps || settings.filterTexels)
+    if (settings.taps)
         for (uint32_t i = 0; i < settings.lights; ++i)
             shader.set(i, PEL_LIGHT_SHADOW_MAP,
                        imageDesc(map_, PEL_FORMAT_R32F, images_.mapSize, images_.mapSize));
-    if (std::ranges::find(settings.ids, uint8_t(2)) != settings.ids.end())
-        shader.setMaterial(2, material({.terms = Terms::plain}));
     PelShaderOptions options = pelShaderOptionsDefaults();
-    options.blurNormals = settings.blurNormals;
     options.everyPixel = settings.everyPixel;
-    options.tileLists = settings.tileLists;
     shader.set(options).commit();
     return shader;
 }

@@ -37,12 +37,8 @@ struct FrameSettings {
     Terms terms = Terms::scattering;
     uint32_t taps = 0;           // of thickness; 0: no deep scatter
     uint32_t lights = 1;         // the frame's own, and others from elsewhere
-    std::vector<uint8_t> ids{};  // in place of the frame's. Material 2 is plain
-    bool blurNormals = false;    // on screen, in place of the frame's image
-    uint32_t filterTexels =
-        0;  // 0: the frame's wide shadow; else filtered from the map, at most so many texels across
-    bool everyPixel = false;  // no interpolation between pixels
-    PelTileLists tileLists = pelShaderOptionsDefaults().tileLists;
+    std::vector<uint8_t> ids{};  // in place of the frame's
+    bool everyPixel = false;     // no interpolation between pixels
 };
 
 class Frame {

@@ -8,8 +8,6 @@
 #include <random>
 #include <thread>
 
-#include "supervise.h"
-
 namespace pellucid::bench {
 namespace {
 
@@ -18,6 +16,21 @@ using Json = nlohmann::ordered_json;
 double milliseconds() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
         .count();
+}
+
+double median(std::vector<double> values) {
+    if (values.empty()) return 0;
+    std::sort(values.begin(), values.end());
+    const size_t half = values.size() / 2;
+    return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+// Median absolute deviation from the median.
+double medianDeviation(const std::vector<double>& values) {
+    const double middle = median(values);
+    std::vector<double> away;
+    for (const double v : values) away.push_back(std::abs(v - middle));
+    return median(away);
 }
 
 struct Running {
@@ -57,38 +70,6 @@ Json summary(const Running& r) {
 
 }  // namespace
 
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    std::sort(values.begin(), values.end());
-    const size_t half = values.size() / 2;
-    return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
-double medianDeviation(const std::vector<double>& values) {
-    const double middle = median(values);
-    std::vector<double> away;
-    for (const double v : values) away.push_back(std::abs(v - middle));
-    return median(away);
-}
-
-Json measureDevice(const Request& request) {
-    const PelDeviceInfo info = Device(request.device).info();
-    Json report = {{"name", info.name},
-                   {"platform", info.platform},
-                   {"version", info.version},
-                   {"driver", info.driver},
-                   {"type", info.type == PEL_DEVICE_GPU   ? "gpu"
-                            : info.type == PEL_DEVICE_CPU ? "cpu"
-                                                          : "accelerator"},
-                   {"compute_units", info.computeUnits},
-                   {"clock_mhz", info.clockMhz},
-                   {"math_width", info.mathWidth}};
-    if (request.progress) request.progress("first use and warm start");
-    measureFirstUse(request, report);
-    report.update(measureCasesApart(request));
-    return report;
-}
-
 Json measureCases(const Request& request) {
     const auto tell = [&](const Json& event) {
         if (request.event) request.event(event);
@@ -99,7 +80,7 @@ Json measureCases(const Request& request) {
     const Device device(request.device);
     std::vector<Factory> factories;
     for (const auto& from : {deviceCases, meshCases, tableCases, shadingCases, eyeCases})
-        for (Factory& f : from(device, Size{request.quick})) factories.push_back(std::move(f));
+        for (Factory& f : from(device, request.quick)) factories.push_back(std::move(f));
     // Every round runs each case once, in an order of its own: machines drift, and all cases drift with them.
     const int rounds = request.quick ? 5 : 15;
     std::vector<Running> running;

@@ -1,16 +1,64 @@
-// Runs cases on a device and reports them as JSON.
+// The cases of `pellucid bench`, and their measurement.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <pellucid/pellucid.hpp>
 #include <string>
 #include <vector>
 
-#include "case.h"
-
 namespace pellucid::bench {
 
-double median(std::vector<double> values);                  // of none: 0
-double medianDeviation(const std::vector<double>& values);  // median absolute deviation from the median
+struct Error {
+    double max = 0, rms = 0;
+};
+
+struct Case {
+    std::string what;  // for people: size, settings
+    double items = 0;  // worked on per run
+    std::string unit;  // of the items: "vertices"
+    // Least work by the definition, for shares of the device's own limits; 0: not counted. Bytes: each input
+    // read and each output written once. Operations: +, *, comparison, square root, exponential each 1, fused
+    // multiply-add 2.
+    double bytes = 0, operations = 0;
+    std::function<void()> run;     // returns when the result is there
+    std::function<Error()> error;  // of the last run's result; empty: nothing to compare
+    std::string truth;             // what the result is compared with, and in which unit
+};
+
+// Making a case may need memory and time, and may fail on a device that lacks something.
+struct Factory {
+    std::string name, group;
+    std::function<Case()> make;
+};
+
+std::vector<Factory> deviceCases(const Device& device, bool quick);   // copy bandwidth, arithmetic peak
+std::vector<Factory> meshCases(const Device& device, bool quick);     // curvature, normals, UV scale
+std::vector<Factory> tableCases(const Device& device, bool quick);    // look-up tables
+std::vector<Factory> shadingCases(const Device& device, bool quick);  // the pass over a G-buffer
+std::vector<Factory> eyeCases(const Device& device, bool quick);      // a cornea's table, a frame with an eye
+
+constexpr const char* copyName = "copy";  // the case whose bytes per second are the device's bandwidth
+constexpr const char* arithmeticName = "arithmetic";  // and whose operations per second are its peak
+
+// Gathers differences into an Error.
+class ErrorSum {
+  public:
+    void add(double difference) {
+        max_ = difference == difference && max_ == max_ ? std::max(max_, std::abs(difference)) : NAN;
+        squares_ += difference * difference;
+        ++count_;
+    }
+    Error result(double scale = 1) const {
+        return {max_ / scale, std::sqrt(squares_ / double(std::max<size_t>(count_, 1))) / scale};
+    }
+
+  private:
+    double max_ = 0, squares_ = 0;
+    size_t count_ = 0;
+};
 
 struct Request {
     std::string device;                // selector

@@ -1,5 +1,5 @@
 // Mesh data on a torus with moved vertices, whose curvature is known in closed form.
-#include "case.h"
+#include "measure.h"
 #include "reference/surfaces.h"
 
 namespace pellucid::bench {
@@ -62,10 +62,10 @@ Error against(const Buffer& result, const std::vector<double>& truth) {
 
 }  // namespace
 
-std::vector<Factory> meshCases(const Device& device, Size size) {
+std::vector<Factory> meshCases(const Device& device, bool quick) {
     const auto made = std::make_shared<std::shared_ptr<Torus>>();
     const auto torus = [=] {
-        if (!*made) *made = std::make_shared<Torus>(device, size.quick ? 200 : 800);
+        if (!*made) *made = std::make_shared<Torus>(device, quick ? 200 : 800);
         return *made;
     };
     const auto begin = [](const Torus& t, const std::string& more) {

@@ -2,8 +2,8 @@
 // precision.
 #include <random>
 
-#include "case.h"
 #include "frames.h"
+#include "measure.h"
 #include "reference/shade_pixel.h"
 
 namespace pellucid::bench {
@@ -114,12 +114,12 @@ struct Pass {
 
 }  // namespace
 
-std::vector<Factory> shadingCases(const Device& device, Size size) {
+std::vector<Factory> shadingCases(const Device& device, bool quick) {
     const auto made = std::make_shared<std::shared_ptr<SkinFrame>>();
     const auto frame = [=] {
         if (!*made)
-            *made = size.quick ? std::make_shared<SkinFrame>(device, 480, 270)
-                               : std::make_shared<SkinFrame>(device, 1920, 1080);
+            *made = quick ? std::make_shared<SkinFrame>(device, 480, 270)
+                          : std::make_shared<SkinFrame>(device, 1920, 1080);
         return *made;
     };
     const auto variant = [=](const FrameSettings& settings, uint32_t coverage = 100) {
@@ -141,7 +141,7 @@ std::vector<Factory> shadingCases(const Device& device, Size size) {
             const double perLight = scattering ? 150.0 + (settings.taps ? 40 + 23.0 * settings.taps : 0) : 60;
             c.operations = covered * (settings.lights * perLight + (scattering ? 200 : 15));
             c.run = [=] { pass->shader.execute(); };
-            const int samples = size.quick ? 500 : 4000;
+            const int samples = quick ? 500 : 4000;
             c.error = [=] { return pass->error(samples); };
             c.truth = "section 6 in double precision with the same tables at drawn pixels; absolute";
             return c;

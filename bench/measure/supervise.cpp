@@ -1,90 +1,145 @@
-#include "supervise.h"
-
+// Measures a device in processes of its own, so that a failure there cannot stop the rest.
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <set>
 
-#include "case.h"
-#include "child_process.h"
-#include "page.h"
+#include "measure.h"
+#include "report.h"
 
 namespace pellucid::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Answer = ChildProcess::Answer;
 
 constexpr double startSeconds = 120;
 
-bool cancelled(const Request& request) {
-    return request.cancelled && request.cancelled();
+double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::string noResult(const Request& request) {
-    return "no result within " + shortNumber(request.limitSeconds) + " s";
-}
+// The pellucid command again, read line by line. Where this process ends, the other one does at its next line.
+class Again {
+  public:
+    // `environment`: "NAME=VALUE" added to this process's own. Without `loud` its standard error is discarded.
+    Again(const Request& request, std::vector<std::string> words, std::vector<std::string> environment,
+          bool loud)
+        : request_(request) {
+        std::vector<std::string> all{"/usr/bin/env"};
+        all.insert(all.end(), environment.begin(), environment.end());
+        all.insert(all.end(), {request.command, "bench", "--device", request.device});
+        all.insert(all.end(), words.begin(), words.end());
+        std::vector<char*> pointers;
+        for (std::string& word : all) pointers.push_back(word.data());
+        pointers.push_back(nullptr);
+        int ends[2];
+        if (::pipe2(ends, O_CLOEXEC) != 0)
+            throw std::runtime_error(std::string("no pipe: ") + std::strerror(errno));
+        posix_spawn_file_actions_t streams;
+        ::posix_spawn_file_actions_init(&streams);
+        ::posix_spawn_file_actions_adddup2(&streams, ends[1], STDOUT_FILENO);
+        if (!loud) ::posix_spawn_file_actions_addopen(&streams, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+        const int error =
+            ::posix_spawn(&process_, all[0].c_str(), &streams, nullptr, pointers.data(), environ);
+        ::posix_spawn_file_actions_destroy(&streams);
+        ::close(ends[1]);
+        pipe_ = ends[0];
+        if (error) process_ = -1, why_ = std::string("cannot be started: ") + std::strerror(error);
+    }
+    ~Again() {
+        if (process_ > 0) {
+            ::kill(process_, SIGKILL);
+            ::waitpid(process_, nullptr, 0);
+        }
+        ::close(pipe_);
+    }
+    Again(const Again&) = delete;
 
-// The result of one process.
-struct Outcome {
-    Json report;      // null: it did not get there
-    Json at;          // {"begin", "group"} of the case that it was at
-    std::string why;  // it did not get there
+    // The next line of its output as JSON; nothing where there is none, of which why() tells the reason.
+    std::optional<Json> next(double seconds) {
+        for (const double end = now() + seconds;;) {
+            if (const size_t at = heard_.find('\n'); at != std::string::npos) {
+                const Json line = Json::parse(heard_.substr(0, at), nullptr, false);
+                heard_.erase(0, at + 1);
+                return line;
+            }
+            if (request_.cancelled && request_.cancelled())
+                throw pellucid::Error(PEL_ERROR_CANCELLED, "the benchmark was cancelled");
+            const double left = end - now();
+            why_ = "no result within " + shortNumber(request_.limitSeconds) + " s";
+            if (left <= 0) return {};
+            pollfd waits{pipe_, POLLIN, 0};
+            if (::poll(&waits, 1, int(std::clamp(left * 1e3, 1.0, 200.0))) <= 0) continue;
+            char part[4096];
+            const ssize_t got = ::read(pipe_, part, sizeof part);
+            if (got > 0) heard_.append(part, size_t(got));
+            if (got == 0 || (got < 0 && errno != EINTR)) break;
+        }
+        int status = 0;
+        if (process_ > 0) ::waitpid(process_, &status, 0);
+        process_ = -1;
+        why_ = "its process ended";
+        if (WIFSIGNALED(status))
+            why_ = "its process was ended by signal " + std::to_string(WTERMSIG(status)) + " (" +
+                   ::strsignal(WTERMSIG(status)) + ")";
+        else if (WEXITSTATUS(status))
+            why_ += " with exit code " + std::to_string(WEXITSTATUS(status));
+        return {};
+    }
+    const std::string& why() const { return why_; }
+
+  private:
+    const Request& request_;
+    pid_t process_ = -1;
+    int pipe_ = -1;
+    std::string heard_, why_;  // heard_: beyond the last line
 };
 
-Outcome runApart(const Request& request, const std::set<std::string>& without) {
-    std::vector<std::string> command{request.command,
-                                     "bench",
-                                     "--events",
-                                     "--device",
-                                     request.device,
-                                     "--limit",
-                                     std::to_string(request.limitSeconds)};
-    if (request.quick) command.push_back("--quick");
-    for (const std::string& name : request.only) command.insert(command.end(), {"--only", name});
-    for (const std::string& name : without) command.insert(command.end(), {"--without", name});
-    ChildProcess child(command, {}, true);
-    Outcome outcome;
-    std::string line;
-    for (;;) {
-        // Starting and opening the device is not a case.
-        const double limit =
-            outcome.at.is_null() ? std::max(request.limitSeconds, startSeconds) : request.limitSeconds;
-        const Answer answer = child.next(line, limit, request.cancelled);
-        if (cancelled(request)) throw pellucid::Error(PEL_ERROR_CANCELLED, "the benchmark was cancelled");
-        if (answer == Answer::silent) {
-            outcome.why = noResult(request);
-            return outcome;
-        }
-        if (answer == Answer::ended) break;
-        const Json event = Json::parse(line, nullptr, false);
-        if (!event.is_object()) continue;
-        if (event.contains("begin")) outcome.at = event;
-        if (event.contains("say") && request.progress) request.progress(event["say"]);
-        if (event.contains("report")) outcome.report = event["report"];
+// The report of one process; null if it did not get there. `at`: the case that it was at.
+Json runApart(const Request& request, const std::set<std::string>& without, Json& at, std::string& why) {
+    std::vector<std::string> words{"--events", "--limit", std::to_string(request.limitSeconds)};
+    if (request.quick) words.push_back("--quick");
+    for (const std::string& name : request.only) words.insert(words.end(), {"--only", name});
+    for (const std::string& name : without) words.insert(words.end(), {"--without", name});
+    Again child(request, words, {}, true);
+    Json report;
+    // Starting and opening the device is not a case.
+    while (const auto event = child.next(at.is_null() ? std::max(request.limitSeconds, startSeconds)
+                                                      : request.limitSeconds)) {
+        if (!event->is_object()) continue;
+        if (event->contains("begin")) at = *event;
+        if (event->contains("say") && request.progress) request.progress((*event)["say"]);
+        if (event->contains("report")) report = (*event)["report"];
     }
-    const std::string ending = child.ending();
-    if (outcome.report.is_null()) outcome.why = "its process " + (ending.empty() ? "ended" : ending);
-    return outcome;
+    why = child.why();
+    return report;
 }
 
-}  // namespace
-
+// measureCases() by the command `request.command`. A case that does not answer within request.limitSeconds,
+// or ends its process, is among the operations as {"name", "group", "failed": why}; the others are measured
+// without it.
 Json measureCasesApart(const Request& request) {
     std::set<std::string> without;
     Json lost = Json::array();
     // After a loss all others are measured again.
     for (;;) {
-        Outcome outcome = runApart(request, without);
-        if (!outcome.report.is_null()) {
-            for (const Json& e : lost) outcome.report["operations"].push_back(e);
-            return outcome.report;
+        Json at;
+        std::string why;
+        Json report = runApart(request, without, at, why);
+        if (!report.is_null()) {
+            for (const Json& e : lost) report["operations"].push_back(e);
+            return report;
         }
-        if (outcome.at.is_null()) outcome.at = {{"begin", "start"}, {"group", "device"}};
-        const std::string name = outcome.at.at("begin");
-        if (request.progress) request.progress(name + ": " + outcome.why);
-        lost.push_back({{"name", name}, {"group", outcome.at.at("group")}, {"failed", outcome.why}});
+        if (at.is_null()) at = {{"begin", "start"}, {"group", "device"}};
+        const std::string name = at.at("begin");
+        if (request.progress) request.progress(name + ": " + why);
+        lost.push_back({{"name", name}, {"group", at.at("group")}, {"failed", why}});
         // The process did not reach any case, or reached one that was left out.
         if (name == "start" || !without.insert(name).second)
             return {
@@ -92,33 +147,53 @@ Json measureCasesApart(const Request& request) {
     }
 }
 
+// "first_use" and "warm_start" of a report: the command again in an empty cache of every driver known here,
+// then in the cache that this left.
 void measureFirstUse(const Request& request, Json& report) {
-    const std::filesystem::path cache =
-        std::filesystem::temp_directory_path() / ("pellucid-bench-" + std::to_string(::getpid()));
-    std::vector<std::pair<std::string, std::string>> environment;
+    struct Cache {
+        std::filesystem::path folder =
+            std::filesystem::temp_directory_path() / ("pellucid-bench-" + std::to_string(::getpid()));
+        Cache() { std::filesystem::create_directories(folder); }
+        ~Cache() {
+            std::error_code ignored;
+            std::filesystem::remove_all(folder, ignored);
+        }
+    } cache;
+    std::vector<std::string> environment;
     for (const char* variable :
          {"POCL_CACHE_DIR", "CUDA_CACHE_PATH", "MESA_SHADER_CACHE_DIR", "NEO_CACHE_DIR", "cl_cache_dir",
           "AMD_COMGR_CACHE_DIR", "PELLUCID_CACHE_DIR"})
-        environment.emplace_back(variable, cache.string());
+        environment.push_back(variable + ("=" + cache.folder.string()));
     for (const char* key : {"first_use", "warm_start"}) {
-        std::filesystem::create_directories(cache);
-        ChildProcess child({request.command, "bench", "--first-use", "--device", request.device}, environment,
-                           false);
-        std::string line;
-        const Answer answer = child.next(line, request.limitSeconds, request.cancelled);
-        const Json parsed = answer == Answer::heard ? Json::parse(line, nullptr, false) : Json();
-        // Until it is gone: drivers may write their caches at the end.
-        if (answer == Answer::heard) child.next(line, request.limitSeconds, request.cancelled);
-        if (parsed.is_object())
-            report[key] = parsed;
-        else
-            report[key] = {
-                {"failed", answer == Answer::silent ? noResult(request) : "its process " + child.ending()}};
-        if (cancelled(request)) break;
+        Again child(request, {"--first-use"}, environment, false);
+        const auto said = child.next(request.limitSeconds);
+        if (said && said->is_object()) {
+            report[key] = *said;
+            child.next(request.limitSeconds);  // until it is gone: drivers may write their caches at the end
+        } else {
+            report[key] = {{"failed", child.why()}};
+        }
     }
-    std::error_code ignored;
-    std::filesystem::remove_all(cache, ignored);
-    if (cancelled(request)) throw pellucid::Error(PEL_ERROR_CANCELLED, "the benchmark was cancelled");
+}
+
+}  // namespace
+
+Json measureDevice(const Request& request) {
+    const PelDeviceInfo info = Device(request.device).info();
+    Json report = {{"name", info.name},
+                   {"platform", info.platform},
+                   {"version", info.version},
+                   {"driver", info.driver},
+                   {"type", info.type == PEL_DEVICE_GPU   ? "gpu"
+                            : info.type == PEL_DEVICE_CPU ? "cpu"
+                                                          : "accelerator"},
+                   {"compute_units", info.computeUnits},
+                   {"clock_mhz", info.clockMhz},
+                   {"math_width", info.mathWidth}};
+    if (request.progress) request.progress("first use and warm start");
+    measureFirstUse(request, report);
+    report.update(measureCasesApart(request));
+    return report;
 }
 
 }  // namespace pellucid::bench

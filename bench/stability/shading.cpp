@@ -44,7 +44,7 @@ enum Dimension {
     specular,
     albedo,
     material,
-    scene,
+    spare,  // keeps the random numbers of the records
     dimensions
 };
 
@@ -118,8 +118,7 @@ Frame litBy(Lit lit) {
     return f;
 }
 
-class Shading : public Pixels {
-  public:
+struct Shading {
     Shading(const Kind& kind, const std::vector<Point>& points)
         : kind_(kind), frame_(litBy(kind.lit)), count_(points.size()) {
         frame_.width = 64;
@@ -132,7 +131,7 @@ class Shading : public Pixels {
         for (Light& l : frame_.lights) l.wide.values.assign(frame_.pixels(), 1);
         for (size_t i = 0; i < count_; ++i) set(i, points[i]);
     }
-    void move(Jitter& j) override {
+    void move(Jitter& j) {
         for (int slot = 2; slot < PEL_SLOT_OUT_DIFFUSE; ++slot) j(frame_.slots[slot].values);
         for (Light& l : frame_.lights) {
             j(l.wide.values);
@@ -141,31 +140,33 @@ class Shading : public Pixels {
             for (float& m : l.params.worldToShadow) m = m == 0 ? m : j(m);
         }
     }
-    std::vector<float> measured() override {
+    std::vector<float> measured() const {
         Shader shader(device());
         setFrame(device(), shader, frame_, tables());
-        const Buffer radiance(device(), frame_.pixels() * 12), diffuse(device(), frame_.pixels() * 12),
-            deep(device(), frame_.pixels() * 12), shine(device(), frame_.pixels() * 12),
-            thickness(device(), frame_.pixels() * 4);
-        const auto put = [&](PelImageSlot slot, const Buffer& to, PelFormat format) {
-            shader.set(slot, imageDesc(to, format, frame_.width, frame_.height));
-        };
-        put(PEL_SLOT_RADIANCE, radiance, PEL_FORMAT_RGB32F),
-            put(PEL_SLOT_OUT_DIFFUSE, diffuse, PEL_FORMAT_RGB32F);
-        put(PEL_SLOT_OUT_DEEP_SCATTER, deep, PEL_FORMAT_RGB32F),
-            put(PEL_SLOT_OUT_SPECULAR, shine, PEL_FORMAT_RGB32F);
-        put(PEL_SLOT_OUT_THICKNESS, thickness, PEL_FORMAT_R32F);
+        Buffer shown;
+        for (const auto slot : {PEL_SLOT_RADIANCE, PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER,
+                                PEL_SLOT_OUT_SPECULAR, PEL_SLOT_OUT_THICKNESS}) {
+            const bool one = slot == PEL_SLOT_OUT_THICKNESS;
+            const Buffer image(device(), frame_.pixels() * (one ? 4 : 12));
+            shader.set(slot, imageDesc(image, one ? PEL_FORMAT_R32F : PEL_FORMAT_RGB32F, frame_.width,
+                                       frame_.height));
+            if (slot == kind_.output) shown = image;
+        }
         shader.commit().execute();
-        const Buffer& shown = kind_.output == PEL_SLOT_OUT_DIFFUSE        ? diffuse
-                              : kind_.output == PEL_SLOT_OUT_DEEP_SCATTER ? deep
-                              : kind_.output == PEL_SLOT_OUT_SPECULAR     ? shine
-                              : kind_.output == PEL_SLOT_OUT_THICKNESS    ? thickness
-                                                                          : radiance;
         std::vector<float> values = shown.readAll<float>();
         values.resize(count_ * (kind_.output == PEL_SLOT_OUT_THICKNESS ? 1 : 3));
         return values;
     }
-    std::vector<double> truth(size_t i) override {
+    std::vector<double> truth() const {
+        std::vector<std::vector<double>> each(count_);
+        inParallel(count_, [&](size_t i) { each[i] = truthAt(i); });
+        std::vector<double> all;
+        for (const auto& values : each) all.insert(all.end(), values.begin(), values.end());
+        return all;
+    }
+
+  private:
+    std::vector<double> truthAt(size_t i) const {
         const PelLight& lamp = frame_.lights[0].params;
         const PelMaterial& m = frame_.materials.at(uint32_t(frame_.slots[PEL_SLOT_MATERIAL].at(i)));
         if (kind_.output == PEL_SLOT_OUT_THICKNESS)
@@ -184,8 +185,6 @@ class Shading : public Pixels {
                                                                     : s.sum();
         return {rgb.x, rgb.y, rgb.z};
     }
-
-  private:
     Vec3 place(size_t i) const { return frame_.slots[PEL_SLOT_POSITION].vec(i); }
     Vec3 toLight(size_t i) const {
         const PelLight& l = frame_.lights[0].params;
@@ -220,27 +219,19 @@ class Shading : public Pixels {
     size_t count_;
 };
 
-Operation shading(const char* name, const char* range, Kind kind, const tolerance::Tolerance& limit,
-                  size_t points) {
-    return operation(
-        {name, range, kind.output == PEL_SLOT_OUT_THICKNESS ? Unit::length : Unit::absolute, limit,
-         dimensions, points},
-        1,
-        [kind](size_t, const std::vector<Point>& points) { return std::make_unique<Shading>(kind, points); },
-        [kind](size_t, const Point& p) {
-            const PelMaterial& m = base().materials.at(1 + uint32_t(p[material] * (materials - 1e-6)) * 2);
-            std::string s = text("normal %.3g degrees from the ", turnOf(kind, p) / degree) +
-                            (kind.focus == Focus::half ? "half vector" : "light");
-            if (kind.output == PEL_SLOT_OUT_SPECULAR || kind.output == PEL_SLOT_RADIANCE)
-                s += text(", roughness %.3g", roughnessOf(p));
-            if (kind.output == PEL_SLOT_OUT_DEEP_SCATTER)
-                s += text(", deep scatter radius %.3g mm", m.deepScatterRadius);
-            if (kind.output == PEL_SLOT_OUT_DIFFUSE && kind.lit < Lit::constant)
-                s += text(", curvature %.3g /mm, diffusion radius %.3g mm, shadow %.3g",
-                          between(p[curvature], -0.1, 1.2), m.diffusionRadius,
-                          std::clamp(between(p[wide], -0.2, 1.2), 0.0, 1.0));
-            return s;
-        });
+std::string whereOf(const Kind& kind, const Point& p) {
+    const PelMaterial& m = base().materials.at(1 + uint32_t(p[material] * (materials - 1e-6)) * 2);
+    std::string s = text("normal %.3g degrees from the ", turnOf(kind, p) / degree) +
+                    (kind.focus == Focus::half ? "half vector" : "light");
+    if (kind.output == PEL_SLOT_OUT_SPECULAR || kind.output == PEL_SLOT_RADIANCE)
+        s += text(", roughness %.3g", roughnessOf(p));
+    if (kind.output == PEL_SLOT_OUT_DEEP_SCATTER)
+        s += text(", deep scatter radius %.3g mm", m.deepScatterRadius);
+    if (kind.output == PEL_SLOT_OUT_DIFFUSE && kind.lit < Lit::constant)
+        s += text(", curvature %.3g /mm, diffusion radius %.3g mm, shadow %.3g",
+                  between(p[curvature], -0.1, 1.2), m.diffusionRadius,
+                  std::clamp(between(p[wide], -0.2, 1.2), 0.0, 1.0));
+    return s;
 }
 
 }  // namespace
@@ -257,38 +248,42 @@ std::vector<Operation> shadingOperations() {
         "roughness 0.03 to 1, normals 0.006 to 90 degrees from the half vector, light and viewer up to 151 "
         "degrees apart, f0 0.01 to 1";
     constexpr const char* white = "normals at all angles, blended from two up to 25 degrees apart";
-    const auto kind = [](Lit lit, PelImageSlot output, Focus focus = Focus::light, bool ggx = false) {
-        return Kind{lit, focus, ggx, output};
-    };
     using enum Lit;
-    std::vector<Operation> operations{
-        shading("scattered light, directional", diffuse, kind(directional, PEL_SLOT_OUT_DIFFUSE),
-                tolerance::shadeTerm, 100000),
-        shading("scattered light, point light", diffuse, kind(point, PEL_SLOT_OUT_DIFFUSE),
-                tolerance::shadeTerm, 100000),
-        shading("scattered light, spot light", diffuse, kind(spot, PEL_SLOT_OUT_DIFFUSE),
-                tolerance::shadeTerm, 100000),
-        shading("deep scatter, parallel map", through, kind(directional, PEL_SLOT_OUT_DEEP_SCATTER),
-                tolerance::shadeTerm, 100000),
-        shading("deep scatter, perspective map", through, kind(point, PEL_SLOT_OUT_DEEP_SCATTER),
-                tolerance::shadeTerm, 100000),
-        shading("thickness of noise, parallel map", through, kind(directional, PEL_SLOT_OUT_THICKNESS),
-                tolerance::shadeThickness, 100000),
-        shading("thickness of noise, perspective map", through, kind(point, PEL_SLOT_OUT_THICKNESS),
-                tolerance::shadeThickness, 100000),
-        shading("specular, Beckmann", shine, kind(directional, PEL_SLOT_OUT_SPECULAR, Focus::half),
-                tolerance::shadeSum, 200000),
-        shading("specular, GGX", shine, kind(directional, PEL_SLOT_OUT_SPECULAR, Focus::half, true),
-                tolerance::shadeSum, 200000),
-        shading("ambient, constant", white, kind(constant, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm,
-                50000),
-        shading("ambient, harmonics", white, kind(harmonics, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm,
-                50000),
-        shading("ambient, cube map", white, kind(cube, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm, 50000),
-        shading("radiance, all terms", shine, kind(Lit::all, PEL_SLOT_RADIANCE, Focus::half),
-                tolerance::shadeSum, 200000)};
-    for (Operation& o : operations)
-        if (o.header.name.starts_with("specular")) o.axis = Axis{roughness, 0.03, 1, "roughness"};
+    constexpr auto light = Focus::light, half = Focus::half;
+    constexpr auto diffusely = PEL_SLOT_OUT_DIFFUSE, deeply = PEL_SLOT_OUT_DEEP_SCATTER,
+                   thickness = PEL_SLOT_OUT_THICKNESS, shining = PEL_SLOT_OUT_SPECULAR;
+    const auto &term = tolerance::shadeTerm, &depth = tolerance::shadeThickness, &sum = tolerance::shadeSum;
+    const struct {
+        const char *name, *range;
+        Kind kind;
+        const tolerance::Tolerance& limit;
+        size_t points;
+    } rows[] = {
+        {"scattered light, directional", diffuse, {directional, light, false, diffusely}, term, 100000},
+        {"scattered light, point light", diffuse, {point, light, false, diffusely}, term, 100000},
+        {"scattered light, spot light", diffuse, {spot, light, false, diffusely}, term, 100000},
+        {"deep scatter, parallel map", through, {directional, light, false, deeply}, term, 100000},
+        {"deep scatter, perspective map", through, {point, light, false, deeply}, term, 100000},
+        {"thickness of noise, parallel map", through, {directional, light, false, thickness}, depth, 100000},
+        {"thickness of noise, perspective map", through, {point, light, false, thickness}, depth, 100000},
+        {"specular, Beckmann", shine, {directional, half, false, shining}, sum, 200000},
+        {"specular, GGX", shine, {directional, half, true, shining}, sum, 200000},
+        {"ambient, constant", white, {constant, light, false, diffusely}, term, 50000},
+        {"ambient, harmonics", white, {harmonics, light, false, diffusely}, term, 50000},
+        {"ambient, cube map", white, {cube, light, false, diffusely}, term, 50000},
+        {"radiance, all terms", shine, {Lit::all, half, false, PEL_SLOT_RADIANCE}, sum, 200000}};
+    std::vector<Operation> operations;
+    for (const auto& row : rows) {
+        const Unit unit = row.kind.output == thickness ? Unit::length : Unit::absolute;
+        const auto make = [kind = row.kind](const std::vector<Point>& points) {
+            const auto pixels = std::make_shared<Shading>(kind, points);
+            return Case{[=](Jitter& j) { pixels->move(j); }, [=] { return pixels->measured(); },
+                        [=] { return pixels->truth(); }, whereOf(kind, points[0])};
+        };
+        Operation& o = operations.emplace_back(
+            Operation{{row.name, row.range, unit, row.limit, dimensions, row.points}, make, 512, {}});
+        if (row.kind.output == shining) o.axis = Axis{roughness, 0.03, 1, "roughness"};
+    }
     return operations;
 }
 

@@ -67,40 +67,21 @@ struct Axis {
     const char* label;
 };
 
+// The same inputs on the device and in the oracle; as many values for each point that it is made of. A truth
+// of NaN is left out: there the result depends on a threshold.
+struct Case {
+    std::function<void(Jitter&)> move;
+    std::function<std::vector<float>()> measured;
+    std::function<std::vector<double>()> truth;
+    std::string where;  // of the first point
+};
+
 struct Operation {
     Header header;
-    size_t batch = 1;  // points that one evaluation takes
-    // Seed 0: of the device against the oracle; else of the oracle against itself, its inputs moved by
-    // Jitter(seed).
-    std::function<std::vector<double>(const std::vector<Point>&, uint32_t seed)> errors;
-    std::function<std::string(const Point&)> where;
+    std::function<Case(const std::vector<Point>&)> make;
+    size_t batch = 1;  // points of a case
     std::optional<Axis> axis;
 };
-
-// One launch for one point, whose answer has many values. A truth of NaN is left out: there the
-// result depends on a threshold.
-class Case {
-  public:
-    virtual ~Case() = default;
-    virtual void move(Jitter& jitter) = 0;
-    virtual std::vector<float> measured() = 0;
-    virtual std::vector<double> truth() = 0;
-    virtual std::string where() = 0;
-};
-Operation operation(Header header, std::function<std::unique_ptr<Case>(const Point&)> make);
-
-// One launch for many points, each of which is a pixel.
-class Pixels {
-  public:
-    virtual ~Pixels() = default;
-    virtual void move(Jitter& jitter) = 0;
-    virtual std::vector<float> measured() = 0;            // as many values for each point
-    virtual std::vector<double> truth(size_t pixel) = 0;  // called from several threads
-};
-// The last dimension of a point chooses one of `scenes`: what is not per pixel.
-Operation operation(Header header, size_t scenes,
-                    std::function<std::unique_ptr<Pixels>(size_t scene, const std::vector<Point>&)> make,
-                    std::function<std::string(size_t scene, const Point&)> where);
 
 inline double logBetween(double t, double low, double high) {
     return low * std::pow(high / low, t);
@@ -128,21 +109,8 @@ inline const Device& device() {
 // body(i) for i below count, on all cores.
 void inParallel(size_t count, const std::function<void(size_t)>& body);
 
-struct Found {
-    double drawn = 0, worst = 0;  // of the points drawn blindly; of all
-    double inherent = 0;          // change of the oracle at the worst point if its inputs move by one ulp
-    size_t points = 0;
-    bool stopped = false;  // by the cap on time
-    std::string where;
-    std::vector<double> alongAxis;  // worst by part of the axis
-};
-// `share` of the operation's points; the same device finds the same. `seconds`: where to stop in any case.
-Found search(const Operation& operation, double share, double seconds);
-
 std::vector<Operation> tableOperations();
-std::vector<Operation> profileOperations();
 std::vector<Operation> meshOperations();
-std::vector<Operation> smoothingOperations();
 std::vector<Operation> screenOperations();
 std::vector<Operation> shadingOperations();
 

@@ -1,97 +1,265 @@
-// Look-up tables of skin: every form and axis, shadow, specular.
-#include "tables.h"
+// Look-up tables, texel by texel: of skin, by every form and axis, shadow and specular; and of every kind of
+// profile.
+#include "reference/lut.h"
+
+#include "stability.h"
 
 namespace stability {
 namespace {
 
+using reference::Rgb;
+
+// A profile on the device and in the oracle, from the same floats.
+struct Source {
+    Profile ours;
+    reference::ProfilePtr truth;
+    std::string where;
+};
+Rgb rgb(const float (&v)[3]) {
+    return {v[0], v[1], v[2]};
+}
+
+Source gaussians(const Point& p) {
+    Dice dice(1 + uint32_t(p[0] * 1000));
+    const int count = 1 + int(p[1] * 7.999);
+    const double widest = logBetween(p[2], 0.05, 50);
+    std::vector<PelGaussian> ours;
+    std::vector<reference::Gaussian> truth;
+    for (int i = 0; i < count; ++i) {
+        const PelGaussian g{float(widest * widest * logBetween(i ? dice.uniform() : 1, 1e-4, 1)),
+                            {float(dice.uniform()), float(dice.uniform()), float(dice.uniform())}};
+        ours.push_back(g);
+        truth.push_back({g.variance, rgb(g.weight)});
+    }
+    return {Profile::gaussians(ours), reference::gaussiansProfile(truth),
+            text("%.0f Gaussians, widest %.3g mm", count, widest)};
+}
+
+Source burley(const Point& p) {
+    float path[3], albedo[3];
+    for (int c = 0; c < 3; ++c) {
+        path[c] = float(logBetween(p[2], 0.05, 20) * logBetween(p[1], 1, 1.0 / (1 + 2 * c)));
+        albedo[c] = float(std::clamp(p[0] - 0.15 * c, 0.0, 1.0));
+    }
+    return {Profile::burley(path, albedo), reference::burleyProfile(rgb(path), rgb(albedo)),
+            text("mean free path %.3g to %.3g mm, albedo %.3g", path[0], path[2], albedo[0])};
+}
+
+Source dipole(const Point& p) {
+    float absorption[3], scattering[3];
+    for (int c = 0; c < 3; ++c) {
+        scattering[c] = float(logBetween(p[2], 0.05, 20) * (1 + 0.3 * c));
+        absorption[c] = float(scattering[c] * logBetween(p[0], 1e-3, 3) * (1 + c));
+    }
+    const float eta = float(between(p[1], 1.05, 2));
+    return {Profile::dipole(absorption, scattering, eta),
+            reference::dipoleProfile(rgb(absorption), rgb(scattering), eta),
+            text("absorption %.3g /mm, scattering %.3g /mm, eta %.3g", absorption[0], scattering[0], eta)};
+}
+
+Source measuredTable(const Point& p) {
+    Dice dice(1 + uint32_t(p[0] * 1000));
+    const int count = 2 + int(p[1] * 30);
+    std::vector<float> distances, values;
+    double at = p[2] < 0.5 ? 0 : dice.uniform();
+    for (int i = 0; i < count; ++i, at += logBetween(dice.uniform(), 0.05, 1)) {
+        distances.push_back(float(at));
+        for (int c = 0; c < 3; ++c) values.push_back(float(dice.uniform() * std::exp(-at / (1 + c))));
+    }
+    std::vector<double> d(distances.begin(), distances.end());
+    std::vector<Rgb> R;
+    for (size_t i = 0; i < d.size(); ++i) R.push_back({values[3 * i], values[3 * i + 1], values[3 * i + 2]});
+    return {Profile::table(distances, values), reference::tableProfile(d, R),
+            text("%.0f distances up to %.3g mm", count, d.back())};
+}
+
+// Skin of the library's own.
+Source skin() {
+    return {{}, reference::skinProfile(), ""};
+}
+
+// Every texel, or a few of them (`all` false) where the oracle is slow.
+template <class Desc>
+Case tableCase(const Desc& given, const Source& source, bool all, const std::string& where,
+               std::function<void(Desc&, Jitter&)> move,
+               std::function<std::function<Rgb(int, int)>(const Desc&)> texel) {
+    const auto desc = std::make_shared<Desc>(given);
+    desc->profile = source.ours.get();
+    std::vector<size_t> chosen;
+    const size_t count = given.width * given.height;
+    for (size_t i = all ? 0 : count / 7; i < count; i += all ? 1 : count / 5) chosen.push_back(i);
+    const auto measured = [=] {
+        const std::vector<float> texels = Lut(device(), *desc).template read<float>(PEL_LUT_FLOAT);
+        std::vector<float> some;
+        for (size_t i : chosen) some.insert(some.end(), &texels[3 * i], &texels[3 * i] + 3);
+        return some;
+    };
+    const auto truth = [=] {
+        std::vector<double> t(3 * chosen.size());
+        const auto at = texel(*desc);
+        inParallel(chosen.size(), [&](size_t k) {
+            const Rgb rgb = at(int(chosen[k] % desc->width), int(chosen[k] / desc->width));
+            for (int c = 0; c < 3; ++c) t[3 * k + size_t(c)] = rgb[c];
+        });
+        return t;
+    };
+    // The profile lives as long as the case.
+    return {[=](Jitter& j) { (void)source, move(*desc, j); }, measured, truth,
+            (source.where.empty() ? "" : source.where + ": ") + where};
+}
+
+Case curvatureCase(PelCurvatureLutDesc desc, const Source& source, bool all) {
+    using Desc = PelCurvatureLutDesc;
+    static constexpr reference::Form forms[] = {reference::Form::arc, reference::Form::ring,
+                                                reference::Form::halfRing, reference::Form::sphere};
+    static constexpr const char* names[] = {"arc", "ring", "half-ring", "sphere"};
+    const auto move = [](Desc& d, Jitter& j) {
+        d.radiusMin = j(d.radiusMin), d.radiusMax = j(d.radiusMax);
+        d.diffusionRadius = j(d.diffusionRadius);
+    };
+    const auto texel = [profile = source.truth](const Desc& d) -> std::function<Rgb(int, int)> {
+        const auto scaled = reference::profileForRadius(profile, d.diffusionRadius);
+        const reference::CurvatureLutSpec spec{forms[d.form], int(d.width), int(d.height), d.radiusMin,
+                                               d.radiusMax};
+        return [=](int x, int y) {
+            if (d.axis == PEL_AXIS_LINEAR) return reference::curvatureTexel(spec, *scaled, x, y);
+            const double s = -1 + 2.0 * x / (d.width - 1), low = std::sqrt(1 / double(d.radiusMax)),
+                         high = std::sqrt(1 / double(d.radiusMin)),
+                         root = low + y / (d.height - 1.0) * (high - low);
+            return reference::curvatureD(spec.form, *scaled, s * std::abs(s), 1 / (root * root));
+        };
+    };
+    return tableCase<Desc>(desc, source, all,
+                           text("radii %.3g to %.3g mm, diffusion radius %.3g mm", desc.radiusMin,
+                                desc.radiusMax, desc.diffusionRadius) +
+                               ", " + names[desc.form],
+                           move, texel);
+}
+
+// Widths and sharpening refer to the diffusion radius of desc, lengths of the profile to its own.
+Case shadowCase(PelShadowLutDesc desc, const Source& source, bool all) {
+    using Desc = PelShadowLutDesc;
+    const auto move = [](Desc& d, Jitter& j) {
+        d.widthMin = j(d.widthMin), d.widthMax = j(d.widthMax);
+        d.diffusionRadius = j(d.diffusionRadius), d.sharpening = std::max(1.0f, j(d.sharpening));
+    };
+    const auto texel = [profile = source.truth](const Desc& d) -> std::function<Rgb(int, int)> {
+        const reference::ShadowLutSpec spec{int(d.width), int(d.height),     d.widthMin,
+                                            d.widthMax,   d.diffusionRadius, d.sharpening};
+        return [=](int x, int y) { return reference::shadowTexel(spec, *profile, x, y); };
+    };
+    return tableCase<Desc>(desc, source, all,
+                           text("widths %.3g to %.3g mm, diffusion radius %.3g mm, sharpening %.3g",
+                                desc.widthMin, desc.widthMax, desc.diffusionRadius, desc.sharpening),
+                           move, texel);
+}
+
 constexpr const char* curvatureRange =
     "radii 0.01 to 10,000 mm, ratio of the two 1.1 to 10,000; diffusion radius 0.1 to 100 mm";
 
-void radii(PelCurvatureLutDesc& desc, const Point& p) {
-    desc.radiusMin = float(logBetween(p[0], 0.01, 1000));
-    desc.radiusMax = std::min(1e4f, float(desc.radiusMin * logBetween(p[1], 1.1, 1e4)));
-    desc.radiusMax = std::max(desc.radiusMax, 1.1f * desc.radiusMin);
-    desc.diffusionRadius = float(logBetween(p[2], 0.1, 100));
-}
-
-Operation curvatureTable(const char* name, PelCurvatureForm form, size_t points) {
-    return operation({name, curvatureRange, Unit::absolute, tolerance::lutTexelGaussians, 3, points},
-                     [form](const Point& p) {
-                         PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
-                         desc.form = form, desc.width = 15, desc.height = 6;
-                         radii(desc, p);
-                         return std::make_unique<CurvatureTable>(desc, reference::skinProfile(), true);
-                     });
-}
-
-Operation rootAxis() {
-    return operation({"curvature table, root axis", std::string(curvatureRange) + "; all forms",
-                      Unit::absolute, tolerance::lutTexelGaussians, 4, 250},
-                     [](const Point& p) {
-                         PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
-                         desc.form = PelCurvatureForm(p[3] * 3.999), desc.axis = PEL_AXIS_ROOT;
-                         desc.width = 15, desc.height = 5;
-                         radii(desc, p);
-                         return std::make_unique<CurvatureTable>(desc, reference::skinProfile(), true);
-                     });
+// Of any form if `form` is negative.
+Operation curvatureTable(const std::string& name, int form, PelLutAxis axis, size_t points) {
+    return {{"curvature table, " + name, std::string(curvatureRange) + (form < 0 ? "; all forms" : ""),
+             Unit::absolute, tolerance::lutTexelGaussians, form < 0 ? 4u : 3u, points},
+            [=](const std::vector<Point>& at) {
+                const Point& p = at[0];
+                PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
+                desc.form = PelCurvatureForm(form < 0 ? int(p[3] * 3.999) : form), desc.axis = axis;
+                desc.width = 15, desc.height = axis == PEL_AXIS_ROOT ? 5 : 6;
+                desc.radiusMin = float(logBetween(p[0], 0.01, 1000));
+                desc.radiusMax = std::min(1e4f, float(desc.radiusMin * logBetween(p[1], 1.1, 1e4)));
+                desc.radiusMax = std::max(desc.radiusMax, 1.1f * desc.radiusMin);
+                desc.diffusionRadius = float(logBetween(p[2], 0.1, 100));
+                return curvatureCase(desc, skin(), true);
+            }};
 }
 
 Operation shadowTable() {
-    return operation(
-        {"shadow table", "widths 0.1 to 10,000 mm; diffusion radius 0.1 to 100 mm; sharpening 1 to 100",
-         Unit::absolute, tolerance::lutTexelGaussians, 4, 400},
-        [](const Point& p) {
-            PelShadowLutDesc desc = pelShadowLutDescFaceWorks();
-            desc.width = 31, desc.height = 6;
-            desc.widthMin = float(logBetween(p[0], 0.1, 1000));
-            desc.widthMax = float(desc.widthMin * logBetween(p[1], 1.1, 10));
-            desc.diffusionRadius = float(logBetween(p[2], 0.1, 100));
-            desc.sharpening = float(logBetween(p[3], 1, 100));
-            return std::make_unique<ShadowTable>(desc, reference::skinProfile());
-        });
+    return {{"shadow table", "widths 0.1 to 10,000 mm; diffusion radius 0.1 to 100 mm; sharpening 1 to 100",
+             Unit::absolute, tolerance::lutTexelGaussians, 4, 400},
+            [](const std::vector<Point>& at) {
+                const Point& p = at[0];
+                PelShadowLutDesc desc = pelShadowLutDescFaceWorks();
+                desc.width = 31, desc.height = 6;
+                desc.widthMin = float(logBetween(p[0], 0.1, 1000));
+                desc.widthMax = float(desc.widthMin * logBetween(p[1], 1.1, 10));
+                desc.diffusionRadius = float(logBetween(p[2], 0.1, 100));
+                desc.sharpening = float(logBetween(p[3], 1, 100));
+                return shadowCase(desc, skin(), true);
+            }};
 }
 
-class SpecularTable : public Case {
-  public:
-    explicit SpecularTable(const Point& p) {
-        desc_.width = uint32_t(logBetween(p[0], 1, 2000));
-        desc_.height = uint32_t(logBetween(p[1], 1, 200));
-    }
-    void move(Jitter&) override {}  // two whole numbers are all it hangs on
-    std::vector<float> measured() override {
-        const auto texels = Lut(device(), desc_).read<float>(PEL_LUT_FLOAT);
-        std::vector<float> one;
-        for (size_t i = 0; i < texels.size(); i += 3) one.push_back(texels[i]);
-        return one;
-    }
-    std::vector<double> truth() override {
-        std::vector<double> t(size_t(desc_.width) * desc_.height);
-        inParallel(desc_.height, [&](size_t y) {
-            for (uint32_t x = 0; x < desc_.width; ++x)
-                t[y * desc_.width + x] =
-                    reference::beckmannEncoded((x + 0.5) / desc_.width, (double(y) + 0.5) / desc_.height);
-        });
-        return t;
-    }
-    std::string where() override { return text("%.0f x %.0f texels", desc_.width, desc_.height); }
+Operation specularTable() {
+    return {
+        {"specular table", "1 to 2,000 by 1 to 200 texels: roughness from 0.0025", Unit::absolute,
+         tolerance::lutTexelGaussians, 2, 100},
+        [](const std::vector<Point>& at) {
+            PelSpecularLutDesc desc = pelSpecularLutDescDefaults();
+            desc.width = uint32_t(logBetween(at[0][0], 1, 2000));
+            desc.height = uint32_t(logBetween(at[0][1], 1, 200));
+            const auto measured = [=] {
+                const auto texels = Lut(device(), desc).read<float>(PEL_LUT_FLOAT);
+                std::vector<float> one;
+                for (size_t i = 0; i < texels.size(); i += 3) one.push_back(texels[i]);
+                return one;
+            };
+            const auto truth = [=] {
+                std::vector<double> t(size_t(desc.width) * desc.height);
+                inParallel(t.size(), [&](size_t i) {
+                    t[i] = reference::beckmannEncoded((double(i % desc.width) + 0.5) / desc.width,
+                                                      (double(i / desc.width) + 0.5) / desc.height);
+                });
+                return t;
+            };
+            // Two whole numbers are all it hangs on.
+            return Case{[](Jitter&) {}, measured, truth, text("%.0f x %.0f texels", desc.width, desc.height)};
+        }};
+}
 
-  private:
-    PelSpecularLutDesc desc_ = pelSpecularLutDescDefaults();
-};
+Operation tables(const char* name, const char* range, Source (*make)(const Point&),
+                 const tolerance::Tolerance& limit, size_t points) {
+    return {{std::string("tables of ") + name,
+             std::string(range) + "; radii 0.05 to 10,000 of the profile's; four forms, and shadow",
+             Unit::absolute, limit, 7, points},
+            [make](const std::vector<Point>& at) {
+                const Point& p = at[0];
+                const Source source = make(p);
+                const double radius = source.truth->radius();
+                if (p[3] > 0.8) {
+                    PelShadowLutDesc desc = pelShadowLutDescFaceWorks();
+                    desc.width = 15, desc.height = 5, desc.diffusionRadius = float(radius);
+                    desc.widthMin = float(radius * logBetween(p[4], 0.5, 10));
+                    desc.widthMax = float(desc.widthMin * logBetween(p[5], 1.1, 20));
+                    desc.sharpening = float(logBetween(p[6], 1, 100));
+                    return shadowCase(desc, source, false);
+                }
+                PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
+                desc.form = PelCurvatureForm(p[3] * 4.999), desc.axis = PEL_AXIS_ROOT;
+                desc.width = 15, desc.height = 5, desc.diffusionRadius = float(radius);
+                desc.radiusMin = float(radius * logBetween(p[4], 0.05, 10));
+                desc.radiusMax = float(desc.radiusMin * logBetween(p[5], 1.1, 1000));
+                return curvatureCase(desc, source, false);
+            }};
+}
 
 }  // namespace
 
 std::vector<Operation> tableOperations() {
-    std::vector<Operation> all{curvatureTable("curvature table, arc", PEL_FORM_ARC, 500),
-                               curvatureTable("curvature table, ring", PEL_FORM_RING, 500),
-                               curvatureTable("curvature table, half-ring", PEL_FORM_HALF_RING, 400),
-                               curvatureTable("curvature table, sphere", PEL_FORM_SPHERE, 150),
-                               rootAxis(),
-                               shadowTable()};
-    all.push_back(operation({"specular table", "1 to 2,000 by 1 to 200 texels: roughness from 0.0025",
-                             Unit::absolute, tolerance::lutTexelGaussians, 2, 100},
-                            [](const Point& p) { return std::make_unique<SpecularTable>(p); }));
-    return all;
+    return {curvatureTable("arc", PEL_FORM_ARC, PEL_AXIS_LINEAR, 500),
+            curvatureTable("ring", PEL_FORM_RING, PEL_AXIS_LINEAR, 500),
+            curvatureTable("half-ring", PEL_FORM_HALF_RING, PEL_AXIS_LINEAR, 400),
+            curvatureTable("sphere", PEL_FORM_SPHERE, PEL_AXIS_LINEAR, 150),
+            curvatureTable("root axis", -1, PEL_AXIS_ROOT, 250),
+            shadowTable(),
+            specularTable(),
+            tables("Gaussians", "1 to 8 Gaussians, the widest 0.05 to 50 mm", gaussians,
+                   tolerance::lutTexelGaussians, 400),
+            tables("Burley's profile", "mean free path 0.01 to 20 mm, albedo 0 to 1", burley,
+                   tolerance::lutTexelOther, 60),
+            tables("the dipole", "scattering 0.05 to 32 /mm, absorption 0.001 to 9 of it, eta 1.05 to 2",
+                   dipole, tolerance::lutTexelOther, 80),
+            tables("measurements", "2 to 32 distances, values at random", measuredTable,
+                   tolerance::lutTexelOther, 80)};
 }
 
 }  // namespace stability

@@ -10,9 +10,8 @@
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/input_file.h"
-#include "measure/compare.h"
 #include "measure/measure.h"
-#include "measure/page.h"
+#include "measure/report.h"
 #include "system/process.h"
 
 namespace pellucid::cli {
@@ -79,12 +78,7 @@ void measure(const Arguments& a) {
     if (a.output.empty()) throw UsageError("-o is needed: a folder for bench.json and bench.html");
     const std::string jsonPath = a.output + "/bench.json", htmlPath = a.output + "/bench.html";
     const std::vector<std::string> chosen = chosenDevices(a);
-    try {
-        std::filesystem::create_directories(a.output);
-        io::checkWritable(jsonPath);
-    } catch (const std::exception& e) {
-        throw UsageError("-o " + a.output + ": " + e.what());
-    }
+    checkFolder(a.output, "bench.json");
     std::signal(SIGINT, [](int signal) {
         stopped = true;
         std::signal(signal, SIG_DFL);
@@ -176,41 +170,34 @@ void compare(const Arguments& a) {
 
 }  // namespace
 
-void addBench(Command& app) {
-    Command* command =
-        app.addCommand("bench", "Measure every operation: time, share of the device's limits, error");
+void addBench(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("bench", "Measure every operation: time, share of the device's limits, error");
     auto a = std::make_shared<Arguments>();
-    command->addOption("-o,--output", a->output, "folder for bench.json and bench.html");
-    command
-        ->addOption("--device", a->devices,
-                    "number, name or type; may be given several times (default: all but simulators)")
-        ->typeName(deviceWord)
-        ->oneEach();
-    command
-        ->addOption("--only", a->only,
-                    "part of an operation's name; may be given several times (default: all)")
-        ->typeName("NAME")
-        ->oneEach();
-    command->addFlag("--quick", a->quick, "small sizes and few repetitions: some seconds");
-    command
-        ->addOption("--limit", a->limitSeconds,
-                    "seconds that an operation may take to be prepared, and again to be measured, before it "
-                    "is given up (120; "
-                    "with --quick 60)")
-        ->check(isPositive());
-    command->addFlag("--events", a->events, "")->hidden();
-    command->addOption("--without", a->without, "")->oneEach()->hidden();
-    command->addFlag("--json", a->json, "print one JSON object on standard output");
-    command->addFlag("--first-use", a->firstUse,
-                     "time from nothing to the first table and frame, in this process alone");
-    Command* two = command->addCommand(
+    option(*command, "-o,--output", a->output, "folder for bench.json and bench.html");
+    option(*command, "--device", a->devices,
+           "number, name or type; may be given several times (default: all but simulators)", Word{deviceWord},
+           oneEach);
+    option(*command, "--only", a->only,
+           "part of an operation's name; may be given several times (default: all)", Word{"NAME"}, oneEach);
+    option(*command, "--quick", a->quick, "small sizes and few repetitions: some seconds");
+    option(*command, "--limit", a->limitSeconds,
+           "seconds that an operation may take to be prepared, and again to be measured, before it is given "
+           "up (120; with --quick 60)",
+           isPositive());
+    option(*command, "--events", a->events, "", hidden);
+    option(*command, "--without", a->without, "", oneEach, hidden);
+    jsonOption(*command, a->json);
+    option(*command, "--first-use", a->firstUse,
+           "time from nothing to the first table and frame, in this process alone");
+    CLI::App* two = command->add_subcommand(
         "compare", "Two reports: what became slower, less accurate or fails (exit code 1), what faster");
-    two->addOption("old", a->before, "bench.json, or the folder that -o wrote it into")->required();
-    two->addOption("new", a->after, "the same of the other run, or of another device")->required();
-    two->addFlag("--json", a->json, "print one JSON object on standard output");
+    option(*two, "old", a->before, "bench.json, or the folder that -o wrote it into", required);
+    option(*two, "new", a->after, "the same of the other run, or of another device", required);
+    jsonOption(*two, a->json);
     two->callback([a] { compare(*a); });
     command->callback([a, two] {
-        if (!two->isUsed()) measure(*a);
+        if (!two->parsed()) measure(*a);
     });
 }
 

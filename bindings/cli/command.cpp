@@ -1,11 +1,20 @@
 #include "command.h"
 
 #include <atomic>
+#include <cctype>
 #include <charconv>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
+#include <functional>
 #include <iostream>
+#include <sstream>
 
+#include "io/atomic_file.h"
+#include "io/file_error.h"
+#include "io/input_file.h"
+#include "io/spelling.h"
 #include "system/process.h"
 
 namespace pellucid::cli {
@@ -19,7 +28,78 @@ void onInterrupt(int signal) {
     std::signal(signal, SIG_DFL);
 }
 
+// `fits`: whether a number is allowed; `what` describes the allowed numbers.
+template <class Number>
+CLI::Validator numbers(const std::string& what, const std::string& description,
+                       std::function<bool(Number)> fits) {
+    return CLI::Validator(
+        [what, fits](std::string& given) {
+            Number number{};
+            const char *begin = given.data() + given.starts_with('+'), *end = given.data() + given.size();
+            const auto [at, error] = std::from_chars(begin, end, number);
+            const bool read = error == std::errc() && at == end;
+            return read && fits(number) ? std::string() : "'" + given + "' is not " + what;
+        },
+        description);
+}
+
+template <class Number>
+CLI::Validator range(const std::string& kind, Number low, Number high) {
+    std::ostringstream what;
+    what << "a " << kind << " from " << low << " to " << high;
+    std::ostringstream description;
+    description << low << " to " << high;
+    return numbers<Number>(what.str(), description.str(), [=](Number n) { return n >= low && n <= high; });
+}
+
 }  // namespace
+
+CLI::Validator isOneOf(std::vector<std::string> names) {
+    std::string list, description;
+    for (const std::string& name : names) {
+        list += (list.empty() ? "" : ", ") + name;
+        description += (description.empty() ? "{" : ",") + name;
+    }
+    return CLI::Validator(
+        [names = std::move(names), list](std::string& given) {
+            std::string small = given;
+            std::ranges::transform(small, small.begin(),
+                                   [](unsigned char c) { return char(std::tolower(c)); });
+            if (std::ranges::find(names, small) != names.end()) {
+                given = small;
+                return std::string();
+            }
+            const std::string nearest = io::nearestWord(small, names);
+            return "there is no '" + given + "'; " +
+                   (nearest.empty() ? "" : "did you mean " + nearest + "? ") + "there are " + list;
+        },
+        description + "}");
+}
+
+CLI::Validator isOneOf(std::span<const std::string_view> names, const std::vector<std::string>& more) {
+    std::vector<std::string> all(names.begin(), names.end());
+    all.insert(all.end(), more.begin(), more.end());
+    return isOneOf(std::move(all));
+}
+
+CLI::Validator inRange(int low, int high) {
+    return range("whole number", low, high);
+}
+CLI::Validator inRange(double low, double high) {
+    return range("number", low, high);
+}
+
+CLI::Validator isPositive() {
+    return numbers<double>("a number above 0", "above 0", [](double n) { return std::isfinite(n) && n > 0; });
+}
+CLI::Validator isNotNegative() {
+    return numbers<double>("a number from 0 on", "from 0 on",
+                           [](double n) { return std::isfinite(n) && n >= 0; });
+}
+
+bool readNumber(const std::string& text, float& number) {
+    return CLI::detail::lexical_cast(text, number);
+}
 
 Run::Run(const Options& options)
     : options_(options),
@@ -91,14 +171,54 @@ std::string jsonText(const nlohmann::ordered_json& value, int indent) {
     return value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-void addRunOptions(Command& command, Run::Options& options) {
-    command
-        .addOption("--device", options.device,
-                   "OpenCL device: number, name or type (default: PELLUCID_DEVICE, best GPU, CPU)")
-        ->typeName(deviceWord);
-    command.addFlag("--json", options.json, "print one JSON object on standard output");
-    command.addFlag("--strict", options.strict,
-                    "what would be a warning is an error: exit code 3, and nothing is written");
+void apply(CLI::Option& option, Word word) {
+    option.type_name(word.of);
+}
+void apply(CLI::Option& option, Count count) {
+    option.expected(count.values);
+}
+void apply(CLI::Option& option, Needs needs) {
+    option.needs(needs.other);
+}
+void apply(CLI::Option& option, const CLI::Validator& check) {
+    option.check(check);
+}
+void apply(CLI::Option& option, Mark mark) {
+    if (mark == required) option.required();
+    if (mark == shown) option.capture_default_str();
+    if (mark == oneEach || mark == separated) option.allow_extra_args(false);
+    if (mark == separated) option.delimiter(',');
+    if (mark == hidden) option.group("");
+}
+
+void checkOutput(const std::string& path, std::initializer_list<std::string_view> extensions) {
+    try {
+        io::requireExtension(path, extensions);
+        io::checkWritable(path);
+    } catch (const io::FileError& e) {
+        throw UsageError(e.what());
+    }
+}
+
+void checkFolder(const std::string& folder, const std::string& file) {
+    try {
+        std::filesystem::create_directories(folder);
+        io::checkWritable(folder + "/" + file);
+    } catch (const std::exception& e) {
+        throw UsageError("-o " + folder + ": " + e.what());
+    }
+}
+
+void jsonOption(CLI::App& app, bool& json) {
+    option(app, "--json", json, "print one JSON object on standard output");
+}
+
+void addRunOptions(CLI::App& command, Run::Options& options) {
+    option(command, "--device", options.device,
+           "OpenCL device: number, name or type (default: PELLUCID_DEVICE, best GPU, CPU)", Word{deviceWord});
+    jsonOption(command, options.json);
+    option(command, "--strict", options.strict,
+           "what would be a warning is an error: exit code 3, and nothing is written");
 }
 
 void parseSize(const std::string& text, uint32_t& width, uint32_t& height) {

@@ -1,16 +1,17 @@
 // What every subcommand of `pellucid` shares: the device, the report, progress, exit codes.
 #pragma once
+#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <pellucid/pellucid.hpp>
+#include <span>
 #include <stdexcept>
 #include <string>
-
-#include "options.h"
-#include "values.h"
+#include <string_view>
+#include <vector>
 
 namespace pellucid::cli {
-
 // exitWorse: `bench compare` found something slower or less accurate.
 enum ExitCode { exitDone = 0, exitWorse = 1, exitWrongUse = 2, exitBadInput = 3, exitNoDevice = 4 };
 
@@ -67,34 +68,111 @@ class Run {
     static int onProgress(void* user, double fraction, const char* what);
 };
 
+// The time that `work` takes.
+template <class Work>
+double milliseconds(Work&& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
 // One JSON object on standard output. Names of files that are no UTF-8 come with U+FFFD for what is none:
 // JSON has no other bytes.
 void printJson(const nlohmann::ordered_json& report);
 std::string jsonText(const nlohmann::ordered_json& value, int indent = 2);
 
+// Checks of option values. CLI11's own checks answer a wrong value with lists of names and numbers, let NaN
+// pass, and print the largest double in full. The description of a check is its range, "0 to 1000", or its
+// words, "{y,z}".
+//
+// One of these words, in small or capital letters.
+CLI::Validator isOneOf(std::vector<std::string> names);
+
+// Choices by the names that files have for them (io/choice_keys.h).
+CLI::Validator isOneOf(std::span<const std::string_view> names, const std::vector<std::string>& more = {});
+template <class Enum>
+Enum chosen(std::span<const std::string_view> names, const std::string& name) {
+    return Enum(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+// Whole numbers, and numbers, from `low` to `high`; both belong to them.
+CLI::Validator inRange(int low, int high);
+CLI::Validator inRange(double low, double high);
+
+// Whether the whole text is a number.
+bool readNumber(const std::string& text, float& number);
+
+// Finite numbers above 0; from 0 on.
+CLI::Validator isPositive();
+CLI::Validator isNotNegative();
+
+// What can follow the help of an option, beside the check of its values.
+struct Word {
+    const char* of;  // the value, in the help; without one a text is a path
+};
+struct Count {
+    int values;
+};
+struct Needs {
+    CLI::Option* other;
+};
+// shown: the value that the variable has now is the default in the help. oneEach: of several values, each is
+// given by the option's name. separated: by commas.
+enum class Mark { required, shown, oneEach, separated, hidden };
+using enum Mark;
+
+void apply(CLI::Option& option, Word word);
+void apply(CLI::Option& option, Count count);
+void apply(CLI::Option& option, Needs needs);
+void apply(CLI::Option& option, Mark mark);
+void apply(CLI::Option& option, const CLI::Validator& check);
+
+// Adds an option, or a flag where the value is a bool.
+template <class Value, class... More>
+CLI::Option* option(CLI::App& app, const char* names, Value& value, const std::string& help,
+                    const More&... more) {
+    CLI::Option* added = nullptr;
+    if constexpr (std::is_same_v<Value, bool>)
+        added = app.add_flag(names, value, help);
+    else
+        added = app.add_option(names, value, help);
+    (apply(*added, more), ...);
+    return added;
+}
+void jsonOption(CLI::App& app, bool& json);
+
+// Before any work, throw UsageError unless the file, of one of these extensions, can be written; or `file` in
+// the folder of -o, which is made if need be.
+void checkOutput(const std::string& path, std::initializer_list<std::string_view> extensions);
+void checkFolder(const std::string& folder, const std::string& file);
+
 // Adds --device, --json and --strict.
-void addRunOptions(Command& command, Run::Options& options);
+void addRunOptions(CLI::App& command, Run::Options& options);
 
 // "WxH" to two numbers; throws UsageError.
 void parseSize(const std::string& text, uint32_t& width, uint32_t& height);
 
 // Each file of this folder adds one subcommand.
-void addDevices(Command& app);
-void addCurvature(Command& app);
-void addLut(Command& app);
-void addProfile(Command& app);
-void addBatch(Command& app);
-void addShade(Command& app);
-void addReference(Command& app);
-void addImport(Command& app);
-void addCompare(Command& app);
-void addWarmUp(Command& app);
-void addDemo(Command& app);
-void addBench(Command& app);
-void addView(Command& app);  // and gallery
-void addDescribe(Command& app, const CLI::App& parser);
+void addDevices(CLI::App& app);
+void addCurvature(CLI::App& app);
+void addLut(CLI::App& app);
+void addProfile(CLI::App& app);
+void addBatch(CLI::App& app);
+void addShade(CLI::App& app);
+void addReference(CLI::App& app);
+void addImport(CLI::App& app);
+void addCompare(CLI::App& app);
+void addWarmUp(CLI::App& app);
+void addDemo(CLI::App& app);
+void addBench(CLI::App& app);
+void addView(CLI::App& app);  // and gallery
+void addDescribe(CLI::App& app);
 
-// Names of types (Option::typeName) for which shells complete values. A text without a name of its own is a
+std::shared_ptr<CLI::FormatterBase> helpFormatter();
+// After CLI::ExtrasError: which words are not expected, and what may have been meant.
+std::string unknownOptions(const CLI::App& app);
+
+// Names of types (Word) for which shells complete values. A text without a name of its own is a
 // path.
 constexpr const char *deviceWord = "DEVICE", *profileWord = "PROFILE";
 

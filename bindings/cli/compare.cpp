@@ -187,14 +187,7 @@ void run(const Arguments& a) {
     if (a.gbuffer.empty() != a.scene.empty())
         throw UsageError(
             "--gbuffer and --scene go together: the scene file names the channels of the G-buffer");
-    if (!a.picture.empty()) {
-        try {
-            io::requireExtension(a.picture, {"png"});
-            io::checkWritable(a.picture);
-        } catch (const io::FileError& e) {
-            throw UsageError(e.what());
-        }
-    }
+    if (!a.picture.empty()) checkOutput(a.picture, {"png"});
     const Rgb one = readRgb(a.a, a.channelsA, a.scaleA);
     Rgb two = readRgb(a.b, a.channelsB, a.scaleB);
     requireSameSize(a.a, one, a.b, two);
@@ -253,37 +246,31 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void addCompare(Command& app) {
-    Command* command =
-        app.addCommand("compare", "How far two pictures are apart: RMSE, PSNR, P99, CIEDE2000");
+void addCompare(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("compare", "How far two pictures are apart: RMSE, PSNR, P99, CIEDE2000");
     auto a = std::make_shared<Arguments>();
-    command->addOption("a", a->a, "EXR, NPY, or an 8-bit picture, which is decoded from sRGB")->required();
-    command->addOption("b", a->b, "reference to compare A with")->required();
-    command->addOption(
-        "--second-half", a->secondHalf,
-        "if B is noisy: an independent estimate with the same noise, which is then left out of "
-        "the RMSE (default: the layer Second of B, beside First)");
-    command->addOption("--layer-a", a->channelsA, "layer of A: its .R, .G and .B instead of R, G, B")
-        ->typeName("NAME");
-    command->addOption("--layer-b", a->channelsB, "layer of B, such as Surface")->typeName("NAME");
-    command->addOption("--scale-a", a->scaleA, "multiplies A")->showDefault();
-    command->addOption("--scale-b", a->scaleB, "multiplies B, such as by an albedo")->showDefault();
-    command->addOption(
-        "--gbuffer", a->gbuffer,
-        "multi-layer EXR: only pixels of a material count; errors are given for each sub-set of them");
-    command->addOption("--scene", a->scene, "its scene file (TOML)");
-    command->addOption("--light", a->light, "number of the light that sub-sets go by")->showDefault();
-    command
-        ->addOption("--unit-mm", a->unit, "millimetres per unit of positions (default: the scene's unit_mm)")
-        ->check(isPositive());
-    command->addOption("--picture", a->picture,
-                       "PNG to write: both pictures, and their difference in colours");
-    command->addOption("--exposure", a->exposure, "multiplies both pictures in it")->showDefault();
-    command
-        ->addOption("--max-rmse", a->maxRmse,
-                    "exit with 1 if the RMSE over all channels is larger, or a value is NaN or Inf")
-        ->check(isNotNegative());
-    command->addFlag("--json", a->json, "print one JSON object on standard output");
+    option(*command, "a", a->a, "EXR, NPY, or an 8-bit picture, which is decoded from sRGB", required);
+    option(*command, "b", a->b, "reference to compare A with", required);
+    option(*command, "--second-half", a->secondHalf,
+           "if B is noisy: an independent estimate with the same noise, which is then left out of the RMSE "
+           "(default: the layer Second of B, beside First)");
+    option(*command, "--layer-a", a->channelsA, "layer of A: its .R, .G and .B instead of R, G, B",
+           Word{"NAME"});
+    option(*command, "--layer-b", a->channelsB, "layer of B, such as Surface", Word{"NAME"});
+    option(*command, "--scale-a", a->scaleA, "multiplies A", shown);
+    option(*command, "--scale-b", a->scaleB, "multiplies B, such as by an albedo", shown);
+    option(*command, "--gbuffer", a->gbuffer,
+           "multi-layer EXR: only pixels of a material count; errors are given for each sub-set of them");
+    option(*command, "--scene", a->scene, "its scene file (TOML)");
+    option(*command, "--light", a->light, "number of the light that sub-sets go by", shown);
+    option(*command, "--unit-mm", a->unit, "millimetres per unit of positions (default: the scene's unit_mm)",
+           isPositive());
+    option(*command, "--picture", a->picture, "PNG to write: both pictures, and their difference in colours");
+    option(*command, "--exposure", a->exposure, "multiplies both pictures in it", shown);
+    option(*command, "--max-rmse", a->maxRmse,
+           "exit with 1 if the RMSE over all channels is larger, or a value is NaN or Inf", isNotNegative());
+    jsonOption(*command, a->json);
     command->callback([a] { run(*a); });
 }
 

@@ -40,16 +40,8 @@ MeshWeldChoice weldChoice(const std::string& text) {
 }
 
 void run(const Arguments& a) {
-    try {
-        io::requireExtension(a.output, {"npy", "ply"});
-        io::checkWritable(a.output);
-        if (!a.picture.empty()) {
-            io::requireExtension(a.picture, {"png"});
-            io::checkWritable(a.picture);
-        }
-    } catch (const io::FileError& e) {
-        throw UsageError(e.what());
-    }
+    checkOutput(a.output, {"npy", "ply"});
+    if (!a.picture.empty()) checkOutput(a.picture, {"png"});
     if (!(a.params.scale >= 0 && std::isfinite(a.params.scale)))
         throw UsageError("--scale " + std::to_string(a.params.scale) +
                          ": a finite number from 0 on is needed");
@@ -108,54 +100,36 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void addCurvature(Command& app) {
-    Command* command = app.addCommand("curvature", "Curvature at each vertex of a mesh");
+void addCurvature(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("curvature", "Curvature at each vertex of a mesh");
     auto a = std::make_shared<Arguments>();
-    command->addOption("mesh", a->mesh, "OFF, OBJ, PLY or STL file")->required();
-    command
-        ->addOption("-o,--output", a->output,
-                    "file to write: .npy (one float32 per vertex) or .ply (with colours)")
-        ->required();
-    command->addOption("--estimator", a->estimator, "how curvature is estimated")
-        ->check(isOneOf(io::estimators))
-        ->showDefault();
-    command->addOption("--quantity", a->quantity, "what is made of the principal curvatures")
-        ->check(isOneOf(io::quantities))
-        ->showDefault();
-    command->addOption("--weld", a->weld, "vertices at one place are one: none, exact, or within a length")
-        ->typeName("none|exact|LENGTH")
-        ->showDefault();
-    command->addFlag("--orient", a->orient, "turns triangles that face another way than their neighbours");
-    command
-        ->addOption("--smooth-radius", a->params.smoothingRadius,
-                    "smooths to a radius in the mesh's unit of length, whatever its density")
-        ->check(isNotNegative());
-    command
-        ->addOption("--smooth-crease", a->creaseDegrees,
-                    "with --smooth-radius: degrees between normals that stop it")
-        ->check(inRange(0.0, 180.0));
-    command
-        ->addOption("--smooth-weights", a->smoothingWeights,
-                    "with --smooth-radius: how neighbours are weighed")
-        ->check(isOneOf(io::smoothingWeights))
-        ->showDefault();
-    command->addOption("--picture", a->picture,
-                       "PNG to write as well: the mesh coloured by the values, with a colour bar");
-    command
-        ->addOption("--range", a->range,
-                    "LOW HIGH: what the colours of --picture and of a .ply stand for, so that several "
-                    "compare; default: "
-                    "from the values, the sharpest places left out")
-        ->expected(2);
-    command
-        ->addOption("--up", a->up,
-                    "of the picture: the mesh's up axis, z (it looks to -y) or y (it looks to +z)")
-        ->check(isOneOf({"y", "z"}))
-        ->showDefault();
-    command->addOption("--smooth", a->params.smoothingPasses, "smoothing passes")
-        ->showDefault()
-        ->check(inRange(0, 1000));
-    command->addOption("--scale", a->params.scale, "multiplies the result")->showDefault();
+    option(*command, "mesh", a->mesh, "OFF, OBJ, PLY or STL file", required);
+    option(*command, "-o,--output", a->output,
+           "file to write: .npy (one float32 per vertex) or .ply (with colours)", required);
+    option(*command, "--estimator", a->estimator, "how curvature is estimated", isOneOf(io::estimators),
+           shown);
+    option(*command, "--quantity", a->quantity, "what is made of the principal curvatures",
+           isOneOf(io::quantities), shown);
+    option(*command, "--weld", a->weld, "vertices at one place are one: none, exact, or within a length",
+           Word{"none|exact|LENGTH"}, shown);
+    option(*command, "--orient", a->orient, "turns triangles that face another way than their neighbours");
+    option(*command, "--smooth-radius", a->params.smoothingRadius,
+           "smooths to a radius in the mesh's unit of length, whatever its density", isNotNegative());
+    option(*command, "--smooth-crease", a->creaseDegrees,
+           "with --smooth-radius: degrees between normals that stop it", inRange(0.0, 180.0));
+    option(*command, "--smooth-weights", a->smoothingWeights,
+           "with --smooth-radius: how neighbours are weighed", isOneOf(io::smoothingWeights), shown);
+    option(*command, "--picture", a->picture,
+           "PNG to write as well: the mesh coloured by the values, with a colour bar");
+    option(*command, "--range", a->range,
+           "LOW HIGH: what the colours of --picture and of a .ply stand for, so that several compare; "
+           "default: from the values, the sharpest places left out",
+           Count{2});
+    option(*command, "--up", a->up,
+           "of the picture: the mesh's up axis, z (it looks to -y) or y (it looks to +z)",
+           isOneOf({"y", "z"}), shown);
+    option(*command, "--smooth", a->params.smoothingPasses, "smoothing passes", shown, inRange(0, 1000));
+    option(*command, "--scale", a->params.scale, "multiplies the result", shown);
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });
 }

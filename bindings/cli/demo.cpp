@@ -1,21 +1,93 @@
 // pellucid demo: the whole chain on a real mesh. Load, curvature, look-up tables, G-buffer of the stand-in
 // host, shading, pictures.
 #include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "demo_pictures.h"
-#include "demo_view.h"
+#include "command.h"
+#include "demo.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "mesh_curvature.h"
 #include "scene/scene_programs.h"
-#include "stages.h"
 #include "system/process.h"
 
 namespace pellucid::cli {
 namespace {
+
+// The table of stages on stderr, one line at the end of each: time, bytes and items.
+class Stages {
+  public:
+    explicit Stages(const Run& run) : run_(run) {}
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+
+    // Says on a terminal what is being done, until its line comes.
+    static void begin(const std::string& name) {
+        if (pel::system::errorsAreSeen())
+            std::fprintf(stderr, "\r\033[K%s ...", name.c_str()), std::fflush(stderr);
+    }
+    // Runs `work` as a stage and measures wall and device time. The caller counts the work: `count` items of
+    // kind `unit`, and `bytes` read and written. Returns the wall time.
+    template <class Work>
+    double measure(const std::string& name, uint64_t count, const char* unit, uint64_t bytes, Work&& work) {
+        begin(name);
+        const double device = run_.deviceMilliseconds(), wall = milliseconds(work);
+        add(name, wall, run_.deviceMilliseconds() - device, count, unit, bytes);
+        return wall;
+    }
+    // The same for work whose kernels may have to be compiled: it is done twice, the second time is the
+    // stage's, and what the first took longer belongs to the time of preparation.
+    template <class Work>
+    void measureWarm(const std::string& name, uint64_t count, const char* unit, uint64_t bytes, Work&& work) {
+        const double first = milliseconds(work);
+        preparation_ += std::max(0.0, first - measure(name, count, unit, bytes, work));
+    }
+    // Work that makes ready for a stage: uploads, tables, kernels.
+    template <class Work>
+    void prepare(Work&& work) {
+        preparation_ += milliseconds(work);
+    }
+    // A line for what prepared the others.
+    void addPreparation() { add("uploads, compiling kernels", preparation_, 0, 0, "", 0); }
+    // A stage that was measured elsewhere; `device` is 0 for work of the host. Milliseconds.
+    void add(const std::string& name, double wall, double device, uint64_t count, const std::string& unit,
+             uint64_t bytes) {
+        constexpr double shortest = 1e-3;  // ms, for a rate; the clock may be coarse
+        const double time = device > 0 ? device : wall,
+                     rate = time >= shortest ? double(count) * 1000 / time : 0;
+        const auto cell = [](const char* format, int width, double value) {  // blank in place of 0
+            value > 0 ? std::fprintf(stderr, format, width, value) : std::fprintf(stderr, " %*s", width, "");
+        };
+        if (pel::system::errorsAreSeen()) std::fputs("\r\033[K", stderr);
+        if (list.empty())
+            std::fprintf(stderr, "%-38s %9s %10s %8s %8s  %s\n", "stage", "wall ms", "device ms", "MB", "M/s",
+                         "of");
+        std::fprintf(stderr, "%-38s %9.1f", name.c_str(), wall);
+        cell(" %*.2f", 10, device);
+        cell(" %*.1f", 8, double(bytes) * 1e-6);
+        nlohmann::ordered_json& entry = list.emplace_back(
+            nlohmann::ordered_json{{"stage", name}, {"wall_ms", wall}, {"device_ms", device}});
+        if (bytes > 0) entry["bytes"] = bytes;
+        if (count > 0) {
+            cell(" %*.1f", 8, rate * 1e-6);
+            std::fprintf(stderr, "  %llu %s", static_cast<unsigned long long>(count), unit.c_str());
+            entry[unit] = count;
+            if (rate > 0) entry[unit + "_per_second"] = rate;
+        }
+        std::fputs("\n", stderr);
+    }
+
+  private:
+    const Run& run_;
+    double preparation_ = 0;  // ms
+};
 
 // The OBJ file of the head that the demo shows when no mesh is named.
 std::string standardHead() {
@@ -175,12 +247,7 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
 void run(Arguments a) {
     if (a.mesh.empty()) a.mesh = standardHead();
     const std::vector<DemoViewRequest> wanted = requests(a);  // refuses a wrong size before any work
-    try {
-        std::filesystem::create_directories(a.output);
-        io::checkWritable(a.output + "/demo.png");
-    } catch (const std::exception& e) {
-        throw UsageError("-o " + a.output + ": " + e.what());
-    }
+    checkFolder(a.output, "demo.png");
     Run run(a.run);
     Stages stages(run);
     run.note(std::string("device: ") + run.device().info().name);
@@ -235,39 +302,32 @@ void run(Arguments a) {
     parts.shade();
     files.push_back(writeParts(a.output, backlit, parts));
     run.report["output"] = a.output;
-    run.report["stages"] = stages.json();
+    run.report["stages"] = stages.list;
     run.finish();
 }
 
 }  // namespace
 
-void addDemo(Command& app) {
-    Command* command =
-        app.addCommand("demo", "The whole chain on a mesh: curvature, tables, G-buffer, shading, pictures");
+void addDemo(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "demo", "The whole chain on a mesh: curvature, tables, G-buffer, shading, pictures");
     auto a = std::make_shared<Arguments>();
-    command->addOption(
-        "mesh", a->mesh,
-        "OFF, OBJ, PLY or STL file (default: a head that comes with pellucid, or $PELLUCID_DEMO_MESH)");
-    command->addOption("-o,--output", a->output, "folder for the pictures")->showDefault();
-    command->addFlag("--orient", a->orient,
-                     "of a mesh: turns triangles that face another way than their neighbours");
-    command->addOption("--size", a->size, "pixels, WxH")->typeName("SIZE")->showDefault();
-    command->addOption("--height", a->height, "mm that the mesh is scaled to, along its up axis")
-        ->check(isPositive())
-        ->showDefault();
-    command
-        ->addOption("--up", a->up,
-                    "the mesh's up axis: z (it looks to -y), y (it looks to +z), or auto: y for OBJ files")
-        ->check(isOneOf({"auto", "y", "z"}))
-        ->showDefault();
-    command
-        ->addOption("--subdivide", a->subdivide,
-                    "levels of subdivision (default: 2 for the heads that come with pellucid, 1 for other "
-                    "meshes that allow it)")
-        ->check(inRange(0, 4));
-    command->addOption("--smooth", a->smoothing, "smoothing passes of the curvature")
-        ->check(inRange(0, 1000))
-        ->showDefault();
+    option(*command, "mesh", a->mesh,
+           "OFF, OBJ, PLY or STL file (default: a head that comes with pellucid, or $PELLUCID_DEMO_MESH)");
+    option(*command, "-o,--output", a->output, "folder for the pictures", shown);
+    option(*command, "--orient", a->orient,
+           "of a mesh: turns triangles that face another way than their neighbours");
+    option(*command, "--size", a->size, "pixels, WxH", Word{"SIZE"}, shown);
+    option(*command, "--height", a->height, "mm that the mesh is scaled to, along its up axis", isPositive(),
+           shown);
+    option(*command, "--up", a->up,
+           "the mesh's up axis: z (it looks to -y), y (it looks to +z), or auto: y for OBJ files",
+           isOneOf({"auto", "y", "z"}), shown);
+    option(*command, "--subdivide", a->subdivide,
+           "levels of subdivision (default: 2 for the heads that come with pellucid, 1 for other meshes that "
+           "allow it)",
+           inRange(0, 4));
+    option(*command, "--smooth", a->smoothing, "smoothing passes of the curvature", inRange(0, 1000), shown);
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });
 }

@@ -1,4 +1,4 @@
-#include "demo_pictures.h"
+#include "demo.h"
 
 #include <algorithm>
 #include <cmath>
@@ -100,16 +100,6 @@ Crop brightestChange(const ShadedView& view) {
     return best;
 }
 
-// Twice as large, pixel by pixel.
-io::Picture magnified(const io::Picture& picture) {
-    io::Picture large(2 * picture.width, 2 * picture.height);
-    for (int y = 0; y < large.height; ++y)
-        for (int x = 0; x < large.width; ++x)
-            std::copy_n(&picture.rgb[3 * (size_t(y / 2) * picture.width + x / 2)], 3,
-                        &large.rgb[3 * (size_t(y) * large.width + x)]);
-    return large;
-}
-
 io::Picture curvatureMap(const DemoView& view) {
     const std::vector<float>& curvature = view.gbuffer.channel("Curvature.V").pixels;
     const std::vector<float>& material = view.gbuffer.channel("Material.I").pixels;
@@ -186,7 +176,7 @@ std::string writeSheet(const std::string& folder, const std::vector<ShadedView>&
     const Crop glow = brightestChange(lit);
     const auto close = [&](const char* title, const std::vector<float>& radiance, size_t fine) {
         tiles.push_back({std::string("from behind: ") + title,
-                         lit.fine.empty() ? magnified(cropped(developed(lit.view, radiance), glow))
+                         lit.fine.empty() ? cropped(developed(lit.view, radiance), glow)
                                           : cropped(lit.fine[fine], timesTwo(glow))});
     };
     close("Lambert", lit.lambert, 0);

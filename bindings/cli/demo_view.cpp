@@ -1,8 +1,8 @@
-#include "demo_view.h"
+#include "demo.h"
 
 #include <algorithm>
-#include <chrono>
 
+#include "command.h"
 #include "sample/gbuffer.h"
 #include "sample/shadow_map.h"
 #include "sample/sky.h"
@@ -13,13 +13,6 @@ namespace {
 
 constexpr const char *profileName = "skin", *curvatureLutName = "skin", *shadowLutName = "skin edges";
 constexpr int shadowMapSize = 2048;  // texels a side: 0.15 mm each for a head
-
-template <class Work>
-double timed(Work&& work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
 
 // Adds an image's planes as channels "NAME.X" and so on, and names them in the scene for `slot`.
 void addChannels(DemoView& view, const std::string& name, const std::string& components, const float* planes,
@@ -98,11 +91,11 @@ void addShadow(DemoView& view, const sample::Scene& mesh, const sample::GBuffer&
                const sample::DirectionalLight& direction, float filterWidth, io::SceneLight& light) {
     sample::ShadowMap map;
     view.shadowMapMilliseconds +=
-        timed([&] { map = sample::renderShadowMap(mesh, direction, shadowMapSize); });
+        milliseconds([&] { map = sample::renderShadowMap(mesh, direction, shadowMapSize); });
     sample::Image wide;
     sample::WideShadowOptions filter;
     filter.filterWidth = filterWidth;
-    view.wideShadowMilliseconds += timed([&] { wide = sample::filterWideShadow(g, map, filter); });
+    view.wideShadowMilliseconds += milliseconds([&] { wide = sample::filterWideShadow(g, map, filter); });
     light.wideShadow = lamp.name + "Shadow.V";
     view.gbuffer.channels.push_back({light.wideShadow, io::ChannelType::Float, wide.data});
     std::ranges::copy(map.worldToUvz.toFloats(), light.light.worldToShadow);
@@ -164,7 +157,8 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
         look.detail.foldSlope = 0.012;
     }
     sample::GBuffer g;
-    view.gbufferMilliseconds = timed([&] { g = sample::renderGBuffer(mesh, camera, width, height, look); });
+    view.gbufferMilliseconds =
+        milliseconds([&] { g = sample::renderGBuffer(mesh, camera, width, height, look); });
     view.gbuffer.width = width;
     view.gbuffer.height = height;
     addChannels(view, "Position", "XYZ", g.position.data.data(), PEL_SLOT_POSITION);

@@ -1,7 +1,7 @@
 // pellucid describe: every subcommand and option as one JSON object, from the parsers themselves. Manual
 // pages, completions for shells and the tables of docs/guide/command-line.md are made from it
 // (packaging/command_pages). --help shows options in the same words.
-#include "command_help.h"
+#include "command.h"
 #include "io/spelling.h"
 
 namespace pellucid::cli {
@@ -83,9 +83,9 @@ nlohmann::ordered_json described(const CLI::App& app) {
 
 }  // namespace
 
-void addDescribe(Command& app, const CLI::App& parser) {
-    app.addCommand("describe", "every subcommand and option, as JSON")->callback([&parser] {
-        printJson(described(parser));
+void addDescribe(CLI::App& app) {
+    app.add_subcommand("describe", "every subcommand and option, as JSON")->callback([&app] {
+        printJson(described(app));
     });
 }
 

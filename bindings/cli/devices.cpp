@@ -43,8 +43,8 @@ void print(const PelDeviceInfo& d, bool standard) {
 
 }  // namespace
 
-void addDevices(Command& app) {
-    Command* command = app.addCommand("devices", "List the OpenCL devices and what matters about them");
+void addDevices(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("devices", "List the OpenCL devices and what matters about them");
     auto options = std::make_shared<Run::Options>();
     addRunOptions(*command, *options);
     command->callback([options] {

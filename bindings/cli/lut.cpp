@@ -23,7 +23,7 @@ struct Arguments {
     PelShadowLutDesc shadow = pelShadowLutDescDefaults();
     PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
     PelEyeLutDesc eye = pelEyeLutDescDefaults();
-    Option* radius = nullptr;  // --diffusion-radius of the requested table
+    CLI::Option* radius = nullptr;  // --diffusion-radius of the requested table
 };
 
 // Without a radius a table of a material other than skin takes the material's radius.
@@ -31,17 +31,17 @@ template <class Desc>
 Profile takeProfile(const Arguments& arguments, Desc& desc) {
     const Profile profile = io::findProfile(arguments.profile).profile;
     desc.profile = profile.get();
-    if (arguments.radius->given() && desc.diffusionRadius == 0)
+    if (arguments.radius->count() > 0 && desc.diffusionRadius == 0)
         throw UsageError("--diffusion-radius: diffusionRadius is 0; a length above 0 is needed");
     return profile;
 }
 
 // The description of a preset with what the command line gives in the place of its own.
 template <class Desc>
-void applyPreset(Arguments& a, Desc& given, Desc preset, const Command& command,
+void applyPreset(Arguments& a, Desc& given, Desc preset, const CLI::App& command,
                  const std::vector<std::pair<const char*, float Desc::*>>& lengths) {
     for (const auto& [option, field] : lengths)
-        if (command.isGiven(option)) preset.*field = given.*field;
+        if (command.count(option) > 0) preset.*field = given.*field;
     if (!a.axis.empty()) preset.axis = chosen<PelLutAxis>(io::lutAxes, a.axis);
     given = preset;
 }
@@ -139,67 +139,58 @@ std::string sizeHelp(const Desc& material, const Desc& faceworks) {
     return "texels, WxH (default: " + size(material) + "; " + size(faceworks) + " with --preset faceworks)";
 }
 
-void addCommon(Command& command, Arguments& a, const std::string& size) {
-    command.addOption("-o,--output", a.output, "file to write: .exr, .png, .bmp, .tga, .npy, .dds or .ktx2")
-        ->required();
-    command.addOption("--size", a.size, size)->typeName("SIZE");
-    command
-        .addOption("--encoding", a.encoding,
-                   "float, half, faceworks8 (.png, .bmp, .tga for engines), or bc6h for .dds and .ktx2 "
-                   "(default: float for .exr "
-                   "and .npy, half for .dds and .ktx2; a .png without it is a picture to look at)")
-        ->check(isOneOf(io::lutEncodings, {"bc6h"}));
+void addCommon(CLI::App& command, Arguments& a, const std::string& size) {
+    option(command, "-o,--output", a.output, "file to write: .exr, .png, .bmp, .tga, .npy, .dds or .ktx2",
+           required);
+    option(command, "--size", a.size, size, Word{"SIZE"});
+    option(command, "--encoding", a.encoding,
+           "float, half, faceworks8 (.png, .bmp, .tga for engines), or bc6h for .dds and .ktx2 (default: "
+           "float for .exr and .npy, half for .dds and .ktx2; a .png without it is a picture to look at)",
+           isOneOf(io::lutEncodings, {"bc6h"}));
     addRunOptions(command, a.run);
 }
 
-Option* addProfileOptions(Command& command, Arguments& a, float& diffusionRadius) {
-    command.addOption("--profile", a.profile, "a material (pellucid profile list) or a .toml file")
-        ->typeName(profileWord)
-        ->showDefault();
-    return command.addOption("--diffusion-radius", diffusionRadius,
-                             "sigma of the widest Gaussian, mm (default: the profile's own)");
+CLI::Option* addProfileOptions(CLI::App& command, Arguments& a, float& diffusionRadius) {
+    option(command, "--profile", a.profile, "a material (pellucid profile list) or a .toml file",
+           Word{profileWord}, shown);
+    return option(command, "--diffusion-radius", diffusionRadius,
+                  "sigma of the widest Gaussian, mm (default: the profile's own)");
 }
 
 io::LutPreset presetOf(const Arguments& a) {
     return chosen<io::LutPreset>(io::lutPresets, a.preset);
 }
 
-void addPreset(Command& command, Arguments& a) {
-    command
-        .addOption("--preset", a.preset,
-                   "material: as a material makes it of its profile; faceworks: as FaceWorks does")
-        ->check(isOneOf(io::lutPresets))
-        ->showDefault();
-    command
-        .addOption("--axis", a.axis,
-                   "spread of texels: linear, or root, by which small tables look up better (default: root; "
-                   "linear with --preset faceworks)")
-        ->check(isOneOf(io::lutAxes));
+void addPreset(CLI::App& command, Arguments& a) {
+    option(command, "--preset", a.preset,
+           "material: as a material makes it of its profile; faceworks: as FaceWorks does",
+           isOneOf(io::lutPresets), shown);
+    option(command, "--axis", a.axis,
+           "spread of texels: linear, or root, by which small tables look up better (default: root; linear "
+           "with --preset faceworks)",
+           isOneOf(io::lutAxes));
 }
 
 }  // namespace
 
-void addLut(Command& app) {
-    Command* lut = app.addCommand("lut", "Integrate a look-up table");
-    lut->requireCommand();
+void addLut(CLI::App& app) {
+    CLI::App* lut = app.add_subcommand("lut", "Integrate a look-up table");
+    lut->require_subcommand(1);
     auto a = std::make_shared<Arguments>();
 
-    Command* curvature =
-        lut->addCommand("curvature", "Light scattered round a curved surface, over N.L and curvature");
+    CLI::App* curvature =
+        lut->add_subcommand("curvature", "Light scattered round a curved surface, over N.L and curvature");
     addCommon(*curvature, *a, sizeHelp(pelCurvatureLutDescDefaults(), pelCurvatureLutDescFaceWorks()));
     addPreset(*curvature, *a);
-    Option* curvatureRadius = addProfileOptions(*curvature, *a, a->curvature.diffusionRadius);
-    curvature->addOption(
-        "--radius-min", a->curvature.radiusMin,
-        "smallest radius of curvature, mm (default: a quarter of the diffusion radius; 1 with "
-        "--preset faceworks)");
-    curvature->addOption("--radius-max", a->curvature.radiusMax,
-                         "largest radius of curvature, mm (default: 1000 diffusion radii; 100 with --preset "
-                         "faceworks)");
-    curvature
-        ->addOption("--form", a->form,
-                    "geometry that light is integrated over (default: sphere; arc with --preset faceworks)")
-        ->check(isOneOf(io::curvatureForms));
+    CLI::Option* curvatureRadius = addProfileOptions(*curvature, *a, a->curvature.diffusionRadius);
+    option(*curvature, "--radius-min", a->curvature.radiusMin,
+           "smallest radius of curvature, mm (default: a quarter of the diffusion radius; 1 with --preset "
+           "faceworks)");
+    option(*curvature, "--radius-max", a->curvature.radiusMax,
+           "largest radius of curvature, mm (default: 1000 diffusion radii; 100 with --preset faceworks)");
+    option(*curvature, "--form", a->form,
+           "geometry that light is integrated over (default: sphere; arc with --preset faceworks)",
+           isOneOf(io::curvatureForms));
     curvature->callback([a, curvature, curvatureRadius] {
         a->radius = curvatureRadius;
         applyPreset(*a, a->curvature, io::presetCurvature(presetOf(*a)), *curvature,
@@ -211,21 +202,19 @@ void addLut(Command& app) {
         integrate(*a, a->curvature);
     });
 
-    Command* shadow =
-        lut->addCommand("shadow", "Light scattered across a shadow edge, over shadow value and 1/width");
+    CLI::App* shadow =
+        lut->add_subcommand("shadow", "Light scattered across a shadow edge, over shadow value and 1/width");
     addCommon(*shadow, *a, sizeHelp(pelShadowLutDescDefaults(), pelShadowLutDescFaceWorks()));
     addPreset(*shadow, *a);
-    Option* shadowRadius = addProfileOptions(*shadow, *a, a->shadow.diffusionRadius);
-    shadow->addOption(
-        "--width-min", a->shadow.widthMin,
-        "narrowest penumbra, mm (default: the filter that follows from the profile; 8 with --preset "
-        "faceworks)");
-    shadow->addOption("--width-max", a->shadow.widthMax,
-                      "widest penumbra, mm (default: 1000 times the narrowest; 100 with --preset faceworks)");
-    shadow->addOption("--sharpening", a->shadow.sharpening, "how much narrower the shadow gets, from 1")
-        ->showDefault();
-    shadow->addFlag("--open-ends", a->openEnds,
-                    "rows are not rescaled to run from 0 to 1 (--preset faceworks does not either)");
+    CLI::Option* shadowRadius = addProfileOptions(*shadow, *a, a->shadow.diffusionRadius);
+    option(*shadow, "--width-min", a->shadow.widthMin,
+           "narrowest penumbra, mm (default: the filter that follows from the profile; 8 with --preset "
+           "faceworks)");
+    option(*shadow, "--width-max", a->shadow.widthMax,
+           "widest penumbra, mm (default: 1000 times the narrowest; 100 with --preset faceworks)");
+    option(*shadow, "--sharpening", a->shadow.sharpening, "how much narrower the shadow gets, from 1", shown);
+    option(*shadow, "--open-ends", a->openEnds,
+           "rows are not rescaled to run from 0 to 1 (--preset faceworks does not either)");
     shadow->callback([a, shadow, shadowRadius] {
         a->radius = shadowRadius;
         applyPreset(*a, a->shadow, io::presetShadow(presetOf(*a)), *shadow,
@@ -238,24 +227,24 @@ void addLut(Command& app) {
         integrate(*a, a->shadow);
     });
 
-    Command* specular = lut->addCommand("specular", "Beckmann's distribution over n.h and roughness");
+    CLI::App* specular = lut->add_subcommand("specular", "Beckmann's distribution over n.h and roughness");
     addCommon(*specular, *a, "texels, WxH (default: 512x512)");
     specular->callback([a] { integrate(*a, a->specular); });
 
-    Command* eye = lut->addCommand(
+    CLI::App* eye = lut->add_subcommand(
         "eye", "Light on the iris behind a cornea, over place and the light's angle: slice below slice");
     addCommon(*eye, *a, "texels, WxHxD (default: 64x64x32)");
-    eye->addOption("--profile", a->irisProfile, "of the iris, in which light scatters (default: none)")
-        ->typeName(profileWord);
+    option(*eye, "--profile", a->irisProfile, "of the iris, in which light scatters (default: none)",
+           Word{profileWord});
     const std::pair<const char*, float*> lengths[] = {
         {"--sclera-radius", &a->eye.scleraRadius}, {"--cornea-radius", &a->eye.corneaRadius},
         {"--limbus-radius", &a->eye.limbusRadius}, {"--chamber-depth", &a->eye.chamberDepth},
         {"--iris-radius", &a->eye.irisRadius},     {"--iris-concavity", &a->eye.irisConcavity},
     };
-    for (const auto& [name, value] : lengths) eye->addOption(name, *value, "mm")->showDefault();
-    eye->addOption("--cornea-conic", a->eye.corneaConic, "conic constant")->showDefault();
-    eye->addOption("--cornea-index", a->eye.corneaIndex, "refractive index")->showDefault();
-    eye->addOption("--aqueous-index", a->eye.aqueousIndex, "refractive index")->showDefault();
+    for (const auto& [name, value] : lengths) option(*eye, name, *value, "mm", shown);
+    option(*eye, "--cornea-conic", a->eye.corneaConic, "conic constant", shown);
+    option(*eye, "--cornea-index", a->eye.corneaIndex, "refractive index", shown);
+    option(*eye, "--aqueous-index", a->eye.aqueousIndex, "refractive index", shown);
     eye->callback([a, eye] {
         Profile profile;
         if (!a->irisProfile.empty()) profile = io::findProfile(a->irisProfile).profile;

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "command_help.h"
+#include "command.h"
 #include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/spelling.h"
@@ -54,11 +54,9 @@ int main(int argc, char** argv) {
     app.set_version_flag("--version", std::to_string(PEL_VERSION_MAJOR) + "." +
                                           std::to_string(PEL_VERSION_MINOR) + "." +
                                           std::to_string(PEL_VERSION_PATCH));
-    Command root(app);
     for (const auto add : {addDevices, addCurvature, addLut, addProfile, addBatch, addShade, addReference,
-                           addImport, addCompare, addWarmUp, addDemo, addBench, addView})
-        add(root);
-    addDescribe(root, app);
+                           addImport, addCompare, addWarmUp, addDemo, addBench, addView, addDescribe})
+        add(app);
     try {
         checkSubcommand(app, argc, argv);
         app.parse(argc, argv);

@@ -4,9 +4,9 @@
 
 namespace pellucid::cli {
 
-void addReference(Command&) {}
-void addDemo(Command&) {}
-void addBench(Command&) {}
+void addReference(CLI::App&) {}
+void addDemo(CLI::App&) {}
+void addBench(CLI::App&) {}
 
 void writeCurvaturePicture(const std::string&, const io::MeshData&, const std::vector<float>&, float, float,
                            char, const std::string&) {

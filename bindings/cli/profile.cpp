@@ -157,29 +157,28 @@ void fit(const Arguments& a) {
 
 }  // namespace
 
-void addProfile(Command& app) {
-    Command* profile =
-        app.addCommand("profile", "Diffusion profiles: what materials there are and how they scatter");
-    profile->requireCommand();
+void addProfile(CLI::App& app) {
+    CLI::App* profile =
+        app.add_subcommand("profile", "Diffusion profiles: what materials there are and how they scatter");
+    profile->require_subcommand(1);
     auto a = std::make_shared<Arguments>();
     auto add = [&](const char* name, const char* what, void (*run)(const Arguments&), bool named) {
-        Command* command = profile->addCommand(name, what);
+        CLI::App* command = profile->add_subcommand(name, what);
         if (named)
-            command->addOption("name", a->name, "a material of the library or a .toml file")
-                ->typeName(profileWord)
-                ->required();
-        command->addFlag("--json", a->json, "one JSON object on stdout");
+            option(*command, "name", a->name, "a material of the library or a .toml file", Word{profileWord},
+                   required);
+        option(*command, "--json", a->json, "one JSON object on stdout");
         command->callback([a, run] { run(*a); });
         return command;
     };
     add("list", "The library of materials", list, false);
     add("show", "Widths, normal blend factors and values of one profile", show, true);
     add("plot", "Draws R and P", plot, true)
-        ->addOption("-o,--output", a->output, ".png to write")
+        ->add_option("-o,--output", a->output, ".png to write")
         ->required();
-    Command* fitting = add("fit", "The best sum of K Gaussians", fit, true);
-    fitting->addOption("--gaussians", a->gaussians, "how many")->check(inRange(1, 12))->showDefault();
-    fitting->addOption("-o,--output", a->output, "profile file (.toml) to write");
+    CLI::App* fitting = add("fit", "The best sum of K Gaussians", fit, true);
+    option(*fitting, "--gaussians", a->gaussians, "how many", inRange(1, 12), shown);
+    option(*fitting, "-o,--output", a->output, "profile file (.toml) to write");
 }
 
 }  // namespace pellucid::cli

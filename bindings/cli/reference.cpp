@@ -1,7 +1,11 @@
 // pellucid reference: the true picture, by the surface integral over the mesh or by a random walk in its
 // volume.
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "command.h"
 #include "io/atomic_file.h"
@@ -9,13 +13,229 @@
 #include "io/image/image_file.h"
 #include "io/input_file.h"
 #include "io/lut/profile_file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/mesh/mesh_parts.h"
+#include "io/scene/scene_file.h"
+#include "mesh_curvature.h"
+#include "sample/lit_mesh.h"
+#include "sample/random_walk.h"
 #include "sample/surface_light.h"
 #include "scene/scene_frame.h"
-#include "surface_reference.h"
-#include "walk_reference.h"
 
 namespace pellucid::cli {
 namespace {
+
+using RgbValues = std::array<double, 3>;
+
+sample::Vec3 vectorOf(const float (&v)[3]) {
+    return {v[0], v[1], v[2]};
+}
+
+// Irradiance / pi of the ambient light along n: real spherical harmonics of order 2 [Ramamoorthi & Hanrahan
+// 2001].
+std::array<double, 3> ambientAlong(const PelAmbient& ambient, sample::Vec3 n) {
+    const double basis[9] = {0.282095,
+                             0.488603 * n.y,
+                             0.488603 * n.z,
+                             0.488603 * n.x,
+                             1.092548 * n.x * n.y,
+                             1.092548 * n.y * n.z,
+                             0.315392 * (3 * n.z * n.z - 1),
+                             1.092548 * n.x * n.z,
+                             0.546274 * (n.x * n.x - n.y * n.y)};
+    std::array<double, 3> sum;
+    for (int c = 0; c < 3; ++c) {
+        sum[c] = ambient.constant[c];
+        for (int i = 0; i < 9; ++i) sum[c] += basis[i] * ambient.sh[i][c];
+        sum[c] = std::max(0.0, sum[c]);
+    }
+    return sum;
+}
+
+// A scene's lights, which all cast shadows, and its ambient light, which does not.
+sample::Lighting lightingOf(const io::SceneFile& scene) {
+    sample::Lighting lighting;
+    for (const io::SceneLight& l : scene.lights) {
+        sample::SurfaceLight light;
+        light.type = sample::SurfaceLight::Type(l.light.type);
+        light.toLight = normalize(vectorOf(l.light.toLight));
+        light.position = vectorOf(l.light.position);
+        light.spotDirection = normalize(vectorOf(l.light.spotDirection));
+        light.spotCosInner = l.light.spotCosInner;
+        light.spotCosOuter = l.light.spotCosOuter;
+        light.range = l.light.range;
+        for (int c = 0; c < 3; ++c) light.color[c] = l.light.color[c];
+        lighting.lights.push_back(light);
+    }
+    bool ambient = false;
+    for (float v : scene.ambient.constant) ambient = ambient || v != 0;
+    for (const auto& row : scene.ambient.sh)
+        for (float v : row) ambient = ambient || v != 0;
+    if (ambient) lighting.ambient = [a = scene.ambient](sample::Vec3 n) { return ambientAlong(a, n); };
+    return lighting;
+}
+
+struct WalkArguments {
+    bool enabled = false;
+    uint32_t samples = 64;
+    double noise = 0;
+    uint64_t seed = 1;
+    std::vector<double> reflectance;  // empty: that of the material
+    std::string boundary = "index-matched";
+};
+
+void addWalkOptions(CLI::App& command, WalkArguments& walk) {
+    CLI::Option* enabled =
+        option(command, "--walk", walk.enabled,
+               "trace light through the volume (random walk) instead of integrating the profile over the "
+               "surface; writes two independent halves, First and Second");
+    CLI::Option* samples = option(command, "--samples", walk.samples, "walks per pixel, channel and half",
+                                  inRange(1, int(sample::maxWalkSamples)), shown, Needs{enabled});
+    option(command, "--noise", walk.noise,
+           "instead of --samples: the standard error that a pixel shall have, such as 2e-3", isPositive())
+        ->excludes(samples)
+        ->needs(enabled);
+    option(command, "--seed", walk.seed, "of the random numbers; the same seed gives the same result", shown,
+           Needs{enabled});
+    option(command, "--reflectance", walk.reflectance,
+           "share of light that a large plane of the medium reflects, per channel (default: the mean albedo "
+           "of the material's pixels, or the albedo of the material)",
+           Count{3}, inRange(0.0, 1.0), Needs{enabled});
+    option(command, "--boundary", walk.boundary,
+           "index-matched, or fresnel: a smooth surface of a refractive index of 1.4",
+           isOneOf({"index-matched", "fresnel"}), shown, Needs{enabled});
+}
+
+// The medium of a Burley profile; `scale`: unit of positions per unit of the profile. No medium is known of
+// other kinds of profile.
+sample::Medium mediumOf(const WalkArguments& walk, const Profile& profile, double scale,
+                        const RgbValues& reflectance, const std::string& material) {
+    const PelProfileInfo info = profile.info();
+    if (info.kind != PEL_PROFILE_BURLEY)
+        throw InputError(
+            "the profile '" + std::string(info.name) + "' of " + material +
+            " has no known medium; a random walk needs one of kind burley, such as --profile with a "
+            "file of that kind");
+    RgbValues lengths;
+    // The line spread of Burley's profile of length d has a standard deviation of sqrt(7) d.
+    for (int c = 0; c < 3; ++c) lengths[c] = scale * info.width[c] / std::sqrt(7.0);
+    return burleyMedium(
+        lengths, reflectance,
+        walk.boundary == "fresnel" ? sample::Boundary::Fresnel : sample::Boundary::IndexMatched);
+}
+
+// Walks from `points`, with progress and an entry `media` in the report.
+sample::WalkedLight walk(Run& run, const WalkArguments& walk, const sample::WalkBody& body,
+                         const sample::Lighting& lighting, const std::vector<sample::SurfacePoint>& points,
+                         const sample::Medium& medium, const RgbValues& reflectance,
+                         const std::string& material) {
+    sample::WalkOptions options{walk.samples, walk.noise, walk.seed,
+                                [&](double part) { run.progress(part, "random walk"); }};
+    const sample::WalkedLight light = walkLight(body, lighting, points, medium, options);
+    run.report["media"].push_back({{"material", material},
+                                   {"mean_free_path", medium.meanFreePath},
+                                   {"single_scattering_albedo", medium.albedo},
+                                   {"reflectance", reflectance},
+                                   {"samples", light.samples},
+                                   {"noise", light.noise}});
+    const double walks = 6.0 * double(points.size()) * light.samples;
+    if (double(light.lost) > 0.001 * walks)
+        run.warn(std::to_string(100 * double(light.lost) / walks) + " % of the walks in " + material +
+                 " left through holes of the mesh and count as dark");
+    return light;
+}
+
+// Signed mean curvature at each point, 1/unit of positions.
+std::vector<float> meanCurvatureAt(Run& run, const io::MeshData& mesh,
+                                   const std::vector<sample::SurfacePoint>& points) {
+    PelCurvatureParams params = pelCurvatureParamsDefaults();
+    params.quantity = PEL_QUANTITY_MEAN;
+    const std::vector<float> vertices = meshCurvature(run, mesh, params, {PEL_WELD_EXACT}).values;
+    std::vector<float> out;
+    for (const sample::SurfacePoint& p : points) {
+        double sum = 0;
+        for (int k = 0; k < 3; ++k)
+            sum += p.weights[k] * vertices[mesh.triangles[3 * size_t(p.triangle) + k]];
+        out.push_back(float(sum));
+    }
+    return out;
+}
+
+// The thickness of the body below each point.
+std::vector<float> thicknessAt(const sample::WalkBody& body,
+                               const std::vector<sample::SurfacePoint>& points) {
+    const sample::Bounds& bounds = body.body().bounds();
+    const double extent = length(bounds.high - bounds.low);
+    std::vector<float> out;
+    for (const sample::SurfacePoint& p : points) {
+        const sample::Surface s = surfaceAt(body.lit().mesh(), p);
+        sample::Vec3 normal;
+        const double start = 1e-6 * extent;
+        const sample::Hit hit =
+            body.body().firstHit({s.position - s.normal * start, -s.normal}, extent, normal);
+        out.push_back(float(std::min(hit.distance + start, extent)));
+    }
+    return out;
+}
+
+struct ReferenceMesh {
+    io::MeshData mesh;
+    std::vector<uint32_t> materials;  // id per triangle; empty: no parts, all triangles scatter
+    // The id of the triangles that enclose a material of the scene; 0: all triangles.
+    uint32_t bodyOf(uint32_t material) const { return materials.empty() ? 0 : byMaterial ? material : 1; }
+    bool byMaterial = false;
+};
+
+constexpr uint32_t shadowOnly = 255;
+
+// The id of each triangle: that of its group, or shadowOnly.
+std::vector<uint32_t> idsOf(const std::string& path, const io::PartedMesh& mesh,
+                            const std::vector<std::string>& parts, bool byMaterial) {
+    std::vector<uint32_t> ids(mesh.partOf.size(), shadowOnly);
+    for (const std::string& part : parts) {
+        const size_t equals = part.find('=');
+        const std::string name = byMaterial ? part.substr(equals + 1) : part;
+        uint32_t id = 1;
+        if (byMaterial) {
+            const char *text = part.data(), *end = text + std::min(equals, part.size());
+            const auto [stopped, error] = std::from_chars(text, end, id);
+            if (error != std::errc() || stopped != end || id == 0 || id >= shadowOnly)
+                throw UsageError("--part " + part +
+                                 ": several parts are written ID=GROUP, with an id from 1 to " +
+                                 std::to_string(shadowOnly - 1));
+        }
+        const int wanted = mesh.part(name);
+        if (wanted < 0) {
+            std::string names;
+            for (const std::string& known : mesh.parts) names += (names.empty() ? "" : ", ") + known;
+            throw io::FileError(path, "has no part '" + name + "'; it has: " + names);
+        }
+        for (size_t t = 0; t < ids.size(); ++t)
+            if (mesh.partOf[t] == uint32_t(wanted)) ids[t] = id;
+    }
+    return ids;
+}
+
+// `subdivide` levels: Catmull-Clark of OBJ files, Loop of others. `parts`: groups of an OBJ file that
+// scatter, all others just cast shadows; none: all scatter. Either one GROUP, for all materials, or ID=GROUP
+// for each material that has a body of its own.
+ReferenceMesh loadReferenceMesh(const std::string& path, int subdivide,
+                                const std::vector<std::string>& parts) {
+    ReferenceMesh out;
+    if (io::extensionOf(path) == "obj" && (subdivide > 0 || !parts.empty())) {
+        io::PartedMesh parted = io::loadParts(path, subdivide);
+        out.byMaterial = parts.size() > 1 || (parts.size() == 1 && parts[0].find('=') != std::string::npos &&
+                                              parted.part(parts[0]) < 0);
+        if (!parts.empty()) out.materials = idsOf(path, parted, parts, out.byMaterial);
+        out.mesh = std::move(parted.mesh);
+    } else {
+        if (!parts.empty()) throw io::FileError(path, "has no parts; only the groups of an OBJ file are");
+        out.mesh = io::loadMesh(path);
+        io::loopSubdivide(out.mesh, subdivide);
+    }
+    if (out.mesh.normals.empty()) io::computeNormals(out.mesh);
+    return out;
+}
 
 struct Arguments {
     Run::Options run;
@@ -289,12 +509,7 @@ class Reference {
 };
 
 void run(const Arguments& a) {
-    try {
-        io::requireExtension(a.output, {"exr", "npy"});
-        io::checkWritable(a.output);
-    } catch (const io::FileError& e) {
-        throw UsageError(e.what());
-    }
+    checkOutput(a.output, {"exr", "npy"});
     const bool picture = io::extensionOf(a.output) == "exr";
     if (picture == a.gbuffer.empty())
         throw UsageError(picture ? "-o " + a.output +
@@ -320,65 +535,46 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void addReference(Command& app) {
-    Command* command = app.addCommand(
-        "reference",
-        "What a picture should be: the surface integral over the mesh, or a random walk in its volume, with "
-        "ray-traced shadows");
+void addReference(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("reference",
+                                           "What a picture should be: the surface integral over the mesh, or "
+                                           "a random walk in its volume, with ray-traced shadows");
     auto a = std::make_shared<Arguments>();
-    command->addOption("mesh", a->mesh, "OFF, OBJ, PLY or STL file, in the unit of the scene")->required();
-    command
-        ->addOption("--scene", a->scene,
-                    "scene file (TOML), as for shade: lights, materials, which channel is what")
-        ->required();
-    command->addOption(
-        "--gbuffer", a->gbuffer,
-        "multi-layer EXR whose visible positions are evaluated; without it, the mesh's vertices are");
-    command
-        ->addOption("-o,--output", a->output,
-                    "EXR to write: radiance R, G, B, and the layers Surface (without albedo) and "
-                    "Irradiance; or NPY: Surface per vertex, (n, 3); of a walk both halves, (2, n, 3)")
-        ->required();
-    command
-        ->addOption("--profile", a->profile,
-                    "material of the library or profile file (default: that of the material's curvature "
-                    "table, else skin)")
-        ->typeName(profileWord);
-    command
-        ->addOption("--diffusion-radius", a->diffusionRadius,
-                    "scales the profile to this radius, mm; 0: its own")
-        ->check(isNotNegative())
-        ->showDefault();
-    command
-        ->addOption("--unit-mm", a->unit, "millimetres per unit of positions (default: the scene's unit_mm)")
-        ->check(isPositive());
-    command
-        ->addOption("--cut", a->cut,
-                    "mm per channel where the profile ends, as in renderers that cut it off; 0: nowhere")
-        ->expected(3);
-    command
-        ->addOption("--subdivide", a->subdivide,
-                    "levels of subdivision, done first: Catmull-Clark of OBJ files, Loop of others")
-        ->check(inRange(0, 6))
-        ->showDefault();
-    command
-        ->addOption("--part", a->parts,
-                    "group of an OBJ file that scatters, all others just cast shadows; or, several times, "
-                    "ID=GROUP: the body of the material with that id")
-        ->typeName("NAME")
-        ->oneEach();
-    command
-        ->addOption("--finest", a->finest,
-                    "length to which triangles are split at the edges of shadows (default: a quarter of the "
-                    "narrowest channel's width)")
-        ->check(isNotNegative());
-    command
-        ->addOption("--coarsest", a->coarsest,
-                    "length above which they are split anywhere (default: the widest channel's width)")
-        ->check(isNotNegative());
-    command->addOption("--tolerance", a->tolerance, "bound of the error of far light, part of the brightest")
-        ->check(inRange(1e-7, 1.0))
-        ->showDefault();
+    option(*command, "mesh", a->mesh, "OFF, OBJ, PLY or STL file, in the unit of the scene", required);
+    option(*command, "--scene", a->scene,
+           "scene file (TOML), as for shade: lights, materials, which channel is what", required);
+    option(*command, "--gbuffer", a->gbuffer,
+           "multi-layer EXR whose visible positions are evaluated; without it, the mesh's vertices are");
+    option(*command, "-o,--output", a->output,
+           "EXR to write: radiance R, G, B, and the layers Surface (without albedo) and Irradiance; or NPY: "
+           "Surface per vertex, (n, 3); of a walk both halves, (2, n, 3)",
+           required);
+    option(*command, "--profile", a->profile,
+           "material of the library or profile file (default: that of the material's curvature table, else "
+           "skin)",
+           Word{profileWord});
+    option(*command, "--diffusion-radius", a->diffusionRadius,
+           "scales the profile to this radius, mm; 0: its own", isNotNegative(), shown);
+    option(*command, "--unit-mm", a->unit, "millimetres per unit of positions (default: the scene's unit_mm)",
+           isPositive());
+    option(*command, "--cut", a->cut,
+           "mm per channel where the profile ends, as in renderers that cut it off; 0: nowhere", Count{3});
+    option(*command, "--subdivide", a->subdivide,
+           "levels of subdivision, done first: Catmull-Clark of OBJ files, Loop of others", inRange(0, 6),
+           shown);
+    option(*command, "--part", a->parts,
+           "group of an OBJ file that scatters, all others just cast shadows; or, several times, ID=GROUP: "
+           "the body of the material with that id",
+           Word{"NAME"}, oneEach);
+    option(*command, "--finest", a->finest,
+           "length to which triangles are split at the edges of shadows (default: a quarter of the narrowest "
+           "channel's width)",
+           isNotNegative());
+    option(*command, "--coarsest", a->coarsest,
+           "length above which they are split anywhere (default: the widest channel's width)",
+           isNotNegative());
+    option(*command, "--tolerance", a->tolerance, "bound of the error of far light, part of the brightest",
+           inRange(1e-7, 1.0), shown);
     addWalkOptions(*command, a->walk);
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });

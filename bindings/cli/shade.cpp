@@ -1,22 +1,162 @@
 // pellucid shade: a host's G-buffer and a scene file in, radiance out.
 #include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <mutex>
 #include <optional>
+#include <pellucid/pellucid.hpp>
 #include <set>
 #include <sstream>
+#include <string>
 #include <thread>
+#include <vector>
 
-#include "build_helpers.h"
 #include "command.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
+#include "io/image/picture.h"
+#include "io/image/tone_map.h"
 #include "io/input_file.h"
 #include "io/scene/scene_keys.h"
 #include "scene/scene_frame.h"
 #include "scene/scene_programs.h"
-#include "shade_picture.h"
+#include "system/process.h"
 
 namespace pellucid::cli {
+namespace fs = std::filesystem;
 namespace {
+
+constexpr auto moment = std::chrono::milliseconds(300);  // loading programs from a cache takes less
+constexpr unsigned mostHelpers = 3;                      // each takes about 200 MB
+constexpr const char* variable = "PELLUCID_BUILD_SHARE";
+
+// Processes that compile kernels beside this one. PoCL compiles one kernel at a time in a process, and keeps
+// kernels on disk.
+//
+// Make it before the programs of a scene are built, and call finish() afterwards. Where building takes longer
+// than a moment, other cores run `pellucid warm-up` for the same scene; each process builds what no other has
+// begun. After a second, a line on standard error says what takes the time.
+class BuildHelpers {
+  public:
+    // Without a scene no other process helps.
+    BuildHelpers(const Device& device, const std::string& selector, const std::string& scene);
+    ~BuildHelpers();
+    // Waits for what the others have begun.
+    void finish();
+
+  private:
+    void start(const std::string& selector, const std::string& scene);
+
+    std::string folder_;  // of what each process has begun; "": nothing is shared
+    std::vector<pel::system::Child> helpers_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    bool done_ = false;
+    std::thread starter_;
+};
+
+BuildHelpers::BuildHelpers(const Device& device, const std::string& selector, const std::string& scene) {
+    const bool shared = std::string_view(device.info().platform) == "Portable Computing Language" &&
+                        std::thread::hardware_concurrency() > 1 && !std::getenv(variable) && !scene.empty();
+    std::error_code error;
+    if (shared)
+        folder_ =
+            pel::system::makeTemporaryFolder(fs::temp_directory_path(error).string(), "pellucid-build-");
+    if (!folder_.empty()) pel::system::setVariable(variable, folder_.c_str());
+    starter_ = std::thread([this, selector, scene] {
+        std::unique_lock lock(mutex_);
+        const auto begin = std::chrono::steady_clock::now();
+        const auto built = [&](auto after) {
+            return changed_.wait_until(lock, begin + after, [&] { return done_; });
+        };
+        if (built(moment)) return;
+        if (!folder_.empty()) start(selector, scene);
+        if (!built(std::chrono::seconds(1)))
+            std::fputs("building this scene's kernels; the driver keeps them for later runs\n", stderr);
+    });
+}
+
+void BuildHelpers::start(const std::string& selector, const std::string& scene) {
+    std::vector<std::string> words{pel::system::programFile(), "warm-up", scene};
+    if (!selector.empty()) words.insert(words.end(), {"--device", selector});
+    std::vector<std::string> variables{std::string(variable) + "=helper:" + folder_};
+    if (!std::getenv("PELLUCID_CACHE"))
+        variables.push_back("PELLUCID_CACHE=auto");  // no binaries, which take as long again
+    for (unsigned i = 1; i < std::min(std::thread::hardware_concurrency(), mostHelpers + 1); ++i)
+        helpers_.emplace_back(words, variables);
+}
+
+void BuildHelpers::finish() {
+    {
+        const std::lock_guard lock(mutex_);
+        done_ = true;
+    }
+    changed_.notify_one();
+    if (starter_.joinable()) starter_.join();
+    for (pel::system::Child& helper : helpers_) helper.wait();
+}
+
+BuildHelpers::~BuildHelpers() {
+    finish();
+    if (folder_.empty()) return;
+    pel::system::setVariable(variable, nullptr);
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+}
+
+constexpr float longest = 30;  // mm of thickness; hardly anything comes through more of skin
+
+// What can be shown; "final", then the output slots by their keys.
+std::vector<std::string> showableParts() {
+    std::vector<std::string> parts{"final"};
+    for (const io::OutputKey& output : io::outputKeys) parts.emplace_back(output.key);
+    return parts;
+}
+
+// The slot of a part; PEL_SLOT_RADIANCE of "final".
+PelImageSlot slotOfPart(const std::string& part) {
+    for (const io::OutputKey& output : io::outputKeys)
+        if (part == output.key) return output.slot;
+    return PEL_SLOT_RADIANCE;
+}
+
+// The parts side by side, labelled where there is more than one, lengths as colours with a bar. `frame` was
+// shaded with their slots as outputs.
+void writeShadePicture(const std::string& path, const io::Image& gbuffer, const io::SceneFrame& frame,
+                       const std::vector<std::string>& parts, const io::ToneMap& tone) {
+    std::vector<io::Tile> tiles;
+    for (const std::string& part : parts) {
+        const PelImageSlot slot = slotOfPart(part);
+        if (slot == PEL_SLOT_OUT_THICKNESS) {
+            const std::vector<float> lengths = frame.output(slot);
+            const io::Picture map = io::colored(gbuffer.width, gbuffer.height, lengths, 0, longest, lengths);
+            tiles.push_back({part, io::withColorBar(map, 0, longest, "length", 1)});
+        } else {
+            tiles.push_back({part, io::Picture(gbuffer.width, gbuffer.height,
+                                               io::toSrgb8(slot == PEL_SLOT_RADIANCE ? frame.radiance()
+                                                                                     : frame.output(slot),
+                                                           tone))});
+        }
+    }
+    const io::Picture whole =
+        tiles.size() == 1 ? tiles[0].picture : io::contactSheet(tiles, int(tiles.size()));
+    io::writeImage8(path, whole.width, whole.height, 3, whole.rgb);
+}
+
+void addToneOptions(CLI::App& command, io::ToneMap& tone) {
+    option(command, "--exposure", tone.exposure, "of pictures: multiplies radiance", isPositive(), shown);
+    command
+        .add_option_function<std::string>(
+            "--tonemap",
+            [&tone](const std::string& curve) { tone.curve = chosen<io::ToneCurve>(io::toneCurves, curve); },
+            "of pictures: soft (true to radiance up to 0.8, then a shoulder), none (cut at 1), "
+            "filmic or agx-like "
+            "(default: soft)")
+        ->check(isOneOf(io::toneCurves));
+}
 
 struct Arguments {
     Run::Options run;
@@ -146,16 +286,8 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
 }
 
 void run(const Arguments& a) {
-    try {
-        io::requireExtension(a.output, {"exr", "png", "jpg", "jpeg", "bmp", "tga"});
-        io::checkWritable(a.output);
-        if (!a.picture.empty()) {
-            io::requirePicture(a.picture);
-            io::checkWritable(a.picture);
-        }
-    } catch (const io::FileError& e) {
-        throw UsageError(e.what());
-    }
+    checkOutput(a.output, {"exr", "png", "jpg", "jpeg", "bmp", "tga"});
+    if (!a.picture.empty()) checkOutput(a.picture, {"png", "jpg", "jpeg", "bmp", "tga"});
     const std::string picture = io::isPicture(a.output) ? a.output : a.picture;
     if (picture.empty() && a.show != std::vector<std::string>{"final"})
         throw UsageError(
@@ -226,34 +358,27 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void addShade(Command& app) {
-    Command* command = app.addCommand("shade", "Shade a G-buffer");
+void addShade(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("shade", "Shade a G-buffer");
     auto a = std::make_shared<Arguments>();
-    command->addOption("gbuffer", a->gbuffer, "multi-layer EXR")->required();
-    command->addOption("--scene", a->scene, "scene file (TOML): lights, materials, which channel is what")
-        ->required();
-    command
-        ->addOption(
-            "-o,--output", a->output,
-            "file to write: .exr for radiance R, G, B; .png, .jpg, .bmp or .tga for a picture to look at")
-        ->required();
-    command->addOption("--picture", a->picture, "picture to write beside an .exr");
+    option(*command, "gbuffer", a->gbuffer, "multi-layer EXR", required);
+    option(*command, "--scene", a->scene, "scene file (TOML): lights, materials, which channel is what",
+           required);
+    option(*command, "-o,--output", a->output,
+           "file to write: .exr for radiance R, G, B; .png, .jpg, .bmp or .tga for a picture to look at",
+           required);
+    option(*command, "--picture", a->picture, "picture to write beside an .exr");
     addToneOptions(*command, a->tone);
-    command->addOption("--show", a->show, "what the picture shows, side by side (default: final)")
-        ->separatedBy(',')
-        ->check(isOneOf(showableParts()));
-    command
-        ->addOption("--outputs", a->parts,
-                    "parts of the picture to write beside it, as OUT_diffuse.exr and so on")
-        ->separatedBy(',')
-        ->check(isOneOf({"diffuse", "deep_scatter", "specular", "thickness", "all"}));
-    command->addFlag("--stats", a->stats, "count tiles and pixels per feature");
-    command
-        ->addOption("--scratch-mib", a->scratchMib,
-                    "most MiB for blurred normals and filtered shadows; larger frames are shaded in bands. "
-                    "0: no limit")
-        ->check(inRange(0, 1 << 30))
-        ->showDefault();
+    option(*command, "--show", a->show, "what the picture shows, side by side (default: final)", separated,
+           isOneOf(showableParts()));
+    option(*command, "--outputs", a->parts,
+           "parts of the picture to write beside it, as OUT_diffuse.exr and so on", separated,
+           isOneOf({"diffuse", "deep_scatter", "specular", "thickness", "all"}));
+    option(*command, "--stats", a->stats, "count tiles and pixels per feature");
+    option(
+        *command, "--scratch-mib", a->scratchMib,
+        "most MiB for blurred normals and filtered shadows; larger frames are shaded in bands. 0: no limit",
+        inRange(0, 1 << 30), shown);
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });
 }

@@ -27,14 +27,16 @@ void start(const char* module, const std::vector<std::string>& arguments) {
                      "; PELLUCID_PYTHON names the Python that has the package");
 }
 
-void add(Command& app, const char* name, const char* module, const char* what) {
-    Command* command = app.addCommand(name, what);
-    command->passOn([module](const std::vector<std::string>& arguments) { start(module, arguments); });
+void add(CLI::App& app, const char* name, const char* module, const char* what) {
+    CLI::App* command = app.add_subcommand(name, what);
+    command->prefix_command();  // all arguments are those of the module
+    command->set_help_flag();
+    command->callback([=] { start(module, command->remaining()); });
 }
 
 }  // namespace
 
-void addView(Command& app) {
+void addView(CLI::App& app) {
     add(app, "view", "pellucid.view", "A look-dev viewer in the browser (needs the Python package)");
     add(app, "gallery", "pellucid.view.gallery",
         "Pictures of materials, methods, lights and mistakes (needs the Python package)");

@@ -52,19 +52,17 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void addWarmUp(Command& app) {
-    Command* command = app.addCommand(
+void addWarmUp(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
         "warm-up", "Build OpenCL programs before their first use, for the driver's cache and as binaries");
     command->alias("prefill");  // its first name
     auto a = std::make_shared<Arguments>();
-    command->addOption("scene", a->scenes, "scene files (TOML) that `pellucid shade` will be given");
-    command->addFlag("--luts", a->luts, "look-up tables of sums of Gaussians");
-    command->addFlag("--table-luts", a->tableLuts, "look-up tables of tabulated profiles");
-    command->addFlag("--curvature", a->curvature, "curvature of meshes");
-    command
-        ->addOption("--threads", a->threads,
-                    "number that build at the same time; 0: one per core. PoCL builds one by one")
-        ->showDefault();
+    option(*command, "scene", a->scenes, "scene files (TOML) that `pellucid shade` will be given");
+    option(*command, "--luts", a->luts, "look-up tables of sums of Gaussians");
+    option(*command, "--table-luts", a->tableLuts, "look-up tables of tabulated profiles");
+    option(*command, "--curvature", a->curvature, "curvature of meshes");
+    option(*command, "--threads", a->threads,
+           "number that build at the same time; 0: one per core. PoCL builds one by one", shown);
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });
     command->footer("Without scenes and flags: everything that does not depend on a scene.");

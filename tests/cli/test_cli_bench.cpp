@@ -2,8 +2,7 @@
 #include <cmath>
 
 #include "cli_run.h"
-#include "measure/compare.h"
-#include "measure/page.h"
+#include "measure/report.h"
 #include "tolerances.h"
 
 using Json = nlohmann::ordered_json;

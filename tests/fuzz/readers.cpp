@@ -8,7 +8,7 @@
 #include "io/input_file.h"
 #include "io/lut/profile_file.h"
 #include "io/scene/scene_file.h"
-#include "measure/compare.h"
+#include "measure/report.h"
 
 namespace fuzz {
 namespace {

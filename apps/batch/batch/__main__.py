@@ -8,34 +8,30 @@ import sys
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser("python -m pellucid.batch",
-                                     description="Make the look-up tables of a manifest that are "
-                                     "not there yet, on a Dask cluster or the processes of this machine.")
-    parser.add_argument("manifest", help="TOML: [[lut]] and [[grid]] (docs/guide/batch.md)")
-    parser.add_argument("--out", "-o", required=True,
-                        help="a folder that all workers see, or a URL that fsspec knows")
-    parser.add_argument("--scheduler", metavar="ADDRESS",
-                        help="of a Dask cluster, such as tcp://host:8786; without it: "
-                        "processes of this machine, one per device")
-    parser.add_argument("--workers", type=int, metavar="N", help="without --scheduler: how many processes")
-    parser.add_argument("--device", action="append", default=[], metavar="D",
-                        help="without --scheduler: device by number, "
-                        "name or type; several are taken by turns")
-    parser.add_argument("--timeout", type=float, default=120, metavar="S",
-                        help="give a worker up that finishes nothing for so many seconds (default: 120)")
-    parser.add_argument("--patience", type=float, default=300, metavar="S",
-                        help="give up after so many seconds without any worker (default: 300)")
-    parser.add_argument("--jobs", "-j", type=int, default=0, metavar="N",
-                        help="tables in flight per worker (default: four "
-                        "per core)")
-    parser.add_argument("--no-read-back", action="store_true", help="believe the workers' check sums")
-    parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
+    parser = argparse.ArgumentParser("python -m pellucid.batch", description=(
+        "Make the look-up tables of a manifest that are not there yet, on a Dask cluster or the processes of "
+        "this machine."))
+    add = parser.add_argument
+    add("manifest", help="TOML: [[lut]] and [[grid]] (docs/guide/batch.md)")
+    add("--out", "-o", required=True, help="a folder that all workers see, or a URL that fsspec knows")
+    add("--scheduler", metavar="ADDRESS", help="of a Dask cluster, such as tcp://host:8786; without it: "
+                                               "processes of this machine, one per device")
+    add("--workers", type=int, metavar="N", help="without --scheduler: how many processes")
+    add("--device", action="append", default=[], metavar="D",
+        help="without --scheduler: device by number, name or type; several are taken by turns")
+    add("--timeout", type=float, default=120, metavar="S",
+        help="give a worker up that finishes nothing for so many seconds (default: 120)")
+    add("--patience", type=float, default=300, metavar="S",
+        help="give up after so many seconds without any worker (default: 300)")
+    add("--jobs", "-j", type=int, default=0, metavar="N",
+        help="tables in flight per worker (default: four per core)")
+    add("--no-read-back", action="store_true", help="believe the workers' check sums")
+    add("--json", action="store_true", help="one JSON object on standard output")
     a = parser.parse_args()
     if a.scheduler and (a.workers or a.device):
         parser.error("--workers and --device are for processes of this machine; with --scheduler the cluster "
                      "has its own")
-    if a.timeout <= 0 or a.patience < 0 or not 0 <= a.jobs <= 256 or (
-        a.workers is not None and a.workers < 1):
+    if a.timeout <= 0 or a.patience < 0 or not 0 <= a.jobs <= 256 or (a.workers or 1) < 1 or a.workers == 0:
         parser.error("--timeout must be above 0, --workers 1 or more, --patience 0 or more, --jobs from 0 to "
                      "256")
 
@@ -50,22 +46,22 @@ def main() -> int:
     error = None
     try:
         summary = run(a.manifest, a.out, scheduler=a.scheduler, workers=a.workers, device=a.device,
-                      timeout=a.timeout,
-                      jobs=a.jobs, patience=a.patience, read_back=not a.no_read_back, progress=True)
+                      timeout=a.timeout, jobs=a.jobs, patience=a.patience, read_back=not a.no_read_back,
+                      progress=True)
     except ValueError as e:
         return fail(3, e)
     except BatchError as e:
+        error = e
         if not hasattr(e, "summary"):  # it came to nothing
             return fail(4 if isinstance(e, NoWorker) else 3, e)
-        error, summary = e, e.summary
+        summary = e.summary
     except KeyboardInterrupt:
         return fail(4, "interrupted; the same command goes on from here")
     if a.json:
         print(json.dumps(summary.to_dict(), indent=2))
     else:
         print(f"{summary.entries} tables: {summary.made} made ({summary.redone} of them anew), "
-              f"{summary.kept} were there, "
-              f"{summary.failed} failed")
+              f"{summary.kept} were there, {summary.failed} failed")
     if error is not None:
         return fail(4 if isinstance(error, NoWorker) else 3, error)
     if summary.failed:

@@ -1,9 +1,9 @@
 """Shares the entries of a manifest out among the workers of a Dask cluster.
 
 Dask gives pieces of the list to workers, and the pieces of a worker that dies, or that the scheduler has not
-heard of for its `worker-ttl`, to others. What is added here: files are named by content and appear whole, so
-that doing an entry twice changes nothing; an entry counts once, when this process has read its file back;
-and what was not done is submitted again, in halves, to other workers than the one that failed.
+heard of for its `worker-ttl`, to others. Added here: an entry counts once its file has been read back, and
+entries that were not done are submitted again, in halves, to workers other than the one that failed. Doing an
+entry twice changes nothing, because files are named by content and appear whole.
 """
 from __future__ import annotations
 
@@ -11,11 +11,9 @@ import asyncio
 import contextlib
 import hashlib
 import pickle
-import queue
 import sys
 import threading
 import time
-from collections.abc import Sequence
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from typing import Any, Callable, Optional
 
@@ -27,13 +25,12 @@ from .manifest import Manifest
 from .report import BatchError, Display, NoWorker, Summary
 from .store import Store, StoreError
 
-PIECES = 256  # at least so many, for workers that come later; and so many
-PIECES_PER_WORKER = 8  # of those that are there or were asked for, so that all end together
+PIECES = 256  # at least, for workers that come later
+PIECES_PER_WORKER = 8  # that is there or was asked for, so that all end together
 LARGEST_PIECE = 1024  # entries
 ATTEMPTS = 3  # of an entry by itself, before it is to blame for the workers that it costs
 LOOK_SECONDS = 0.5  # between two looks at who is there
-# a cluster that was asked for workers is asked for those that it lost; above Dask's 15 to notice
-ASK_AGAIN_SECONDS = 20
+ASK_AGAIN_SECONDS = 20  # for workers that were lost; above Dask's 15 to notice
 
 
 def on_worker(*arguments: Any) -> tuple[str, str, Any]:
@@ -55,30 +52,26 @@ def on_worker(*arguments: Any) -> tuple[str, str, Any]:
         return address, "garbage", f"{type(e).__name__}: {e}"
 
 
-# It travels as code, so that a scheduler needs no package of ours and a worker without it can say what it
-# lacks.
+# It travels as code, so that the scheduler needs no package and a worker without it can say what it lacks.
 on_worker.__module__ = "__main__"
 
 
 class Dispatcher:
     """One batch on one cluster; `run` does it."""
 
-    def __init__(self, client: Any, manifest: Manifest, store: Store, *, timeout: float, jobs: int,
-                 patience: float,
-                 read_back: bool, display: Display, ask: Optional[Callable[[], None]] = None,
-                 asked: int = 0) -> None:
+    def __init__(self, client: Any, manifest: Manifest, store: Store, display: Display, *, timeout: float,
+                 jobs: int, patience: float, read_back: bool, ask: Optional[Callable[[], None]],
+                 expected: int) -> None:
         self._client, self._manifest, self._store, self._display = client, manifest, store, display
         self._timeout, self._jobs, self._patience, self._read_back = timeout, jobs, patience, read_back
-        self._ask, self._expected = ask, asked
+        self._ask, self._expected = ask, expected
         self._open = set(range(len(manifest)))  # entries that nobody has finished
         self._there = [False] * len(manifest)
         self._attempts: dict[int, int] = {}
         self._present: set[str] = set()
         self._barred: set[str] = set()
         self._pieces: dict[Any, list[int]] = {}  # by future
-        self._answers: queue.SimpleQueue[tuple[Any, Any]] = queue.SimpleQueue()
-        self._readers = ThreadPoolExecutor(8)
-        self._looked = self._alone = self._asked = time.monotonic()
+        self._alone = self._asked = time.monotonic()
         self._last_trouble = ""
         self.summary = Summary(entries=len(manifest), duplicates=manifest.duplicates)
 
@@ -95,31 +88,11 @@ class Dispatcher:
         for _, message in self._manifest.errors:
             self._entry_failed(message)
         try:
-            packed = pickle.dumps(self._manifest)
-            self._name = f"pellucid-{hashlib.sha256(packed).hexdigest()}"
-            # the scheduler keeps it; each worker asks once
-            distributed.Variable(self._name, client=self._client).set(packed)
-            self._look()
-            count = len(self._manifest)
-            size = count // max(PIECES, PIECES_PER_WORKER * max(len(self._present), self._expected))
-            size = max(1, min(LARGEST_PIECE, size))
-            for first in range(0, count, size):
-                self._submit(list(range(first, min(first + size, count))))
-            while self._open:
-                if time.monotonic() - self._looked > LOOK_SECONDS:
-                    self._look()
-                self._display.show(self.summary.entries - len(self._open))
-                with contextlib.suppress(queue.Empty):
-                    self._handle(*self._answers.get(timeout=0.1))
-                    while True:
-                        self._handle(*self._answers.get_nowait())
-            with contextlib.suppress(NoWorker):
-                self._look()  # who was lost last
+            self._make_all()
         except BatchError as e:
             e.summary = self.summary
             raise
         finally:
-            self._readers.shutdown(wait=False, cancel_futures=True)
             with contextlib.suppress(Exception):  # the scheduler may be gone
                 self._client.cancel(list(self._pieces), force=True)
             self.summary.total_ms = 1e3 * (time.monotonic() - start)
@@ -128,9 +101,34 @@ class Dispatcher:
             self._write_index()
         return self.summary
 
+    def _make_all(self) -> None:
+        packed = pickle.dumps(self._manifest)
+        self._name = f"pellucid-{hashlib.sha256(packed).hexdigest()}"
+        # The scheduler keeps it; each worker asks once.
+        distributed.Variable(self._name, client=self._client).set(packed)
+        self._look()
+        count = len(self._manifest)
+        pieces = max(PIECES, PIECES_PER_WORKER * max(len(self._present), self._expected))
+        size = max(1, min(LARGEST_PIECE, count // pieces))
+        for first in range(0, count, size):
+            self._submit(list(range(first, min(first + size, count))))
+        looked = time.monotonic()
+        with ThreadPoolExecutor(8) as readers:
+            while self._open:
+                if time.monotonic() - looked > LOOK_SECONDS:
+                    self._look()
+                    looked = time.monotonic()
+                done = [future for future in self._pieces if future.done()]
+                for future, answer in zip(done, readers.map(self._receive, done)):
+                    self._handle(self._pieces.pop(future), answer)
+                self._display.show(self.summary.entries - len(self._open))
+                if not done:
+                    time.sleep(0.02)
+        with contextlib.suppress(NoWorker):
+            self._look()  # who was lost last
+
     def _write_index(self) -> None:
-        """Also of a batch that did not come to its end, unless its output is what failed or no table is
-        there."""
+        """Also of a batch that did not come to its end, unless the output failed or no table is there."""
         if not any(self._there):
             return
         other = sys.exc_info()[1]  # what is on its way to the caller
@@ -140,17 +138,15 @@ class Dispatcher:
             if other is None:
                 raise BatchError(str(e)) from e
 
-    # --- workers come and go ---
-
     def _look(self) -> None:
         """Who is there, who is lost, and whether anybody can work."""
         try:
             present = set(self._client.nthreads())
         except (OSError, TimeoutError, asyncio.TimeoutError) as e:
             raise NoWorker(f"the scheduler {self._client.scheduler.address} does not answer any more ({e}); "
-                           f"what is made is kept, and the "
-                           "same call goes on from there when a scheduler is back") from e
-        now = self._looked = time.monotonic()
+                           "what is made is kept, and the same call goes on from there when a scheduler is "
+                           "back") from e
+        now = time.monotonic()
         for address in self._present - present - self._barred:
             self.summary.workers_lost += 1
             self._trouble(f"worker {address} is gone")
@@ -166,21 +162,15 @@ class Dispatcher:
             raise NoWorker(f"no worker for {self._patience:.0f} s{why}")
 
     def _bar(self, address: str, why: str, restart: bool = True) -> None:
-        """Gives it no more work; a nanny, where there is one, puts a fresh process in its place unless that
-        would be no better."""
+        """Gives it no more work. A nanny, where there is one, starts a fresh process in its place."""
         if address in self._barred:
             return
         self._barred.add(address)
         self.summary.workers_dismissed += 1
-        self._trouble(why)
-        with contextlib.suppress(Exception):  # the scheduler may be gone
-            waiting = set(self._client.processing([address]).get(address, ()))
-            for future in [f for f in self._pieces if f.key in waiting]:
-                self._submit(self._pieces.pop(future))
-                self._client.cancel([future], force=True)
+        self._trouble(f"worker {address} {why}")
 
         def renew() -> None:
-            with contextlib.suppress(Exception):
+            with contextlib.suppress(Exception):  # the scheduler may be gone
                 self._client.restart_workers([address], timeout=30, raise_for_error=False)
 
         if restart:
@@ -190,16 +180,13 @@ class Dispatcher:
         self._last_trouble = message
         self._display.message(message)
 
-    # --- work goes out ---
-
     def _submit(self, indices: list[int]) -> None:
-        # if all of them go, Dask asks others
+        # If all usable workers go, Dask asks others.
         usable = sorted(self._present - self._barred) if self._barred else None
         future = self._client.submit(on_worker, self._name, __version__, indices, self._store.out, self._jobs,
-                                     self._timeout,
-                                     workers=usable or None, allow_other_workers=bool(usable), pure=False)
+                                     self._timeout, workers=usable or None, allow_other_workers=bool(usable),
+                                     pure=False)
         self._pieces[future] = indices
-        future.add_done_callback(self._answered)
 
     def _again(self, indices: list[int]) -> None:
         """Hands entries out once more, in halves: one of them may be what costs the workers."""
@@ -207,96 +194,81 @@ class Dispatcher:
         if not indices:
             return
         self.summary.retried += 1
-        if len(indices) > 1:
-            self._submit(indices[:len(indices) // 2])
-            self._submit(indices[len(indices) // 2:])
+        half = len(indices) // 2
+        if half:
+            self._submit(indices[:half])
+            self._submit(indices[half:])
             return
         (index,) = indices
         self._attempts[index] = self._attempts.get(index, 0) + 1
         if self._attempts[index] < ATTEMPTS:
             self._submit(indices)
         else:
-            self._close_failed(index,
-                               f"given up after {ATTEMPTS} attempts; the last trouble was: "
-                               f"{self._last_trouble}")
+            self._close_failed(index, f"given up after {ATTEMPTS} attempts; the last trouble was: "
+                                      f"{self._last_trouble}")
 
-    # --- answers come in ---
-
-    def _answered(self, future: Any) -> None:
-        with contextlib.suppress(RuntimeError):  # the batch has ended
-            self._readers.submit(self._receive, future)
-
-    def _receive(self, future: Any) -> None:
-        """On a thread of its own: fetches an answer and reads the files that it speaks of."""
+    def _receive(self, future: Any) -> Any:
+        """On a thread: the answer to a piece, with a check of each file in it; or the error in its place."""
         try:
-            address, kind, answer = future.result()
+            address, kind, answers = future.result(timeout=30)
             if kind == "made":
                 try:
-                    answer = [(a, self._check(a, self._pieces.get(future, ()))) for a in answer]
+                    answers = [(*answer, self._is_true(self._pieces[future], *answer)) for answer in answers]
                 except (LookupError, TypeError, ValueError):
-                    kind, answer = "garbage", "no answer of a known form"
-            self._answers.put((future, (address, kind, answer)))
+                    return address, "garbage", "no answer of a known form"
+            return address, kind, answers
         except BaseException as e:  # what Dask raises, an output that is gone
-            self._answers.put((future, e))
+            return e
 
-    def _check(self, answer: dict[str, Any], indices: Sequence[int]) -> bool:
-        """Whether an entry's file is there, whole, and what the worker says. Raises where the answer has no
-        known form."""
-        index, what = answer["index"], answer["what"]
-        if index not in indices or what not in work.KINDS:
+    def _is_true(self, indices: list[int], index: int, what: str, text: str) -> bool:
+        """Whether an entry's file is there, whole, and what the worker says."""
+        if index not in indices or what not in work.KINDS or not isinstance(text, str):
             raise ValueError(what)
-        if what not in work.FILE_THERE:
-            return isinstance(answer["message"], str)
-        if not self._read_back:
+        if what not in work.FILE_THERE or not self._read_back:
             return True
         data = self._store.read(self._manifest.entries[index].file)
         return (data is not None and self._manifest.holds(index, data) and
-                hashlib.sha256(data).hexdigest() == answer["sum"])
+                hashlib.sha256(data).hexdigest() == text)
 
-    def _handle(self, future: Any, result: Any) -> None:
-        indices = self._pieces.pop(future, None)
-        if indices is None:
-            return  # another future does it
-        if isinstance(result, StoreError):
-            raise BatchError(str(result)) from result
-        # the scheduler is gone, or was for a moment
-        if isinstance(result, (CancelledError, asyncio.CancelledError, OSError)):
+    def _handle(self, indices: list[int], answer: Any) -> None:
+        if isinstance(answer, StoreError):
+            raise BatchError(str(answer)) from answer
+        # The scheduler is gone, or was for a moment, or the worker that held the answer is.
+        if isinstance(answer, (CancelledError, asyncio.CancelledError, asyncio.TimeoutError, OSError)):
             self._look()
             self._submit(indices)
-        elif isinstance(result, BaseException):  # KilledWorker, an answer that cannot be read, ...
-            self._trouble(f"work was lost: {type(result).__name__}: {result}")
+        elif isinstance(answer, BaseException):  # KilledWorker, an answer that cannot be read, ...
+            self._trouble(f"work was lost: {type(answer).__name__}: {answer}")
             self._again(indices)
-        elif result[1] == "unfit":  # no entry is to blame, and a restart is no help
-            self._bar(result[0], f"worker {result[0]} gets no work: {result[2]}", restart=False)
+        elif answer[1] == "unfit":  # no entry is to blame, and a restart is no help
+            self._bar(answer[0], f"gets no work: {answer[2]}", restart=False)
             self._submit(indices)
-        elif result[1] == "garbage":
-            self._bar(result[0], f"worker {result[0]} gave garbage: {result[2]}")
+        elif answer[1] == "garbage":
+            self._bar(answer[0], f"gave garbage: {answer[2]}")
             self._again(indices)
         else:
-            self._made(result[0], indices, result[2])
+            self._made(answer[0], indices, answer[2])
 
-    def _made(self, address: str, indices: list[int], answers: list[tuple[dict[str, Any], bool]]) -> None:
-        broken = 0
-        for answer, true in answers:
-            index, what = answer["index"], answer["what"]
+    def _made(self, address: str, indices: list[int], answers: list[tuple[int, str, str, bool]]) -> None:
+        broken = lies = 0
+        for index, what, text, true in answers:
+            lies += not true
             if what == work.NO_STORE:
-                raise BatchError(f"worker {address}: {answer['message']}")
+                raise BatchError(f"worker {address}: {text}")
             if index not in self._open or not true:
                 continue
             if what == work.BAD:
-                self._close_failed(index, answer["message"])
+                self._close_failed(index, text)
             elif what in work.FILE_THERE:
                 self._close(address, index, what)
             else:  # another device may do it
                 broken += what == work.DEVICE_FAILED
-                self._last_trouble = answer["message"]
-        if lies := sum(not true for _, true in answers):
-            self._bar(address,
-                      f"worker {address} gave garbage for {lies} entries: files are not in "
-                      f"{self._store.out}, or are not what it says "
-                      "that it wrote (all machines must see one and the same folder)")
+                self._last_trouble = text
+        if lies:
+            self._bar(address, f"gave garbage for {lies} entries: files are not in {self._store.out}, or "
+                               "are not what it says that it wrote (all machines must see the same folder)")
         elif broken and broken == len(answers):
-            self._bar(address, f"worker {address}: its device fails: {self._last_trouble}")
+            self._bar(address, f"has a device that fails: {self._last_trouble}")
         self._again(indices)
 
     def _close(self, address: str, index: int, what: str) -> None:

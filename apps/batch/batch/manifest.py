@@ -10,8 +10,7 @@ from ..device import Device
 
 if not hasattr(_native, "Manifest"):
     raise ImportError("this package was built without toml++, which manifests need: install "
-                      "libtomlplusplus-dev and pip "
-                      "install pellucid again")
+                      "libtomlplusplus-dev and pip install pellucid again")
 
 
 @dataclass(frozen=True)
@@ -83,8 +82,8 @@ class Manifest:
     def index(self, there: Sequence[bool]) -> bytes:
         """The index, JSON: `there` says per entry whether its file is there (docs/guide/batch.md)."""
         if len(there) != len(self):
-            raise ValueError(f"there has {len(there)} values; one for each of the {len(self)} entries is "
-                             f"needed")
+            raise ValueError(f"there has {len(there)} values; one for each of the {len(self)} entries "
+                             "is needed")
         return str(self._handle.index(self.path, list(there))).encode()
 
     # A manifest travels as texts, so that workers need no file of it.

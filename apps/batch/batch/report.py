@@ -1,11 +1,11 @@
-"""Results of a batch, and its progress on the terminal."""
+"""Results of a batch, and its progress on standard error."""
 from __future__ import annotations
 
 import sys
 import time
 from collections import deque
 from dataclasses import asdict, dataclass, field
-from typing import Any, Optional, TextIO
+from typing import Any
 
 
 class BatchError(Exception):
@@ -42,39 +42,28 @@ class Summary:
 
 
 class Display:
-    """A bar with rate and time left on a terminal, a line every ten seconds elsewhere."""
+    """Rate and time left: in place on a terminal, a line every ten seconds elsewhere."""
 
-    def __init__(self, total: int, stream: Optional[TextIO] = None, quiet: bool = False) -> None:
-        self._total, self._stream, self._quiet = total, stream or sys.stderr, quiet
-        self._terminal = self._stream.isatty()
+    def __init__(self, total: int, quiet: bool) -> None:
+        self._total, self._quiet, self._terminal = total, quiet, sys.stderr.isatty()
         self._start = self._spoken = time.monotonic()
         self._past = deque([(self._start, 0)])
-        self._shown = False
 
     def message(self, text: str) -> None:
         if not self._quiet:
-            self._stream.write(("\r\033[K" if self._shown else "") + text + "\n")
-            self._stream.flush()
-            self._shown = False
+            print(("\r\033[K" if self._terminal else "") + text, file=sys.stderr, flush=True)
 
     def show(self, done: int, last: bool = False) -> None:
         now = time.monotonic()
-        if self._quiet or not self._total or now - self._start < 0.5:
-            return
-        if not last and now - self._spoken < (0.1 if self._terminal else 10):
+        if self._quiet or now - self._start < 0.5 or not last and now - self._spoken < (
+            0.1 if self._terminal else 10):
             return
         self._spoken = now
         self._past.append((now, done))
-        while len(self._past) > 2 and now - self._past[1][0] > 10:
+        while len(self._past) > 2 and now - self._past[1][0] > 10:  # the rate of the last ten seconds
             self._past.popleft()
         then, before = (self._start, 0) if last else self._past[0]
         rate = (done - before) / max(now - then, 1e-3)
         left = f", {(self._total - done) / rate:.0f} s left" if rate > 0 and not last else ""
-        if self._terminal:
-            bar = ("#" * (30 * done // self._total)).ljust(30, ".")
-            self._stream.write(f"\r\033[K[{bar}] {done}/{self._total}, {rate:.1f}/s{left}" +
-                               ("\n" if last else ""))
-            self._shown = not last
-        else:
-            self._stream.write(f"{done} of {self._total}, {rate:.1f} per second{left}\n")
-        self._stream.flush()
+        print(f"{chr(13) if self._terminal else ''}{done} of {self._total}, {rate:.1f} per second{left}",
+              file=sys.stderr, end="   " if self._terminal and not last else "\n", flush=True)

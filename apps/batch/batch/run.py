@@ -34,46 +34,33 @@ def _local_client(count: Optional[int], selectors: Sequence[str], timeout: float
             raise NoWorker(str(e)) from None
     if not selectors and os.environ.get("PELLUCID_DEVICE"):
         chosen = [os.environ["PELLUCID_DEVICE"]]
+    here = {"host": "127.0.0.1"}  # whoever reaches a port of Dask can execute anything
+    worker = {**here, "nthreads": 1, "memory_limit": 0, "silence_logs": logging.CRITICAL,
+              "preload": ["pellucid.batch.interrupt"]}
+    workers = {i: {"cls": distributed.Nanny,
+                   "options": {**worker, "env": {"PELLUCID_DEVICE": chosen[i % len(chosen)]}}}
+               for i in range(count or len(chosen))}
+    scheduler = {"cls": distributed.Scheduler,
+                 "options": {**here, "port": 0, "dashboard": False, "dashboard_address": "127.0.0.1:0"}}
     with dask.config.set({"distributed.admin.system-monitor.interval": "10s",
-                          "distributed.scheduler.worker-ttl": f"{timeout:g}s"}):
-        workers = {i: {"cls": distributed.Nanny,
-                       "options": {"host": "127.0.0.1", "nthreads": 1, "memory_limit": 0,
-                                   "silence_logs": logging.CRITICAL,
-                                   "preload": ["pellucid.batch.interrupt"],
-                                   "env": {"PELLUCID_DEVICE": chosen[i % len(chosen)]}}}
-                   for i in range(count or len(chosen))}
-        scheduler = {"cls": distributed.Scheduler,
-                     "options": {"host": "127.0.0.1", "port": 0, "dashboard": False,
-                                                               "dashboard_address": "127.0.0.1:0"}}
-        with distributed.SpecCluster(workers=workers, scheduler=scheduler,
-                                     silence_logs=logging.CRITICAL) as cluster:
-            with distributed.Client(cluster) as client:
-                yield client
-
-
-def _connect(scheduler: Any) -> Any:
-    """A client of an address or of a cluster object."""
-    name = getattr(scheduler, "scheduler_address", scheduler)
-    try:
-        return distributed.Client(scheduler)
-    except Exception as e:  # of a wrong address, a host that is none, another protocol, ...
-        reason = str(e) or type(e).__name__
-        raise NoWorker(f"no Dask scheduler at {name}: {reason} (an address looks like tcp://host:8786, and "
-                       f"`dask scheduler` prints "
-                       f"its own when it starts; the scheduler's Dask must be this one's, "
-                       f"{distributed.__version__})") from e
+                          "distributed.scheduler.worker-ttl": f"{timeout:g}s"}), distributed.SpecCluster(
+            workers=workers, scheduler=scheduler, silence_logs=logging.CRITICAL) as cluster:
+        with distributed.Client(cluster) as client:
+            yield client
 
 
 @contextlib.contextmanager
-def _client(scheduler: Any, count: Optional[int], selectors: Sequence[str], timeout: float) -> Iterator[Any]:
-    if scheduler is None:
-        with _local_client(count, selectors, timeout) as client:
-            yield client
-    elif isinstance(scheduler, distributed.Client):
-        yield scheduler
-    else:
-        with _connect(scheduler) as client:
-            yield client
+def _connected(scheduler: Any) -> Iterator[Any]:
+    """A client of an address or of a cluster object."""
+    name = getattr(scheduler, "scheduler_address", scheduler)
+    try:
+        client = distributed.Client(scheduler)
+    except Exception as e:  # of a wrong address, a host that is none, another protocol, ...
+        raise NoWorker(f"no Dask scheduler at {name}: {str(e) or type(e).__name__} (an address looks like "
+                       "tcp://host:8786, and `dask scheduler` prints its own when it starts; the scheduler's "
+                       f"Dask must be this one's, {distributed.__version__})") from e
+    with client:
+        yield client
 
 
 def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str], *, scheduler: Any = None,
@@ -125,8 +112,7 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
     if scheduler is not None and workers is not None:
         if not callable(getattr(scheduler, "scale", None)):
             raise ValueError("workers: an address or a Client cannot start any; give a cluster object "
-                             "(SLURMCluster, KubeCluster) or "
-                             "leave it out")
+                             "(SLURMCluster, KubeCluster) or leave it out")
         ask = functools.partial(scheduler.scale, workers)
     if not isinstance(manifest, Manifest):
         manifest = Manifest(manifest)
@@ -137,10 +123,15 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
         raise BatchError(str(e)) from e
     from .dispatch import Dispatcher
 
-    with _client(scheduler, workers, device, timeout) as client:
+    if isinstance(scheduler, distributed.Client):
+        connection: Any = contextlib.nullcontext(scheduler)
+    elif scheduler is None:
+        connection = _local_client(workers, device, timeout)
+    else:
+        connection = _connected(scheduler)
+    with connection as client:
         if ask:
             ask()
-        return Dispatcher(client, manifest, store, timeout=timeout, jobs=jobs, patience=patience,
-                          read_back=read_back,
-                          display=Display(len(manifest), quiet=not progress), ask=ask,
-                          asked=workers or 0).run()
+        return Dispatcher(client, manifest, store, Display(len(manifest), quiet=not progress),
+                          timeout=timeout, jobs=jobs, patience=patience, read_back=read_back, ask=ask,
+                          expected=workers or 0).run()

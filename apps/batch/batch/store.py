@@ -20,19 +20,15 @@ class Store:
     """
 
     def __init__(self, out: str | os.PathLike[str]) -> None:
-        self.out = os.fspath(out)
-        if self.out.startswith("file://"):
-            self.out = self.out[len("file://"):]
+        self.out = os.fspath(out).removeprefix("file://")
         self._files: Any = None
         if "://" in self.out:
             try:
                 import fsspec  # type: ignore[import-untyped,unused-ignore]
-            except ImportError as e:
-                raise StoreError(f"{self.out} needs fsspec: pip install pellucid[batch]") from e
-            try:
+
                 self._files, self._root = fsspec.core.url_to_fs(self.out)
             except (ImportError, ValueError) as e:
-                raise StoreError(f"{self.out}: {e}") from e
+                raise StoreError(f"{self.out}: {e} (URLs need fsspec: pip install pellucid[batch])") from e
 
     def prepare(self) -> None:
         """Makes the folder if need be."""

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <thread>
 
-#include "batch/batch_entry.h"
+#include "batch/batch_manifest.h"
 #include "cli/cli_run.h"
 #include "io/choice_keys.h"
 #include "io/content_hash.h"
@@ -16,15 +16,27 @@ namespace fs = std::filesystem;
 
 class BatchCommand : public CommandTest {
   protected:
-    std::string manifest(const std::string& text) const {
+    // Runs a manifest of this text, m.toml, into the folder `out`.
+    Result batch(const std::string& text, const std::vector<std::string>& more = {},
+                 const std::string& environment = "") const {
         std::ofstream(path("m.toml")) << text;
-        return path("m.toml");
+        std::vector<std::string> words{"batch", path("m.toml"), "-o", path("out"), "--json"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run(words, environment);
     }
-    // Without the index.
-    std::vector<fs::path> files() const {
+    nlohmann::json made(const std::string& text) const {
+        const Result result = batch(text);
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        expectReport(result.json());
+        return result.json();
+    }
+    nlohmann::json index() const { return nlohmann::json::parse(read(path("out/m.index.json"))); }
+    // Without the index; `hidden`: under temporary names.
+    std::vector<fs::path> files(bool hidden = false) const {
         std::vector<fs::path> all;
         for (const auto& entry : fs::directory_iterator(path("out")))
-            if (entry.path().extension() != ".json") all.push_back(entry.path());
+            if (entry.path().extension() != ".json" && (entry.path().filename().string()[0] == '.') == hidden)
+                all.push_back(entry.path());
         std::sort(all.begin(), all.end());
         return all;
     }
@@ -32,101 +44,67 @@ class BatchCommand : public CommandTest {
 
 namespace {
 
-const char* const grid = R"(
-[[grid]]
-kind = "curvature"
-profile = ["skin", "marble"]
-form = ["arc", "sphere"]
-axis = "root"
-size = [8, 16]
-[[lut]]
-kind = "shadow"
-size = 12
-encoding = "float"
-[[lut]]
-kind = "specular"
-size = 9
-[[lut]]
-kind = "shadow"
-size = 12
-encoding = "float"
-)";
+std::string radii(int count, double step) {
+    std::string list;
+    for (int i = 0; i < count; ++i) list += (i ? ", " : "") + std::to_string(1 + step * i);
+    return "diffusion_radius = [" + list + "]\n";
+}
+
+const std::string shadow = "[[lut]]\nkind = \"shadow\"\nname = \"s\"\n";
 
 }  // namespace
 
 TEST_F(BatchCommand, MakesKeepsAndRepairs) {
-    const std::string m = manifest(grid);
-    auto first = run({"batch", m, "-o", path("out"), "--json"});
-    ASSERT_EQ(first.exitCode, 0) << first.err;
-    expectReport(first.json());
-    EXPECT_EQ(first.json()["entries"], 10);
-    EXPECT_EQ(first.json()["made"], 10);
-    EXPECT_EQ(first.json()["duplicates"], 1);
-    ASSERT_EQ(files().size(), 10u);
-
-    // Nothing to do; then one file cut short, one with a changed byte, one missing.
-    EXPECT_EQ(run({"batch", m, "-o", path("out"), "--json"}).json()["kept"], 10);
+    const std::string text =
+        "[[grid]]\nprofile = [\"skin\", \"marble\"]\nform = [\"arc\", \"sphere\"]\naxis = \"root\"\n"
+        "size = [8, 16]\n" +
+        shadow + "size = 12\n[[lut]]\nkind = \"specular\"\nsize = 9\n" + shadow + "size = 12\n";
+    const auto first = made(text);
+    EXPECT_EQ(first["entries"], 10);
+    EXPECT_EQ(first["made"], 10);
+    EXPECT_EQ(first["duplicates"], 1);
     const auto all = files();
+    ASSERT_EQ(all.size(), 10u);
+    EXPECT_EQ(made(text)["kept"], 10);
+    // Each file is damaged in a way of its own, and made again with the bytes that it had.
+    const size_t attribute = read(all[4].string()).find("root", read(all[4].string()).find("pellucid:axis"));
+    ASSERT_NE(attribute, std::string::npos);
     std::vector<std::string> before;
-    for (const auto& file : all) before.push_back(read(file.string()));
-    fs::resize_file(all[0], fs::file_size(all[0]) / 2);
-    {
-        std::fstream file(all[1], std::ios::in | std::ios::out | std::ios::binary);
-        file.seekp(-9, std::ios::end);
-        file.put(char(before[1][before[1].size() - 9] ^ 0x55));
+    for (size_t i = 0; i < 5; ++i) before.push_back(read(all[i].string()));
+    const std::function<void(std::string&)> damages[] = {
+        [](std::string& bytes) { bytes.resize(bytes.size() / 2); },
+        [](std::string& bytes) { bytes[bytes.size() - 9] ^= 0x55; }, [](std::string& bytes) { bytes += '\0'; },
+        [&](std::string& bytes) { bytes = before[0]; },  // another entry's
+        [&](std::string& bytes) { bytes[attribute] ^= 1; }};
+    for (size_t i = 0; i < std::size(damages); ++i) {
+        std::string bytes = before[i];
+        damages[i](bytes);
+        std::ofstream(all[i], std::ios::binary) << bytes;
     }
-    fs::remove(all[2]);
-    const auto repaired = run({"batch", m, "-o", path("out"), "--json"}).json();
-    EXPECT_EQ(repaired["made"], 3);
-    EXPECT_EQ(repaired["redone"], 2);
-    EXPECT_EQ(repaired["kept"], 7);
+    fs::remove(all[9]);
+    const auto repaired = made(text);
+    EXPECT_EQ(repaired["made"], 6);
+    EXPECT_EQ(repaired["redone"], 5);
+    EXPECT_EQ(repaired["kept"], 4);
     EXPECT_EQ(files(), all);
-    for (size_t i = 0; i < all.size(); ++i)
-        EXPECT_EQ(pellucid::io::readLut(pellucid::Device(""), all[i].string()).info().structSize,
-                  sizeof(PelLutInfo));
-}
-
-TEST_F(BatchCommand, ReportsWrongEntriesAndGoesOn) {
-    const std::string m = manifest(
-        "[[lut]]\nsize = 8\n\n[[lut]]\nsize = -3\n\n[[lut]]\nprofile = \"granite\"\n\n[[lut]]\nsize = "
-        "9\ncolour = 1\n");
-    const auto result = run({"batch", m, "-o", path("out"), "--json"});
-    EXPECT_EQ(result.exitCode, 3);
-    EXPECT_EQ(result.json()["made"], 1);
-    EXPECT_EQ(result.json()["failed"], 3);
-    for (const char* text : {"m.toml:5", "m.toml:8", "granite", "m.toml:12", "colour"})
-        EXPECT_NE(result.err.find(text), std::string::npos) << text << "\n" << result.err;
-    // A manifest of wrong entries alone leaves the index of an earlier run as it is, or makes none.
-    const std::string before = read(path("out/m.index.json"));
-    const std::string wrong = manifest("[[lut]]\nsize = -3\n");
-    EXPECT_EQ(run({"batch", wrong, "-o", path("out")}).exitCode, 3);
-    EXPECT_EQ(read(path("out/m.index.json")), before);
-    EXPECT_EQ(run({"batch", wrong, "-o", path("new")}).exitCode, 3);
-    EXPECT_FALSE(fs::exists(path("new/m.index.json")));
+    for (size_t i = 0; i < before.size(); ++i) EXPECT_EQ(read(all[i].string()), before[i]) << i;
 }
 
 TEST_F(BatchCommand, NamesFilesAndWritesAnIndexOfThem) {
     const std::string text =
-        "version = 1\n[[grid]]\nname = \"{profile}-{form}-{size}\"\nprofile = [\"skin\", \"marble\"]\nform = "
-        "[\"arc\", \"sphere\"]\n"
-        "size = [8, 9]\n[[lut]]\nkind = \"specular\"\nname = \"shine\"\nsize = 10\n[[lut]]\nkind = "
-        "\"shadow\"\nsize = 8\n"
-        "encoding = \"float\"\nwidth_min = 7.5\n";
-    const auto first = run({"batch", manifest(text), "-o", path("out"), "--json"});
-    ASSERT_EQ(first.exitCode, 0) << first.err;
-    EXPECT_EQ(first.json()["index"], "m.index.json");
-    const std::string bytes = read(path("out/m.index.json"));
-    const nlohmann::json index = nlohmann::json::parse(bytes);
-    EXPECT_EQ(index["version"], 1);
-    EXPECT_EQ(index["manifest"], "m.toml");
-    EXPECT_EQ(index["missing"], 0);
-    ASSERT_EQ(index["tables"].size(), 10u);
+        "version = 1\n[[grid]]\nname = \"{profile}-{form}-{size}\"\nprofile = [\"skin\", \"marble\"]\n"
+        "form = [\"arc\", \"sphere\"]\nsize = [8, 9]\n[[lut]]\nkind = \"specular\"\nname = \"shine\"\n"
+        "size = 10\n[[lut]]\nkind = \"shadow\"\nsize = 8\nencoding = \"float\"\nwidth_min = 7.5\n";
+    EXPECT_EQ(made(text)["index"], "m.index.json");
+    const nlohmann::json written = index(), tables = written["tables"];
+    EXPECT_EQ(written["version"], 1);
+    EXPECT_EQ(written["manifest"], "m.toml");
+    EXPECT_EQ(written["missing"], 0);
+    ASSERT_EQ(tables.size(), 10u);
     EXPECT_EQ(files().size(), 10u);
-    for (const nlohmann::json& table : index["tables"]) {
-        const std::string file = path("out/" + table["file"].get<std::string>());
-        ASSERT_TRUE(fs::exists(file)) << file;
-        const pellucid::Lut lut = pellucid::io::readLut(pellucid::Device(), file);
-        const PelLutInfo info = lut.info();
+    for (const nlohmann::json& table : tables) {
+        const PelLutInfo info =
+            pellucid::io::readLut(pellucid::Device(), path("out/" + table["file"].get<std::string>())).info();
         EXPECT_EQ(pellucid::io::lutKinds[info.kind], table["kind"].get<std::string>());
         if (info.kind != PEL_LUT_CURVATURE) continue;
         EXPECT_EQ(table["name"].get<std::string>() + ".exr", table["file"]);
@@ -136,174 +114,144 @@ TEST_F(BatchCommand, NamesFilesAndWritesAnIndexOfThem) {
         EXPECT_EQ(table["width"], info.curvature.width);
         EXPECT_EQ(table["radius_max"], info.curvature.radiusMax);
     }
-    EXPECT_EQ(index["tables"][0]["file"], "shine.exr");  // [[lut]] before [[grid]]
-    EXPECT_EQ(index["tables"][1]["width_min"], 7.5);
-    EXPECT_FALSE(index["tables"][1].contains("name"));
-    EXPECT_NEAR(index["tables"][1]["diffusion_radius"].get<double>(), 2.7, 0.1);  // the profile's own
-    // Again the same; with a table that cannot be made, it is counted and not listed.
-    EXPECT_EQ(run({"batch", path("m.toml"), "-o", path("out"), "--json"}).json()["kept"], 10);
-    EXPECT_EQ(read(path("out/m.index.json")), bytes);
-    run({"batch", manifest(text + "[[lut]]\nprofile = \"granite\"\n"), "-o", path("out")});
-    const nlohmann::json after = nlohmann::json::parse(read(path("out/m.index.json")));
-    EXPECT_EQ(after["missing"], 1);
-    EXPECT_EQ(after["tables"], index["tables"]);
-    // A name whose request changes is made anew.
-    EXPECT_EQ(run({"batch", manifest("[[lut]]\nname = \"shine\"\nsize = 8\n"), "-o", path("out"), "--json"})
-                  .json()["redone"],
-              1);
+    EXPECT_EQ(tables[0]["file"], "shine.exr");  // [[lut]] before [[grid]]
+    EXPECT_EQ(tables[1]["width_min"], 7.5);
+    EXPECT_FALSE(tables[1].contains("name"));
+    EXPECT_NEAR(tables[1]["diffusion_radius"].get<double>(), 2.7, 0.1);  // the profile's own
+    // A table that cannot be made is counted and not listed.
+    EXPECT_EQ(batch(text + "[[lut]]\nprofile = \"granite\"\n").exitCode, 3);
+    EXPECT_EQ(index()["missing"], 1);
+    EXPECT_EQ(index()["tables"], tables);
+    EXPECT_EQ(made("[[lut]]\nname = \"shine\"\nsize = 8\n")["redone"], 1) << "another request of this name";
 }
 
 // By default a manifest of version 1 makes FaceWorks' tables, one of version 2 those that a material makes of
 // its profile.
 TEST_F(BatchCommand, TablesBeginAsTheVersionOrThePresetSays) {
-    const auto made = [&](const std::string& text) {
-        const Result result = run({"batch", manifest(text), "-o", path("out"), "--json"});
-        EXPECT_EQ(result.exitCode, 0) << result.err;
-        return nlohmann::json::parse(read(path("out/m.index.json")))["tables"];
-    };
-    const std::string two = "[[lut]]\nname = \"c\"\n%[[lut]]\nkind = \"shadow\"\nname = \"s\"\n%";
-    const auto with = [&](const std::string& head, const std::string& keys) {
-        std::string text = head + two;
-        for (size_t at; (at = text.find('%')) != std::string::npos;) text.replace(at, 1, keys);
-        return made(text);
-    };
-    for (const auto& tables : {with("", ""), with("version = 2\n", "preset = \"faceworks\"\n")}) {
-        EXPECT_EQ(tables[0]["form"], "arc");
-        EXPECT_EQ(tables[0]["axis"], "linear");
-        EXPECT_EQ(tables[0]["width"], 512);
-        EXPECT_EQ(tables[0]["radius_max"], 100);
-        EXPECT_EQ(tables[1]["axis"], "linear");
-        EXPECT_EQ(tables[1]["closed_ends"], 0);
-        EXPECT_EQ(tables[1]["width_min"], 8);
-    }
-    for (const auto& tables : {with("version = 2\n", ""), with("", "preset = \"material\"\n")}) {
-        EXPECT_EQ(tables[0]["form"], "sphere");
-        EXPECT_EQ(tables[0]["axis"], "root");
-        EXPECT_EQ(tables[0]["width"], 64);
-        EXPECT_NEAR(tables[0]["radius_min"].get<double>(), 0.25 * tables[0]["diffusion_radius"].get<double>(),
-                    1e-6);
-        EXPECT_EQ(tables[1]["axis"], "root");
-        EXPECT_EQ(tables[1]["closed_ends"], 1);
-        EXPECT_EQ(tables[1]["width"], 128);
-        const pellucid::Lut lut = pellucid::io::readLut(pellucid::Device(), path("out/s.exr"));
-        EXPECT_EQ(lut.info().shadow.widthMin, tables[1]["width_min"].get<float>());
-    }
+    const auto tables = [&](const std::string& text) { return made(text), index()["tables"]; };
+    for (const bool faceworks : {true, false})
+        for (const bool byVersion : {true, false}) {
+            SCOPED_TRACE(testing::Message() << faceworks << byVersion);
+            const std::string preset = byVersion   ? ""
+                                       : faceworks ? "preset = \"faceworks\"\n"
+                                                   : "preset = \"material\"\n";
+            const auto both = tables((byVersion != faceworks ? "version = 2\n" : "") +
+                                     ("[[lut]]\nname = \"c\"\n" + preset) + shadow + preset);
+            const auto &c = both[0], &s = both[1];
+            EXPECT_EQ(c["form"], faceworks ? "arc" : "sphere");
+            EXPECT_EQ(c["axis"], faceworks ? "linear" : "root");
+            EXPECT_EQ(c["width"], faceworks ? 512 : 64);
+            EXPECT_EQ(s["axis"], faceworks ? "linear" : "root");
+            EXPECT_EQ(s["closed_ends"], faceworks ? 0 : 1);
+            if (faceworks) {
+                EXPECT_EQ(c["radius_max"], 100);
+                EXPECT_EQ(s["width_min"], 8);
+                continue;
+            }
+            EXPECT_NEAR(c["radius_min"].get<double>(), 0.25 * c["diffusion_radius"].get<double>(), 1e-6);
+            EXPECT_EQ(s["width"], 128);
+            const pellucid::Lut lut = pellucid::io::readLut(pellucid::Device(), path("out/s.exr"));
+            EXPECT_EQ(lut.info().shadow.widthMin, s["width_min"].get<float>());
+        }
     // The axis of shadow tables counts, unless an older manifest has one that did not.
-    const std::string shadow = "[[lut]]\nkind = \"shadow\"\nname = \"s\"\naxis = \"linear\"\nsize = 8\n";
-    EXPECT_EQ(made("version = 2\n" + shadow)[0]["axis"], "linear");
-    EXPECT_EQ(made("[[lut]]\nkind = \"shadow\"\nname = \"s\"\naxis = \"root\"\nsize = 8\n")[0]["axis"],
-              "linear");
-    EXPECT_EQ(made("version = 2\n[[lut]]\nkind = \"shadow\"\nname = \"s\"\nclosed_ends = 0\nsize = 8\n")
-                  [0]["closed_ends"],
-              0);
+    const std::string small = shadow + "size = 8\n";
+    EXPECT_EQ(tables("version = 2\n" + small + "axis = \"linear\"\n")[0]["axis"], "linear");
+    EXPECT_EQ(tables(small + "axis = \"root\"\n")[0]["axis"], "linear");
+    EXPECT_EQ(tables("version = 2\n" + small + "closed_ends = 0\n")[0]["closed_ends"], 0);
 }
 
-TEST_F(BatchCommand, RefusesNamesThatAreNone) {
-    const auto said = [&](const std::string& text) {
-        const Result result = run({"batch", manifest(text), "-o", path("out")});
-        EXPECT_EQ(result.exitCode, 3) << text;
-        return result.err;
+// Wrong entries are reported with their lines, and the others are made.
+TEST_F(BatchCommand, SaysWhatIsWrong) {
+    const struct {
+        std::string text;
+        std::vector<std::string> said;
+        int made;
+    } rows[] = {
+        {"[[lut]]\nsize = 8\n\n[[lut]]\nsize = -3\n\n[[lut]]\nprofile = \"granite\"\n\n[[lut]]\nsize = 9\n"
+         "colour = 1\n",
+         {"m.toml:5", "m.toml:8", "granite", "m.toml:12", "colour"},
+         1},
+        {"[[lut]]\nsize = 8\n\n[[lut]]\nsize = 16384\n[[lut]]\nsize = 9\n", {"m.toml:4: "}, 1},
+        {"[[lut]]\nsize = -3\n", {"m.toml:2"}, 0},
+        {"[[grid]]\nname = \"a\"\nsize = [8, 9]\n", {"m.toml:2: 'name' in [[grid]] gives two tables"}, 1},
+        {"[[lut]]\nname = \"b\"\nsize = 8\n[[lut]]\nname = \"b\"\nsize = 9\n", {"the one of line 1 has it"}, 1},
+        {"[[lut]]\nname = \"{colour}\"\n", {"'{colour}'; one of {axis}, "}, 0},
+        {"version = 3\n[[lut]]\nsize = 8\n", {"of a later pellucid"}, -1},
+        {"version = 1.5\n[[lut]]\nsize = 8\n", {"'version'"}, -1},
+        {"[[lut]\n", {"m.toml:"}, -1},
+        {"x = 1\n", {"m.toml"}, -1},
     };
-    EXPECT_TRUE(contains(said("[[grid]]\nname = \"a\"\nsize = [8, 9]\n"),
-                         "m.toml:2: 'name' in [[grid]] gives two tables"));
-    EXPECT_TRUE(contains(said("[[lut]]\nname = \"a\"\nsize = 8\n[[lut]]\nname = \"a\"\nsize = 9\n"),
-                         "the one of line 1 has it"));
-    EXPECT_TRUE(contains(said("[[lut]]\nname = \"{colour}\"\n"), "'{colour}'; one of {axis}, "));
+    for (const auto& [text, said, made] : rows) {
+        SCOPED_TRACE(text);
+        const fs::path last = path("out/m.index.json");
+        const std::string before = fs::exists(last) ? read(last.string()) : "";
+        const Result result = batch(text, {}, "POCL_MEMORY_LIMIT=1");  // GiB: too little for the large one
+        EXPECT_EQ(result.exitCode, 3);
+        for (const std::string& part : said) EXPECT_TRUE(contains(result.err, part));
+        if (made >= 0) {
+            EXPECT_EQ(result.json()["made"], made);
+            EXPECT_TRUE(contains(result.json()["warnings"][0].get<std::string>(), "m.toml:"));
+        } else {
+            EXPECT_EQ(result.out, "");
+        }
+        if (made <= 0) {  // the index of an earlier run stays as it is
+            EXPECT_EQ(read(last.string()), before);
+        }
+    }
     for (const char* name : {"../a", "a/b", ".a", "-a", "a b", "{size", "", "\\u00e4"})
-        EXPECT_TRUE(
-            contains(said("[[lut]]\nsize = 8\nname = \"" + std::string(name) + "\"\n"), "m.toml:3: 'name'"))
+        EXPECT_TRUE(contains(batch("[[lut]]\nsize = 8\nname = \"" + std::string(name) + "\"\n").err,
+                             "m.toml:3: 'name'"))
             << name;
-    EXPECT_TRUE(contains(said("version = 3\n[[lut]]\nsize = 8\n"), "of a later pellucid"));
-    EXPECT_TRUE(contains(said("version = 1.5\n[[lut]]\nsize = 8\n"), "'version'"));
-    EXPECT_EQ(files().size(), 1u);  // the first of each pair
-}
-
-TEST_F(BatchCommand, RefusesWhatIsNoManifest) {
-    const std::string m = manifest("[[lut]\n");
-    EXPECT_EQ(run({"batch", m, "-o", path("out")}).exitCode, 3);
     EXPECT_EQ(run({"batch", path("none.toml"), "-o", path("out")}).exitCode, 3);
-    EXPECT_EQ(run({"batch", manifest("x = 1\n"), "-o", path("out")}).exitCode, 3);
-    EXPECT_EQ(run({"batch", manifest("[[lut]]\n"), "-o", "/dev/null/folder"}).exitCode, 3);
-    EXPECT_EQ(run({"batch", manifest("[[lut]]\n")}).exitCode, 2);
-}
-
-// What the device refuses shows only when the table is made.
-TEST_F(BatchCommand, AnEntryThatCannotBeMadeIsReportedWithItsLine) {
-    const std::string m = manifest("[[lut]]\nsize = 8\n\n[[lut]]\nsize = 16384\n[[lut]]\nsize = 9\n");
-    const auto result = run({"batch", m, "-o", path("out"), "--json"},
-                            "POCL_MEMORY_LIMIT=1");  // GiB: too little for the large one
-    EXPECT_EQ(result.exitCode, 3);
-    EXPECT_EQ(result.json()["made"], 2);
-    EXPECT_EQ(result.json()["failed"], 1);
-    EXPECT_TRUE(contains(result.err, "m.toml:4: "));
-    EXPECT_TRUE(contains(result.json()["warnings"][0].get<std::string>(), "m.toml:4: "));
-}
-
-TEST_F(BatchCommand, AChangedAttributeIsNoticed) {
-    const std::string m = manifest("[[lut]]\nsize = 8\n");
-    ASSERT_EQ(run({"batch", m, "-o", path("out")}).exitCode, 0);
-    const std::string file = files().at(0).string();
-    std::string bytes = read(file);
-    const size_t at = bytes.find("linear", bytes.find("pellucid:axis"));
-    ASSERT_NE(at, std::string::npos);
-    const std::string good = bytes;
-    bytes[at] ^= 1;
-    std::ofstream(file, std::ios::binary) << bytes;
-    EXPECT_EQ(run({"batch", m, "-o", path("out"), "--json"}).json()["redone"], 1);
-    EXPECT_EQ(read(file), good);
-    std::ofstream(file, std::ios::binary) << good << '\0';
-    EXPECT_EQ(run({"batch", m, "-o", path("out"), "--json"}).json()["redone"], 1) << "longer than it was";
+    EXPECT_EQ(run({"batch", path("m.toml"), "-o", "/dev/null/folder"}).exitCode, 3);
+    EXPECT_EQ(run({"batch", path("m.toml")}).exitCode, 2);
+    EXPECT_EQ(run({"batch", path("m.toml"), "-o", path("new")}).exitCode, 3);
+    EXPECT_FALSE(fs::exists(path("new/m.index.json")));
 }
 
 // Kills at moments that a seed chooses; what had its name then is whole and is kept.
 TEST_F(BatchCommand, KilledAtAnyMomentLosesWhatWasInFlight) {
-    std::string radii;
-    for (int i = 0; i < 300; ++i) radii += (i ? ", " : "") + std::to_string(1 + 0.01 * i);
-    const std::string m = manifest("[[grid]]\nsize = [24, 40]\ndiffusion_radius = [" + radii + "]\n");
+    const std::string text = "[[grid]]\nsize = [24, 40]\n" + radii(300, 0.01);
+    write("m.toml", text);
     fs::create_directories(path("out"));
-    const auto named = [&](bool hidden) {
-        size_t count = 0;
-        for (const fs::path& file : files()) count += (file.filename().string()[0] == '.') == hidden;
-        return count;
-    };
     constexpr unsigned jobs = 6;
     unsigned random = 1;
     size_t kills = 0;
-    for (int round = 0; round < 5 && named(false) < 600; ++round) {
+    for (int round = 0; round < 5 && files().size() < 600; ++round) {
         random = random * 1664525 + 1013904223;  // [Numerical Recipes]
         const std::string line = "timeout -s KILL " + std::to_string(0.15 + (random >> 16) / 65536.0 * 0.35) +
-                                 " '" + PELLUCID_COMMAND + "' batch '" + m + "' -j " + std::to_string(jobs) +
-                                 " -o '" + path("out") + "' >/dev/null 2>&1";
-        const size_t before = named(false), left = named(true);
+                                 " '" + PELLUCID_COMMAND + "' batch '" + path("m.toml") + "' -j " +
+                                 std::to_string(jobs) + " -o '" + path("out") + "' >/dev/null 2>&1";
+        const size_t before = files().size(), left = files(true).size();
         const int status = std::system(line.c_str());
         kills += WIFSIGNALED(status) || WEXITSTATUS(status) == 137;
-        EXPECT_GE(named(false), before);
-        EXPECT_LE(named(true), left + jobs) << "more than was in flight";
+        EXPECT_GE(files().size(), before);
+        EXPECT_LE(files(true).size(), left + jobs) << "more than was in flight";
     }
     EXPECT_GE(kills, 1u);
-    const size_t whole = named(false);
-    for (const fs::path& file : files())  // as if the kill had been a while ago
-        fs::last_write_time(file, fs::last_write_time(file) - std::chrono::minutes(5));
-    const auto result = run({"batch", m, "-o", path("out"), "--json"});
-    ASSERT_EQ(result.exitCode, 0) << result.err;
-    EXPECT_EQ(result.json()["kept"], whole);
-    EXPECT_EQ(result.json()["redone"], 0) << "a file that had its name was broken";
-    EXPECT_EQ(result.json()["made"], 600 - whole);
+    const size_t whole = files().size();
+    for (const bool hidden : {false, true})  // as if the kill had been a while ago
+        for (const fs::path& file : files(hidden))
+            fs::last_write_time(file, fs::last_write_time(file) - std::chrono::minutes(5));
+    const auto result = made(text);
+    EXPECT_EQ(result["kept"], whole);
+    EXPECT_EQ(result["redone"], 0) << "a file that had its name was broken";
+    EXPECT_EQ(result["made"], 600 - whole);
     // The last one killed may still have been waiting for its disk.
-    for (int i = 0; i < 50 && named(true) > 0; ++i) {
+    for (int i = 0; i < 50 && !files(true).empty(); ++i) {
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        EXPECT_EQ(run({"batch", m, "-o", path("out"), "--json"}).json()["kept"], 600);
+        EXPECT_EQ(made(text)["kept"], 600);
     }
-    EXPECT_EQ(named(true), 0u) << "what the killed left behind is removed";
+    EXPECT_TRUE(files(true).empty()) << "what the killed left behind is removed";
 }
 
 TEST_F(BatchCommand, SeveralDevicesShareAManifest) {
-    const std::string m = manifest(
+    const std::string text =
         "[[grid]]\nsize = [8, 12, 16, 20, 24, 28]\nform = [\"arc\", \"ring\"]\n"
-        "axis = [\"linear\", \"root\"]\n");
-    ASSERT_EQ(run({"batch", m, "-o", path("one")}).exitCode, 0);
-    const auto result =
-        run({"batch", m, "-o", path("out"), "--device", "", "--device", "", "-j", "4", "--json"});
+        "axis = [\"linear\", \"root\"]\n";
+    made(text);
+    fs::rename(path("out"), path("one"));
+    const auto result = batch(text, {"--device", "", "--device", "", "-j", "4"});
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const auto devices = result.json()["devices"];
     ASSERT_EQ(devices.size(), 2u);
@@ -312,37 +260,33 @@ TEST_F(BatchCommand, SeveralDevicesShareAManifest) {
     EXPECT_GT(devices[1]["made"], 0);
     for (const fs::path& file : files())
         EXPECT_EQ(read(file.string()), read(path("one/" + file.filename().string()))) << "the same bytes";
-    EXPECT_EQ(run({"batch", m, "-o", path("out"), "--device", "abacus"}).exitCode, 4);
+    EXPECT_EQ(batch(text, {"--device", "abacus"}).exitCode, 4);
 }
 
 TEST_F(BatchCommand, AFullDiskIsAClearError) {
-    const std::string m = manifest("[[grid]]\nsize = [40, 44, 48, 52, 56, 60, 64, 68]\n");
     fs::create_directories(path("out"));
     // No file may become longer than 4 MiB (a shell's unit is 512 bytes): the device's compiler needs some.
-    write("large.toml", "[[lut]]\nsize = 1200\n");
-    const auto limited = run({"batch", path("large.toml"), "-o", path("out")}, "ulimit -f 8192;");
+    const auto limited = batch("[[lut]]\nsize = 1200\n", {}, "ulimit -f 8192;");
     EXPECT_EQ(limited.exitCode, 3);
     EXPECT_TRUE(contains(limited.err, "cannot be written: File too large"));
-    for (const fs::path& file : files()) EXPECT_NE(file.filename().string()[0], '.') << "no leftovers";
-
+    EXPECT_TRUE(files(true).empty()) << "no leftovers";
     if (std::system("unshare -rm true 2>/dev/null") != 0)
         GTEST_SKIP() << "no right to mount a small file system of one's own";
-    const std::string full = "unshare -rm sh -c 'mount -t tmpfs -o size=64k none \"" + path("out") +
+    const std::string text = "[[grid]]\nsize = [40, 44, 48, 52, 56, 60, 64, 68]\n",
+                      full = "unshare -rm sh -c 'mount -t tmpfs -o size=64k none \"" + path("out") +
                              "\" && { \"$0\" \"$@\"; echo $? >\"" + path("code") +
                              "\"; ls -A -I \"*.json\" \"" + path("out") + "\" >\"" + path("left") + "\"; }'";
-    const auto result = run({"batch", m, "-o", path("out"), "--json"}, full);
+    const auto result = batch(text, {}, full);
     EXPECT_EQ(read(path("code")), "3\n") << result.err;
     EXPECT_TRUE(contains(result.err, "cannot be written: No space left on device"));
     const std::string left = read(path("left"));
     EXPECT_EQ(left.find(".curvature"), std::string::npos) << "no leftovers";
     EXPECT_EQ(result.json()["made"].get<long>(), std::count(left.begin(), left.end(), '\n'));
-    EXPECT_EQ(run({"batch", m, "-o", path("out")}).exitCode, 0) << "with room it goes on";
+    EXPECT_EQ(made(text)["made"], 8) << "with room it goes on";
 }
 
 TEST_F(BatchCommand, ProgressIsABarOnATerminalAndLinesElsewhere) {
-    std::string radii;
-    for (int i = 0; i < 4000; ++i) radii += (i ? ", " : "") + std::to_string(1 + 0.001 * i);
-    const std::string m = manifest("[[grid]]\nsize = 16\ndiffusion_radius = [" + radii + "]\n");
+    const std::string m = write("m.toml", "[[grid]]\nsize = 16\n" + radii(4000, 0.001));
     const auto plain = run({"batch", m, "-o", path("out")});
     EXPECT_TRUE(contains(plain.err, "4000 of 4000, "));
     EXPECT_TRUE(contains(plain.err, " per second"));
@@ -354,30 +298,30 @@ TEST_F(BatchCommand, ProgressIsABarOnATerminalAndLinesElsewhere) {
     const std::string line = "script -qec \"'" + std::string(PELLUCID_COMMAND) + "' batch '" + m + "' -o '" +
                              path("out") + "'\" /dev/null >'" + path("terminal") + "' 2>&1 </dev/null";
     ASSERT_EQ(std::system(line.c_str()), 0);
-    const std::string shown = read(path("terminal"));
     for (const char* part : {"\r", "[#", "/4000, ", "/s", " s left", "4000 tables: 4000 made"})
-        EXPECT_TRUE(contains(shown, part));
+        EXPECT_TRUE(contains(read(path("terminal")), part));
 }
 
 // The bytes of a batch's files are encoded in memory; OpenImageIO reads them.
 TEST_F(BatchCommand, FilesHoldTheTexelsOfTheTable) {
-    const std::string m = manifest(
-        "[[grid]]\nsize = [1, 7, 33]\nencoding = [\"half\", \"float\"]\naxis = \"root\"\n"
-        "[[lut]]\nkind = \"shadow\"\nsize = 5\n[[lut]]\nkind = \"specular\"\nsize = 6\n");
-    const auto entries = pellucid::io::readManifest(m).entries;
+    const auto entries = pellucid::io::readManifest(write("m.toml",
+                                                          "[[grid]]\nsize = [1, 7, 33]\naxis = \"root\"\n"
+                                                          "encoding = [\"half\", \"float\"]\n"
+                                                          "[[lut]]\nkind = \"shadow\"\nsize = 5\n"
+                                                          "[[lut]]\nkind = \"specular\"\nsize = 6\n"))
+                             .entries;
     ASSERT_EQ(entries.size(), 8u);
     const pellucid::Device device("");
     for (const auto& entry : entries) {
         const std::string bytes = pellucid::io::makeEntryFile(device, entry);
         EXPECT_EQ(pellucid::io::makeEntryFile(device, entry), bytes);
         write("t.exr", bytes);
-        const pellucid::io::Image image = pellucid::io::readImage(path("t.exr"));
         const bool half = entry.encoding == PEL_LUT_HALF;
-        EXPECT_EQ(image.channels.at(0).type,
+        EXPECT_EQ(pellucid::io::readImage(path("t.exr")).channels.at(0).type,
                   half ? pellucid::io::ChannelType::Half : pellucid::io::ChannelType::Float);
         const pellucid::Lut lut = pellucid::io::readLut(device, path("t.exr"));
-        EXPECT_EQ(lut.info().kind, entry.info.kind);
         const auto& info = entry.info;
+        EXPECT_EQ(lut.info().kind, info.kind);
         const pellucid::Lut again = info.kind == PEL_LUT_CURVATURE ? pellucid::Lut(device, info.curvature)
                                     : info.kind == PEL_LUT_SHADOW  ? pellucid::Lut(device, info.shadow)
                                                                    : pellucid::Lut(device, info.specular);

@@ -9,6 +9,7 @@
 #include "io/scene/scene_file.h"
 
 using namespace pellucid;
+using namespace nlohmann::literals;
 namespace fs = std::filesystem;
 
 namespace {
@@ -40,8 +41,8 @@ class Import : public CommandTest {
     }
 };
 
-// A ball of 2 cm, of one material.
-std::string ball(const std::string& material, const std::string& more = "") {
+// A ball of 2 cm, of one material, with these members of the root.
+std::string ball(const nlohmann::json& material, const nlohmann::json& more = nlohmann::json::object()) {
     constexpr int rings = 24, segments = 48;
     std::vector<float> positions;
     std::vector<uint32_t> indices;
@@ -57,32 +58,30 @@ std::string ball(const std::string& material, const std::string& more = "") {
             for (const uint32_t i : {at, below, at + 1, at + 1, below, below + 1}) indices.push_back(i);
         }
     const std::string p = gltf::bytesOf(positions), i = gltf::bytesOf(indices);
-    const std::string json =
-        R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
-        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],)"
-        R"("materials":[)" +
-        material + R"(],"buffers":[{"byteLength":)" + std::to_string(p.size() + i.size()) +
-        R"(}],"bufferViews":[{"buffer":0,"byteLength":)" + std::to_string(p.size()) +
-        R"(},{"buffer":0,"byteOffset":)" + std::to_string(p.size()) + R"(,"byteLength":)" +
-        std::to_string(i.size()) + R"(}],"accessors":[{"bufferView":0,"componentType":5126,"count":)" +
-        std::to_string(positions.size() / 3) +
-        R"(,"type":"VEC3"},{"bufferView":1,"componentType":5125,"count":)" + std::to_string(indices.size()) +
-        R"(,"type":"SCALAR"}])" + more + "}";
-    return gltf::glb(json, p + i);
+    nlohmann::json scene = nlohmann::json::parse(R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}], "meshes": [{"primitives": [
+            {"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}]})");
+    scene["materials"] = {material};
+    scene["buffers"] = {{{"byteLength", p.size() + i.size()}}};
+    scene["bufferViews"] = {{{"buffer", 0}, {"byteLength", p.size()}},
+                            {{"buffer", 0}, {"byteOffset", p.size()}, {"byteLength", i.size()}}};
+    scene["accessors"] = {
+        {{"bufferView", 0}, {"componentType", 5126}, {"count", positions.size() / 3}, {"type", "VEC3"}},
+        {{"bufferView", 1}, {"componentType", 5125}, {"count", indices.size()}, {"type", "SCALAR"}}};
+    scene.update(more);
+    return gltf::glb(scene.dump(), p + i);
 }
-
-const char* const wax = R"({"name":"Candle wax","pbrMetallicRoughness":{"baseColorFactor":[0.9,0.8,0.7,1],)"
-                        R"("metallicFactor":0,"roughnessFactor":0.6},"extensions":{
-        "KHR_materials_diffuse_transmission":{"diffuseTransmissionFactor":1},
-        "KHR_materials_volume":{"thicknessFactor":0.02,"attenuationDistance":0.0015,)"
-                        R"("attenuationColor":[0.4,0.3,0.1]},
-        "KHR_materials_volume_scatter":{"multiscatterColor":[0.95,0.8,0.5]}}})";
 
 }  // namespace
 
 TEST_F(Import, ABallOfWaxBecomesAPicture) {
-    const Result result =
-        run({"import", write("wax.glb", ball(wax)), "-o", out(), "--size", "96x96", "--json"});
+    const std::string wax = ball(R"({"name": "Candle wax", "pbrMetallicRoughness":
+            {"baseColorFactor": [0.9, 0.8, 0.7, 1], "metallicFactor": 0, "roughnessFactor": 0.6},
+        "extensions": {"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 1},
+            "KHR_materials_volume": {"thicknessFactor": 0.02, "attenuationDistance": 0.0015,
+                                     "attenuationColor": [0.4, 0.3, 0.1]},
+            "KHR_materials_volume_scatter": {"multiscatterColor": [0.95, 0.8, 0.5]}}})"_json);
+    const Result result = run({"import", write("wax.glb", wax), "-o", out(), "--size", "96x96", "--json"});
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const nlohmann::json report = result.json();
     expectReport(report);
@@ -113,22 +112,16 @@ TEST_F(Import, ABallOfWaxBecomesAPicture) {
 }
 
 TEST_F(Import, LightsCamerasAndProfilesOfOnesOwn) {
-    const std::string more =
-        R"(,"cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.01,"aspectRatio":1.5}}],
-           "extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","intensity":3.1415927},)"
-        R"({"type":"spot","intensity":0.02},{"type":"point","intensity":0.001}]}})";
-    std::string file = ball(R"({"name":"Head","pbrMetallicRoughness":{"metallicFactor":0}})", more);
-    const std::string from = R"("nodes":[{"mesh":0}])",
-                      to = R"("nodes":[{"mesh":0,"children":[1,2,3,4]},{"camera":0,"translation":[0,0,)"
-                           R"(0.12]},{"extensions":{"KHR_lights_punctual":{"light":0}}},)"
-                           R"({"extensions":{"KHR_lights_punctual":{"light":1}},"translation":[0,0,)"
-                           R"(0.1]},{"extensions":{"KHR_lights_punctual":{"light":2}},)"
-                           R"("translation":[0.1,0,0.1]}])";
-    const uint32_t length =
-        uint32_t(uint8_t(file[12])) | uint32_t(uint8_t(file[13])) << 8 | uint32_t(uint8_t(file[14])) << 16;
-    std::string json = file.substr(20, length);
-    json.replace(json.find(from), from.size(), to);
-    file = gltf::glb(json, file.substr(28 + length));
+    const std::string file = ball(R"({"name": "Head", "pbrMetallicRoughness": {"metallicFactor": 0}})"_json,
+                                  R"({"cameras": [{"type": "perspective",
+                        "perspective": {"yfov": 0.5, "znear": 0.01, "aspectRatio": 1.5}}],
+            "extensions": {"KHR_lights_punctual": {"lights": [
+                {"type": "directional", "intensity": 3.1415927}, {"type": "spot", "intensity": 0.02},
+                {"type": "point", "intensity": 0.001}]}},
+            "nodes": [{"mesh": 0, "children": [1, 2, 3, 4]}, {"camera": 0, "translation": [0, 0, 0.12]},
+                {"extensions": {"KHR_lights_punctual": {"light": 0}}},
+                {"extensions": {"KHR_lights_punctual": {"light": 1}}, "translation": [0, 0, 0.1]},
+                {"extensions": {"KHR_lights_punctual": {"light": 2}}, "translation": [0.1, 0, 0.1]}]})"_json);
     const Result result = run({"import", write("head.glb", file), "-o", out(), "--profile", "Head=skin",
                                "--lights", "1", "--json"});
     ASSERT_EQ(result.exitCode, 0) << result.err;
@@ -156,9 +149,8 @@ TEST_F(Import, LightsCamerasAndProfilesOfOnesOwn) {
 TEST_F(Import, CamerasFarAwayAndBentOutOfShape) {
     for (const char* place :
          {R"("translation":[0,0,1e12])", R"("translation":[-1e12,0,0])",
-          R"("translation":[0,0,5],)"
-          R"("scale":[0,0,0])",
-          R"("matrix":[1,0,0,0, 0,0,1,0, 0,0,1,0, 0,0,3,1])", R"("translation":[0.5,0.5,99000])"}) {
+          R"("translation":[0,0,5],"scale":[0,0,0])", R"("matrix":[1,0,0,0, 0,0,1,0, 0,0,1,0, 0,0,3,1])",
+          R"("translation":[0.5,0.5,99000])"}) {
         const std::string nodes = std::string(R"([{"mesh":0,"children":[1]},{"camera":0,)") + place + "}]";
         const std::string file = gltf::square(
             "", nodes, R"(,"cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1}}])");
@@ -176,12 +168,8 @@ TEST_F(Import, RefusesWhatIsWrong) {
     expectRefused({"import", path("none.glb"), "-o", out()}, 3, "none.glb");
     expectRefused({"import", write("a.glb", "glTF"), "-o", out()}, 3, "a.glb: ends within the header");
     expectRefused({"import", write("a.obj", "v 0 0 0"), "-o", out()}, 2, "a.obj");
-    expectRefused({"import",
-                   write("b.gltf", gltf::squareJson("", R"([{"mesh":0}])", "",
-                                                    R"(,)"
-                                                    R"("uri":"none.bin")")),
-                   "-o", out()},
-                  3, "none.bin");
+    const std::string missing = gltf::squareJson("", R"([{"mesh":0}])", "", R"(,"uri":"none.bin")");
+    expectRefused({"import", write("b.gltf", missing), "-o", out()}, 3, "none.bin");
 }
 
 // What assimp's tests keep: good files become pictures, bad ones a message; nothing crashes.

@@ -2,8 +2,7 @@
 #include "native.h"
 
 #ifdef PELLUCID_BATCH
-#include "batch/batch_entry.h"
-#include "batch/batch_index.h"
+#include "batch/batch_manifest.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/image/image_compare.h"

@@ -1,4 +1,4 @@
-// Compares two reports of `pellucid bench`.
+// Reports of `pellucid bench`: their page, and the comparison of two.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -20,8 +20,9 @@ nlohmann::ordered_json parseReport(const std::string& text);
 // 1993]. An error counts as grown when it is more than 1.5 times the old one and 1e-7 above it.
 nlohmann::ordered_json compareReports(const nlohmann::ordered_json& before,
                                       const nlohmann::ordered_json& after);
+std::string describeComparison(const nlohmann::ordered_json& comparison);  // a table for people
 
-// A table for people.
-std::string describeComparison(const nlohmann::ordered_json& comparison);
+std::string htmlPage(const nlohmann::ordered_json& report);  // self-contained
+std::string shortNumber(double value);                       // three digits
 
 }  // namespace pellucid::bench

@@ -1,8 +1,0 @@
-import pytest
-
-import pellucid as pel
-
-
-@pytest.fixture(scope="session")
-def device():
-    return pel.Device()
