@@ -5,8 +5,8 @@
 //
 // Frames of shading: `full` is a screen of folded skin, `demo_key` and `demo_backlit` are the views that
 // `pellucid demo` left in out/demo or PELLUCID_DEMO_DIR. `lit` is what a renderer without scattering shades
-// there: Lambert with a plain shadow, ambient and specular light; `plain` leaves out the shadow and the ambient
-// light too.
+// there: Lambert with a plain shadow, ambient and specular light; `plain` leaves out the shadow and the
+// ambient light too.
 #include <benchmark/benchmark.h>
 #include <algorithm>
 #include <chrono>

@@ -83,8 +83,8 @@ double areaOf(const std::vector<LitArea>& surface, double brighterThan) {
 }
 
 // How bright the lights make the surface, before anything is drawn. A factor of their brightness: 1 if the
-// bright parts of the scene are between 2 % and 100 % of white, and otherwise one that makes them 80 %. Cameras
-// have an exposure; glTF files do not say which.
+// bright parts of the scene are between 2 % and 100 % of white, and otherwise one that makes them 80 %.
+// Cameras have an exposure; glTF files do not say which.
 double chosenLightFactor(const ImportedGltf& made) {
     constexpr double dimmest = 0.02, wanted = 0.8, brightShare = 0.1;
     std::vector<SceneLight> lights;

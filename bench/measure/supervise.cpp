@@ -24,10 +24,11 @@ double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// The pellucid command again, read line by line. Where this process ends, the other one does at its next line.
+// The pellucid command again, read line by line. Where this process ends, the other one does at its next
+// line.
 class Again {
   public:
-    // `environment`: "NAME=VALUE" added to this process's own. Without `loud` its standard error is discarded.
+    // `environment`: "NAME=VALUE" added to this process's own. Without `loud`, standard error is discarded.
     Again(const Request& request, std::vector<std::string> words, std::vector<std::string> environment,
           bool loud)
         : request_(request) {

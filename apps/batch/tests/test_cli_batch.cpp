@@ -73,7 +73,8 @@ TEST_F(BatchCommand, MakesKeepsAndRepairs) {
     for (size_t i = 0; i < 5; ++i) before.push_back(read(all[i].string()));
     const std::function<void(std::string&)> damages[] = {
         [](std::string& bytes) { bytes.resize(bytes.size() / 2); },
-        [](std::string& bytes) { bytes[bytes.size() - 9] ^= 0x55; }, [](std::string& bytes) { bytes += '\0'; },
+        [](std::string& bytes) { bytes[bytes.size() - 9] ^= 0x55; },
+        [](std::string& bytes) { bytes += '\0'; },
         [&](std::string& bytes) { bytes = before[0]; },  // another entry's
         [&](std::string& bytes) { bytes[attribute] ^= 1; }};
     for (size_t i = 0; i < std::size(damages); ++i) {
@@ -174,7 +175,9 @@ TEST_F(BatchCommand, SaysWhatIsWrong) {
         {"[[lut]]\nsize = 8\n\n[[lut]]\nsize = 16384\n[[lut]]\nsize = 9\n", {"m.toml:4: "}, 1},
         {"[[lut]]\nsize = -3\n", {"m.toml:2"}, 0},
         {"[[grid]]\nname = \"a\"\nsize = [8, 9]\n", {"m.toml:2: 'name' in [[grid]] gives two tables"}, 1},
-        {"[[lut]]\nname = \"b\"\nsize = 8\n[[lut]]\nname = \"b\"\nsize = 9\n", {"the one of line 1 has it"}, 1},
+        {"[[lut]]\nname = \"b\"\nsize = 8\n[[lut]]\nname = \"b\"\nsize = 9\n",
+         {"the one of line 1 has it"},
+         1},
         {"[[lut]]\nname = \"{colour}\"\n", {"'{colour}'; one of {axis}, "}, 0},
         {"version = 3\n[[lut]]\nsize = 8\n", {"of a later pellucid"}, -1},
         {"version = 1.5\n[[lut]]\nsize = 8\n", {"'version'"}, -1},
