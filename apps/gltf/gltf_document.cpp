@@ -10,6 +10,7 @@
 #include "io/input_file.h"
 
 namespace pellucid::io {
+
 void GltfValue::fail(const std::string& message) const {
     throw FileError(*file_, (where_.empty() ? "the scene" : where_) + " " + message);
 }

@@ -11,6 +11,7 @@
 #include "io/file_error.h"
 
 namespace pellucid::io {
+
 // A value of the JSON with its location in the file, which every message names.
 class GltfValue {
   public:

@@ -9,6 +9,7 @@
 #include "io/scene/scene_file.h"
 
 namespace pellucid::io {
+
 struct GltfLook {
     SceneMaterial material;   // its profile: one of the library, or "NAME.toml" of profileText
     Triple albedo{};          // without the texture

@@ -12,6 +12,7 @@
 #include <vector>
 
 namespace pellucid::cli {
+
 // exitWorse: `bench compare` found something slower or less accurate.
 enum ExitCode { exitDone = 0, exitWorse = 1, exitWrongUse = 2, exitBadInput = 3, exitNoDevice = 4 };
 

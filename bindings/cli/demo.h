@@ -10,6 +10,7 @@
 #include "scene/scene_frame.h"
 
 namespace pellucid::cli {
+
 using demo::DemoHead;
 
 struct DemoView {
