@@ -27,12 +27,18 @@ namespace {
 
 class PoclCache : public FolderTest {
   protected:
-    // A small table made by a process of its own, the first there to use OpenCL, after `set` was called. What
-    // it ended with: 0, a PelError, or 1000 and a signal.
-    int table(const std::function<void()>& set) {
+    // What a process ends with that is the first to use OpenCL: what `work` returns, or 1000 and a signal.
+    static int inFork(const std::function<int()>& work) {
         std::fflush(nullptr);
         const pid_t child = ::fork();
-        if (child == 0) {
+        if (child == 0) std::exit(work());
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+    }
+    // 0, or the error of a small table that is made there after `set` was called.
+    int table(const std::function<void()>& set) {
+        return inFork([&]() -> int {
             ::unsetenv("POCL_CACHE_DIR");
             ::unsetenv("XDG_CACHE_HOME");
             ::setenv("HOME", path("home").c_str(), 1);
@@ -46,13 +52,10 @@ class PoclCache : public FolderTest {
                     throw pellucid::Error(PEL_ERROR_UNKNOWN, "the environment was left changed");
             } catch (const pellucid::Error& e) {
                 std::ofstream(path("message")) << e.what();
-                std::exit(e.code());
+                return e.code();
             }
-            std::exit(0);
-        }
-        int status = 0;
-        ::waitpid(child, &status, 0);
-        return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+            return 0;
+        });
     }
     std::vector<fs::path> kernels(const fs::path& below, const std::string& extension) const {
         std::vector<fs::path> found;
@@ -67,14 +70,10 @@ class PoclCache : public FolderTest {
     }
     void SetUp() override {
         FolderTest::SetUp();
-        bool pocl = false;
-        const pid_t child = ::fork();
-        if (child == 0)
-            ::_exit(std::string(pellucid::Device("").info().platform) == "Portable Computing Language");
-        int status = 0;
-        ::waitpid(child, &status, 0);
-        pocl = WIFEXITED(status) && WEXITSTATUS(status) == 1;
-        if (!pocl) GTEST_SKIP() << "the device is no PoCL";
+        const bool other = inFork([] {
+            return std::string(pellucid::Device("").info().platform) != "Portable Computing Language";
+        });
+        if (other) GTEST_SKIP() << "the device is no PoCL";
         fs::create_directory(path("home"));
         fs::permissions(path("home"), fs::perms::owner_all);
     }
@@ -89,6 +88,15 @@ TEST_F(PoclCache, IsAPrivateFolderOfOurs) {
     EXPECT_EQ(mode(ours()), 0700u);
     EXPECT_EQ(mode(ours().parent_path()), 0700u);
     EXPECT_FALSE(fs::exists(fs::path(path("home")) / ".cache/pocl"));
+    // Whole files are kept.
+    const auto before = kernels(ours(), ".so");
+    std::vector<fs::file_time_type> times;
+    for (const auto& file : before) times.push_back(fs::last_write_time(file));
+    ASSERT_EQ(table([] {}), 0);
+    fs::remove(ours() / "checked");
+    EXPECT_EQ(pel::cl::removeDamagedPrograms(ours()), 0u);
+    for (size_t i = 0; i < before.size(); ++i)
+        EXPECT_EQ(fs::last_write_time(before[i]), times[i]) << "compiled again";
 }
 
 TEST_F(PoclCache, TheUsersOwnIsLeftAlone) {
@@ -220,16 +228,13 @@ TEST_F(PoclCache, WhatKilledProcessesLeaveIsRemoved) {
 // Mounting needs a name space of its own: skipped where that is not allowed.
 TEST_F(PoclCache, AFullDiskIsAnError) {
     fs::create_directory(path("full"));
-    const auto mounted = [&](const char* options) {
-        return [this, options] {
-            if (::unshare(CLONE_NEWNS) != 0 ||
-                ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
-                ::mount("tmpfs", path("full").c_str(), "tmpfs", 0, options) != 0)
-                ::_exit(99);
-        };
+    const auto mountIt = [&] {
+        if (::unshare(CLONE_NEWNS) != 0 || ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
+            ::mount("tmpfs", path("full").c_str(), "tmpfs", 0, "size=4m,mode=700") != 0)
+            ::_exit(99);
     };
     const int own = table([&] {
-        mounted("size=4m,mode=700")();
+        mountIt();
         ::setenv("POCL_CACHE_DIR", path("full").c_str(), 1);
     });
     if (own == 99) GTEST_SKIP() << "this user may not mount";
@@ -237,23 +242,11 @@ TEST_F(PoclCache, AFullDiskIsAnError) {
     EXPECT_NE(read(path("message")).find(path("full")), std::string::npos) << read(path("message"));
     // Where the user set no folder, another one is taken.
     EXPECT_EQ(table([&] {
-                  mounted("size=4m,mode=700")();
+                  mountIt();
                   ::setenv("HOME", path("full").c_str(), 1);
                   ::setenv("XDG_CACHE_HOME", path("full").c_str(), 1);
               }),
               0);
-}
-
-TEST_F(PoclCache, WholeFilesAreKept) {
-    ASSERT_EQ(table([] {}), 0);
-    const auto before = kernels(ours(), ".so");
-    std::vector<fs::file_time_type> times;
-    for (const auto& file : before) times.push_back(fs::last_write_time(file));
-    ASSERT_EQ(table([] {}), 0);
-    fs::remove(ours() / "checked");
-    EXPECT_EQ(pel::cl::removeDamagedPrograms(ours()), 0u);
-    for (size_t i = 0; i < before.size(); ++i)
-        EXPECT_EQ(fs::last_write_time(before[i]), times[i]) << "compiled again";
 }
 
 TEST(PrivateFolder, LooksAtAllAbove) {

@@ -10,6 +10,8 @@
 #include <thread>
 
 #include "cl/cl_spy.h"
+#include "mesh/mesh_calls.h"
+#include "refusal.h"
 #include "shading/pass_scene.h"
 
 using namespace shade_test;
@@ -127,29 +129,18 @@ TEST(WarmUp, TablesAndCurvatureFindEverythingBuilt) {
         desc.width = 40, desc.height = 24;
         pellucid::Lut(own, desc).read<uint8_t>(PEL_LUT_FACEWORKS8);
     }
-    const float distances[2] = {0, 4}, values[6] = {1, 0.7f, 0.5f, 0, 0, 0};
     PelShadowLutDesc shadow = pelShadowLutDescFaceWorks();
-    PelProfile table = nullptr;
-    pellucid::check(pelProfileCreateTable(distances, values, 2, &table));
     shadow.width = 40;
     pellucid::Lut(own, shadow).read<float>(PEL_LUT_FLOAT);
-    shadow.profile = table;
+    const auto table = pellucid::Profile::table({0, 4}, {1, 0.7f, 0.5f, 0, 0, 0});
+    shadow.profile = table.get();
     pellucid::Lut(own, shadow).read<uint16_t>(PEL_LUT_HALF);
-    pelProfileRelease(table);
-    const float positions[12] = {1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1};
-    const uint32_t indices[12] = {0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2};
-    PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
-    desc.numVertices = 4;
-    desc.indices = indices;
-    desc.numIndices = 12;
-    const pellucid::MeshTopology mesh(own, desc);
-    const Buffer where(own, sizeof positions, positions), out(own, 16);
-    for (const PelCurvatureEstimator e : {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}) {
-        PelCurvatureParams params = pelCurvatureParamsDefaults();
-        params.estimator = e;
-        mesh.curvature(params, pellucid::vertexView(where, 4), pellucid::vertexView(where, 4),
-                       pellucid::vertexView(out, 4));
-    }
+    const fixture::Mesh mesh = fixture::torus(4, 3);
+    const pellucid::MeshTopology topology(own, fixture::topologyDesc(mesh));
+    const Buffer where(own, mesh.positions), out(own, sizeof(float) * mesh.vertices());
+    const auto positions = vertexView(where, mesh.vertices());
+    for (const PelCurvatureEstimator e : fixture::allEstimators)
+        topology.curvature(fixture::paramsOf(e), positions, positions, vertexView(out, mesh.vertices()));
     EXPECT_EQ(builds.load(), 0);
 }
 
@@ -201,25 +192,21 @@ TEST(WarmUp, ProcessesThatShareAFolderLaunchEachKernelOnce) {
 TEST(WarmUp, SaysWhatIsWrong) {
     const Device own(""), other("");
     Shader empty(own), foreign(other);
-    PelWarmUp work = workOf({}, 64);
-    EXPECT_EQ(pelWarmUpPrograms(own.get(), &work, nullptr), PEL_ERROR_INVALID_ARGUMENT);
-    EXPECT_NE(std::string(pelGetErrorMessage()).find("PelProgramGroup"), std::string::npos);
-    work = workOf({});
-    work.numShaders = 1;
-    work.shaders = nullptr;
-    EXPECT_EQ(pelWarmUpPrograms(own.get(), &work, nullptr), PEL_ERROR_INVALID_ARGUMENT);
     const PelShader foreignHandle = foreign.get(), emptyHandle = empty.get();
-    work.shaders = &foreignHandle;
-    EXPECT_EQ(pelWarmUpPrograms(own.get(), &work, nullptr), PEL_ERROR_INVALID_ARGUMENT);
-    EXPECT_NE(std::string(pelGetErrorMessage()).find("another PelDevice"), std::string::npos);
-    work.shaders = &emptyHandle;
-    EXPECT_EQ(pelWarmUpPrograms(own.get(), &work, nullptr), PEL_ERROR_INVALID_ARGUMENT);
-    EXPECT_NE(std::string(pelGetErrorMessage()).find("radiance image is needed"), std::string::npos);
-    work = workOf({});
-    uint32_t built = 9;
-    EXPECT_EQ(pelWarmUpPrograms(own.get(), &work, &built), PEL_SUCCESS);
-    EXPECT_EQ(built, 0u);
+    const auto refused = [&](const char* words, uint32_t groups, const PelShader* shaders, uint32_t count) {
+        PelWarmUp work = workOf({}, groups);
+        work.shaders = shaders, work.numShaders = count;
+        expectRefused(words, [&] { return pelWarmUpPrograms(own.get(), &work, nullptr); });
+    };
+    refused("PelProgramGroup", 64, nullptr, 0);
+    refused("shaders", 0, nullptr, 1);
+    refused("another PelDevice", 0, &foreignHandle, 1);
+    refused("radiance image is needed", 0, &emptyHandle, 1);
     EXPECT_EQ(pelWarmUpPrograms(own.get(), nullptr, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+    const PelWarmUp nothing = workOf({});
+    uint32_t built = 9;
+    EXPECT_EQ(pelWarmUpPrograms(own.get(), &nothing, &built), PEL_SUCCESS);
+    EXPECT_EQ(built, 0u);
 }
 
 }  // namespace

@@ -85,7 +85,6 @@ class EyePicture {
     // `table`: of the caustics; the library's own size without it.
     std::vector<float> shade(PelShaderStats* stats = nullptr, const PelEyeLutDesc* table = nullptr) const {
         const pellucid::Device device("");
-        const size_t n = pixels.size();
         std::vector<float> position, normal;
         std::vector<uint8_t> id;
         for (const EyePixel& p : pixels) {
@@ -93,9 +92,7 @@ class EyePicture {
                 position.push_back(float(p.position[c])), normal.push_back(float(p.normal[c]));
             id.push_back(p.shown);
         }
-        const auto side = uint32_t(s_.size);
-        const pellucid::Buffer positions(device, position), normals(device, normal), ids(device, id),
-            out(device, std::vector<float>(3 * n));
+        const pellucid::Buffer out(device, std::vector<float>(3 * pixels.size()));
         pellucid::Shader shader(device);
         PelShaderOptions options = pelShaderOptionsDefaults();
         options.millimetresPerUnit = float(s_.unit);
@@ -109,24 +106,18 @@ class EyePicture {
             .setMaterial(1, s_.sclera)
             .setEye(1, s_.eye, table ? pellucid::Lut(device, *table) : pellucid::Lut())
             .set(s_.lights);
-        shader.set(PEL_SLOT_RADIANCE, imageDesc(out, PEL_FORMAT_RGB32F, side, side));
-        shader.set(PEL_SLOT_POSITION, imageDesc(positions, PEL_FORMAT_RGB32F, side, side));
-        shader.set(PEL_SLOT_NORMAL_SHADING, imageDesc(normals, PEL_FORMAT_RGB32F, side, side));
-        shader.set(PEL_SLOT_MATERIAL, imageDesc(ids, PEL_FORMAT_R8_UINT, side, side));
-        pellucid::Buffer texels, wet, shadows;
-        if (s_.textureSize) {
-            texels = pellucid::Buffer(device, s_.texture);
-            shader.setIrisTexture(
-                1, imageDesc(texels, PEL_FORMAT_RGB32F, uint32_t(s_.textureSize), uint32_t(s_.textureSize)));
-        }
-        if (!s_.wetness.empty()) {
-            wet = pellucid::Buffer(device, s_.wetness);
-            shader.set(PEL_SLOT_WETNESS, imageDesc(wet, PEL_FORMAT_R32F, side, side));
-        }
-        if (!s_.shadow.empty()) {
-            shadows = pellucid::Buffer(device, s_.shadow);
-            shader.set(0, PEL_LIGHT_WIDE_SHADOW, imageDesc(shadows, PEL_FORMAT_R32F, side, side));
-        }
+        const auto image = [&](const auto& values, PelFormat format, int size) {
+            return imageDesc(pellucid::Buffer(device, values), format, uint32_t(size), uint32_t(size));
+        };
+        shader.set(PEL_SLOT_RADIANCE,
+                   imageDesc(out, PEL_FORMAT_RGB32F, uint32_t(s_.size), uint32_t(s_.size)));
+        shader.set(PEL_SLOT_POSITION, image(position, PEL_FORMAT_RGB32F, s_.size));
+        shader.set(PEL_SLOT_NORMAL_SHADING, image(normal, PEL_FORMAT_RGB32F, s_.size));
+        shader.set(PEL_SLOT_MATERIAL, image(id, PEL_FORMAT_R8_UINT, s_.size));
+        if (s_.textureSize) shader.setIrisTexture(1, image(s_.texture, PEL_FORMAT_RGB32F, s_.textureSize));
+        if (!s_.wetness.empty()) shader.set(PEL_SLOT_WETNESS, image(s_.wetness, PEL_FORMAT_R32F, s_.size));
+        if (!s_.shadow.empty())
+            shader.set(0, PEL_LIGHT_WIDE_SHADOW, image(s_.shadow, PEL_FORMAT_R32F, s_.size));
         shader.commit().execute();
         if (stats) *stats = shader.stats();
         return out.readAll<float>();

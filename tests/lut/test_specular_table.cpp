@@ -24,18 +24,17 @@ constexpr uint32_t width = 300, height = 200;
 // n, l, v, m per evaluation: ten floats each.
 std::vector<float> evaluate(const pellucid::Device& device, const std::vector<float>& table,
                             const std::vector<float>& inputs, int lanes) {
-    const char* source =
-        "#include \"lib/shading/specular_table.clh\"\n"
-        "__kernel void evaluate(__global const float* in, __global const float* table, uint width, uint "
-        "height, __global float* out) {\n"
-        "    const size_t at = get_global_id(0) * PEL_WIDTH, n = get_global_size(0) * PEL_WIDTH;\n"
-        "#define V(i) vec3(loadw(at, in + (i) * n), loadw(at, in + (i + 1) * n), loadw(at, in + (i + 2) * "
-        "n))\n"
-        "    const Vec3w normal = V(0), light = V(3), view = V(6);\n"
-        "    storew(specularKskTable(table, width, height, normal, light, view, dot3(normal, light), "
-        "loadw(at, in + 9 * n), 0.028f),\n"
-        "           at, out);\n"
-        "}\n";
+    const char* source = R"(
+#include "lib/shading/specular_table.clh"
+#define V(i) vec3(loadw(at, in + (i) * n), loadw(at, in + (i + 1) * n), loadw(at, in + (i + 2) * n))
+__kernel void evaluate(__global const float* in, __global const float* table, uint width, uint height,
+                       __global float* out) {
+    const size_t at = get_global_id(0) * PEL_WIDTH, n = get_global_size(0) * PEL_WIDTH;
+    const Vec3w normal = V(0), light = V(3), view = V(6);
+    storew(specularKskTable(table, width, height, normal, light, view, dot3(normal, light),
+                            loadw(at, in + 9 * n), 0.028f),
+           at, out);
+})";
     void *context, *id, *queue;
     pellucid::check(pelDeviceGetCl(device.get(), &context, &id, &queue));
     cl_int code;
@@ -46,16 +45,16 @@ std::vector<float> evaluate(const pellucid::Device& device, const std::vector<fl
     EXPECT_EQ(clBuildProgram(program, 1, &cl, options.c_str(), nullptr, nullptr), CL_SUCCESS);
     cl_kernel kernel = clCreateKernel(program, "evaluate", &code);
     const pellucid::Buffer in(device, inputs), texels(device, table), out(device, count * sizeof(float));
-    cl_uint next = 0;
-    for (const pellucid::Buffer* buffer : {&in, &texels}) {
-        void* memory;
-        pellucid::check(pelBufferGetCl(buffer->get(), &memory));
-        clSetKernelArg(kernel, next++, sizeof memory, &memory);
-    }
-    for (const cl_uint size : {width, height}) clSetKernelArg(kernel, next++, sizeof size, &size);
-    void* memory;
-    pellucid::check(pelBufferGetCl(out.get(), &memory));
-    clSetKernelArg(kernel, next++, sizeof memory, &memory);
+    const auto argument = [&](cl_uint number, const auto& value) {
+        EXPECT_EQ(clSetKernelArg(kernel, number, sizeof value, &value), CL_SUCCESS);
+    };
+    const auto memory = [](const pellucid::Buffer& buffer) {
+        void* found = nullptr;
+        pellucid::check(pelBufferGetCl(buffer.get(), &found));
+        return found;
+    };
+    argument(0, memory(in)), argument(1, memory(texels)), argument(2, width), argument(3, height);
+    argument(4, memory(out));
     const size_t items = count / size_t(lanes);
     EXPECT_EQ(clEnqueueNDRangeKernel(cl_command_queue(queue), kernel, 1, nullptr, &items, nullptr, 0, nullptr,
                                      nullptr),
