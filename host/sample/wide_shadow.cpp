@@ -1,14 +1,11 @@
 #include "sample/wide_shadow.h"
 
 #include <algorithm>
-#include <numbers>
 #include <stdexcept>
 
 namespace pellucid::sample {
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 // Below this cosine to the light the tangent plane is not followed any steeper: five times the sideways
 // distance.
@@ -126,16 +123,6 @@ float filterPixel(const ShadowMap& map, const WideShadowOptions& options, Vec3 p
 }
 
 }  // namespace
-
-double wideFilterDensity(double r) {
-    const double t = std::max(0.0, 1 - r * r), root = std::sqrt(t);
-    return (root / (1 + t) + std::atan(root)) / pi;
-}
-
-double wideFilterOutside(double r) {
-    const double t = std::max(0.0, 1 - r * r), root = std::sqrt(t);
-    return root + (t - 1) * std::atan(root);
-}
 
 double wideFilterEdge(double p) {
     const double q = std::clamp(2 * p - 1, -1.0, 1.0);

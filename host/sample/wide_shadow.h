@@ -12,9 +12,7 @@ namespace pellucid::sample {
 //     f(r) = (sqrt(T) / (1 + T) + atan(sqrt(T))) / pi,   T = 1 - r^2,   r in [0, 1],
 // and the part of it outside of radius r is sqrt(T) + (T - 1) atan(sqrt(T)). A sharpened table makes a step
 // of w ten times larger, so w is not sampled: every texel under the filter is weighed.
-double wideFilterDensity(double r);  // f(r), per area of the unit disk
-double wideFilterOutside(double r);  // integral of f beyond r; 1 at r = 0
-double wideFilterEdge(double p);     // w at position p across a straight edge, p in [0, 1], 0 in shadow
+double wideFilterEdge(double p);  // w at position p across a straight edge, p in [0, 1], 0 in shadow
 
 struct WideShadowOptions {
     double filterWidth =

@@ -51,41 +51,36 @@ TEST(Small, Curvature) {
     EXPECT_NEAR(fixture::uvScale(m.both.mesh) / reference::uvScale(m.truth), 1, 1e-5);
 }
 
-TEST(Small, CurvatureTables) {
-    for (const auto& [form, other] : fixture::forms) {
-        PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
-        desc.width = 5, desc.height = 3, desc.form = form;
-        const Lut lut(device(), desc);
-        const std::vector<float> texels = lut.read<float>(PEL_LUT_FLOAT);
-        reference::CurvatureLutSpec spec;
-        spec.form = other, spec.width = 5, spec.height = 3;
-        const auto skin = reference::profileForRadius(reference::skinProfile(), 2.7);
-        for (int i = 0; i < 15; ++i) {
-            const reference::Rgb truth = reference::curvatureTexel(spec, *skin, i % 5, i / 5);
-            for (int c = 0; c < 3; ++c) EXPECT_NEAR(texels[size_t(3 * i + c)], truth[c], 1e-5) << form;
+TEST(Small, Tables) {
+    for (const fixture::ProfileCase& profile : fixture::profiles()) {
+        const bool skin = profile.name == "skin";
+        if (!skin && profile.name != "burley" && profile.name != "smooth") continue;
+        SCOPED_TRACE(profile.name);
+        const auto compare = [&](const Lut& lut, const auto& truth) {
+            const std::vector<float> texels = lut.read<float>(PEL_LUT_FLOAT);
+            for (int i = 0; i < 45; ++i)
+                EXPECT_NEAR(texels[size_t(i)], truth(i / 3 % 5, i / 15)[i % 3], 1e-5) << i;
+            EXPECT_EQ(lut.read<uint16_t>(PEL_LUT_HALF).size(), 45u);
+            EXPECT_EQ(lut.read<uint8_t>(PEL_LUT_FACEWORKS8).size(), 60u);
+        };
+        for (const auto& [form, trueForm] : fixture::forms) {
+            if (!skin && form != PEL_FORM_SPHERE) continue;
+            PelCurvatureLutDesc desc = fixture::curvatureTable(profile.ours, form, 5, 3, 0.4, 40);
+            desc.axis = PEL_AXIS_LINEAR;
+            const reference::CurvatureLutSpec spec{trueForm, 5, 3, desc.radiusMin, desc.radiusMax};
+            compare(Lut(device(), desc),
+                    [&](int x, int y) { return curvatureTexel(spec, *profile.truth, x, y); });
         }
-        EXPECT_EQ(lut.read<uint16_t>(PEL_LUT_HALF).size(), 45u);
-        EXPECT_EQ(lut.read<uint8_t>(PEL_LUT_FACEWORKS8).size(), 60u);
+        const PelShadowLutDesc desc = fixture::shadowTable(profile.ours, 5, 3, 3, 40, 10);
+        const reference::ShadowLutSpec spec{5, 3, desc.widthMin, desc.widthMax, profile.truth->radius(), 10};
+        compare(Lut(device(), desc), [&](int x, int y) { return shadowTexel(spec, *profile.truth, x, y); });
     }
-}
-
-TEST(Small, ShadowAndSpecularTables) {
-    PelShadowLutDesc shadow = pelShadowLutDescFaceWorks();
-    shadow.width = 5, shadow.height = 3;
-    const std::vector<float> texels = Lut(device(), shadow).read<float>(PEL_LUT_FLOAT);
-    const reference::ShadowLutSpec spec{5, 3, shadow.widthMin, shadow.widthMax, 2.7, shadow.sharpening};
-    const auto skin = reference::skinProfile();
     PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
     specular.width = 5, specular.height = 3;
-    const Lut beckmann(device(), specular);
-    const std::vector<float> lobes = beckmann.read<float>(PEL_LUT_FLOAT);
-    EXPECT_EQ(beckmann.read<uint8_t>(PEL_LUT_FACEWORKS8).size(), 60u);
-    for (int i = 0; i < 15; ++i) {
-        const reference::Rgb truth = reference::shadowTexel(spec, *skin, i % 5, i / 5);
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(texels[size_t(3 * i + c)], truth[c], 1e-5);
+    const std::vector<float> lobes = Lut(device(), specular).read<float>(PEL_LUT_FLOAT);
+    for (int i = 0; i < 15; ++i)
         EXPECT_NEAR(lobes[size_t(3 * i)], reference::beckmannEncoded((i % 5 + 0.5) / 5, (i / 5 + 0.5) / 3),
                     1e-5);
-    }
 }
 
 TEST(Small, Shading) {
@@ -172,22 +167,4 @@ TEST(Small, APartOfALiveMesh) {
     live.update(vertexView(moved, n), nullptr, vertexView(out, n), {{10, 2}});
     topology.curvature(params, vertexView(moved, n), vertexView(whole, n));
     EXPECT_EQ(out.readAll<float>(), whole.readAll<float>());
-}
-
-TEST(Small, TablesOfOtherProfiles) {
-    const float path[3] = {1, 0.5f, 0.3f}, albedo[3] = {0.8f, 0.6f, 0.5f};
-    const std::vector<float> distances{0.5f, 1, 2}, values{1, 1, 1, 0.5f, 0.4f, 0.3f, 0, 0, 0};
-    for (const Profile& profile : {Profile::burley(path, albedo), Profile::table(distances, values)}) {
-        PelCurvatureLutDesc curvature = pelCurvatureLutDescFaceWorks();
-        PelShadowLutDesc shadow = pelShadowLutDescFaceWorks();
-        curvature.width = shadow.width = 5, curvature.height = shadow.height = 3;
-        curvature.profile = shadow.profile = profile.get();
-        curvature.diffusionRadius = shadow.diffusionRadius = 0;
-        curvature.form = PEL_FORM_SPHERE;
-        // Light is neither made nor lost: nothing beyond 1, shadows symmetric.
-        for (const float v : Lut(device(), curvature).read<float>(PEL_LUT_FLOAT))
-            EXPECT_TRUE(v >= 0 && v <= 1);
-        for (const float v : Lut(device(), shadow).read<float>(PEL_LUT_FLOAT))
-            EXPECT_TRUE(v >= -1e-6f && v <= 1 + 1e-6f);
-    }
 }

@@ -28,6 +28,28 @@ inline Mesh oracleMesh(const std::filesystem::path& directory, const std::string
     return mesh;
 }
 
+// A mesh's data on the device, and room for results of `floats` per vertex.
+struct OnDevice {
+    explicit OnDevice(const Mesh& mesh, uint32_t floatsPerVertex = 1)
+        : n(mesh.vertices()),
+          floats(floatsPerVertex),
+          positions(device(), mesh.positions),
+          normals(device(), mesh.normals),
+          out(device(), std::vector<float>(size_t(n) * floats, -1)) {}
+    PelVertexView at() const { return vertexView(positions, n); }
+    PelVertexView normalsAt() const { return vertexView(normals, n); }
+    PelVertexView result() const { return vertexView(out, n); }
+    // By these normals, or by made ones.
+    std::vector<float> curvature(const pellucid::MeshTopology& topology, const PelCurvatureParams& params,
+                                 bool made = false, PelMeshReport* report = nullptr) const {
+        made ? topology.curvature(params, at(), result(), report)
+             : topology.curvature(params, at(), normalsAt(), result(), report);
+        return out.readAll<float>();
+    }
+    uint32_t n, floats;
+    pellucid::Buffer positions, normals, out;
+};
+
 struct Result {
     std::vector<float> values;
     PelMeshReport report;
@@ -36,15 +58,9 @@ struct Result {
 // `floats`: what the quantity has per vertex.
 inline Result curvature(const Mesh& mesh, const PelMeshTopologyDesc& desc, const PelCurvatureParams& params,
                         uint32_t floats = 1) {
-    using namespace pellucid;
-    const MeshTopology topology(device(), desc);
-    const Buffer positions(device(), mesh.positions), normals(device(), mesh.normals);
-    const Buffer out(device(), mesh.vertices() * floats * sizeof(float));
     Result result{{}, pelMeshReportDefaults()};
-    const uint32_t n = mesh.vertices();
-    topology.curvature(params, vertexView(positions, n), vertexView(normals, n), vertexView(out, n),
-                       &result.report);
-    result.values = out.readAll<float>();
+    const pellucid::MeshTopology topology(device(), desc);
+    result.values = OnDevice(mesh, floats).curvature(topology, params, false, &result.report);
     return result;
 }
 

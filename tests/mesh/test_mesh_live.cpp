@@ -1,10 +1,8 @@
-// Meshes that move: a topology kept, saved and loaded; normals made on the device; one submit and nothing
-// more.
+// Normals made on the device; a topology saved and loaded; meshes in any order.
 #include <algorithm>
 #include <numeric>
 #include <random>
 
-#include "cl/cl_spy.h"
 #include "mesh_fixture.h"
 #include "reference_meshes.h"
 #include "tolerances.h"
@@ -17,10 +15,7 @@ namespace {
 const PelCurvatureParams tensor = paramsOf(PEL_CURVATURE_TENSOR);
 
 std::vector<float> curvatureOf(const MeshTopology& topology, const Mesh& mesh) {
-    const uint32_t n = mesh.vertices();
-    const Buffer positions(device(), mesh.positions), normals(device(), mesh.normals), out(device(), n * 4);
-    topology.curvature(tensor, vertexView(positions, n), vertexView(normals, n), vertexView(out, n));
-    return out.readAll<float>();
+    return OnDevice(mesh).curvature(topology, tensor);
 }
 
 }  // namespace
@@ -56,15 +51,13 @@ TEST(MeshNormals, CurvatureMakesThemItself) {
     withMade.normals = normalsOf(mesh);
     for (const PelMeshTopologyDesc& desc : {topologyDesc(mesh), weldedDesc(mesh, 0.05f)}) {
         const MeshTopology topology(device(), desc);
-        const uint32_t n = mesh.vertices();
-        const Buffer positions(device(), mesh.positions), out(device(), n * 4);
         PelMeshReport report = pelMeshReportDefaults();
-        topology.curvature(tensor, vertexView(positions, n), vertexView(out, n), &report);
+        const std::vector<float> values = OnDevice(mesh).curvature(topology, tensor, true, &report);
         EXPECT_EQ(report.nonFiniteNormals, 0u);
         if (desc.weld == PEL_WELD_NONE)
-            EXPECT_EQ(out.readAll<float>(), curvatureOf(topology, withMade));
+            EXPECT_EQ(values, curvatureOf(topology, withMade));
         else
-            expectFinite(out.readAll<float>());
+            expectFinite(values);
     }
 }
 
@@ -137,26 +130,4 @@ TEST(MeshTopologyFile, DamageIsRefused) {
     char small[10];
     const MeshTopology topology(device(), topologyDesc(mesh));
     EXPECT_EQ(pelMeshTopologySave(topology.get(), small, &room), PEL_ERROR_INVALID_ARGUMENT);
-}
-
-TEST(MeshLive, ANewPoseIsOneSubmitWithoutCopiesOrBuilds) {
-    const Mesh mesh = torus(sized(64, 32), sized(48, 24));
-    const uint32_t n = mesh.vertices();
-    const MeshTopology topology(device(), topologyDesc(mesh));
-    const Buffer positions(device(), mesh.positions), out(device(), n * 4);
-    topology.curvature(tensor, vertexView(positions, n), vertexView(out, n));
-    const PelDeviceStats before = device().stats();
-    const spy::Counts asked = spy::counts();
-    PelEvent event = nullptr;
-    const PelSubmit submit{nullptr, 0, &event};
-    topology.curvature(tensor, vertexView(positions, n), vertexView(out, n), nullptr, &submit);
-    Event(event).wait();
-    EXPECT_EQ(spy::counts().transfers, asked.transfers);
-    EXPECT_EQ(spy::counts().buffersMade, asked.buffersMade);
-    const PelDeviceStats after = device().stats();
-    EXPECT_EQ(after.launches - before.launches, 5u) << "normals, tensor, two smoothing passes, store";
-    EXPECT_EQ(after.bytesToDevice, before.bytesToDevice);
-    EXPECT_EQ(after.bytesToHost, before.bytesToHost);
-    EXPECT_EQ(after.bytesAllocated, before.bytesAllocated);
-    EXPECT_EQ(after.programsBuilt, before.programsBuilt);
 }

@@ -8,23 +8,14 @@ using namespace pellucid;
 
 namespace {
 
-struct Pose {
-    Mesh mesh = torus(24, 12);
-    uint32_t n = mesh.vertices();
+struct Pose : OnDevice {
+    Mesh mesh;
     MeshTopology topology{device(), topologyDesc(mesh)};
-    Buffer positions{device(), mesh.positions}, out{device(), std::vector<float>(3 * size_t(n), -1)};
-    PelVertexView at() const { return vertexView(positions, n); }
-    PelVertexView result() const { return vertexView(out, n); }
+    explicit Pose(const Mesh& m = torus(24, 12)) : OnDevice(m), mesh(m) {}
     std::vector<float> measured(const PelCurvatureParams& params) const {
-        const Buffer whole(device(), n * sizeof(float));
-        MeshTopology(device(), topologyDesc(mesh)).curvature(params, at(), vertexView(whole, n));
-        return whole.readAll<float>();
+        return OnDevice(mesh).curvature(MeshTopology(device(), topologyDesc(mesh)), params, true);
     }
-    std::vector<float> written() const {
-        std::vector<float> values(n);
-        out.read(values.data(), n * sizeof(float));
-        return values;
-    }
+    std::vector<float> written() const { return out.readAll<float>(); }
 };
 
 TEST(MeshSubmit, TheFirstCurvatureReturns) {
@@ -42,9 +33,11 @@ TEST(MeshSubmit, TheFirstCurvatureReturns) {
 
 TEST(MeshSubmit, TheFirstNormalsReturn) {
     const Pose pose;
-    expectReturns(device(), "pelMeshNormals",
-                  [&](const PelSubmit* submit) { pose.topology.normals(pose.at(), pose.result(), submit); });
-    EXPECT_NE(pose.out.readAll<float>()[0], -1);
+    const OnDevice normals(pose.mesh, 3);
+    expectReturns(device(), "pelMeshNormals", [&](const PelSubmit* submit) {
+        pose.topology.normals(pose.at(), normals.result(), submit);
+    });
+    EXPECT_NE(normals.out.readAll<float>()[0], -1);
 }
 
 TEST(MeshSubmit, TheFirstUpdatesOfALiveMeshReturn) {

@@ -10,20 +10,12 @@ using namespace pellucid;
 
 namespace {
 
-// Positions, normals and results on the device, and the mesh as it stands in this pose.
-struct Pose {
+// On the device, and the mesh as it stands in this pose.
+struct Pose : OnDevice {
     Mesh mesh;
-    Buffer positions, normals, result;
-    uint32_t n, floats;
     bool given;
-    Pose(const Mesh& m, bool givenNormals, uint32_t floatsPerVertex)
-        : mesh(m),
-          positions(device(), m.positions),
-          normals(device(), m.normals),
-          result(device(), m.vertices() * floatsPerVertex * sizeof(float)),
-          n(m.vertices()),
-          floats(floatsPerVertex),
-          given(givenNormals) {}
+    explicit Pose(const Mesh& m, bool givenNormals = false, uint32_t floatsPerVertex = 1)
+        : OnDevice(m, floatsPerVertex), mesh(m), given(givenNormals) {}
     void move(PelVertexRange range, float by) {
         for (uint32_t v = range.first; v < range.first + range.count; ++v) {
             mesh.positions[3 * v] += by;
@@ -32,23 +24,26 @@ struct Pose {
         positions.write(&mesh.positions[3 * range.first], range.count * 12, range.first * 12);
         normals.write(&mesh.normals[3 * range.first], range.count * 12, range.first * 12);
     }
-    PelVertexView normalView() const { return vertexView(normals, n); }
-    void update(const LiveMesh& live, const std::vector<PelVertexRange>* changed) const {
-        const PelVertexView view = normalView(), *optional = given ? &view : nullptr;
-        if (changed)
-            live.update(vertexView(positions, n), optional, vertexView(result, n), *changed);
-        else
-            live.update(vertexView(positions, n), optional, vertexView(result, n));
+    void update(const LiveMesh& live, const std::vector<PelVertexRange>* changed = nullptr,
+                const PelSubmit* submit = nullptr) const {
+        const PelVertexView view = normalsAt(), *optional = given ? &view : nullptr;
+        changed ? live.update(at(), optional, result(), *changed, submit)
+                : live.update(at(), optional, result(), submit);
     }
+    std::vector<float> values() const { return out.readAll<float>(); }
     std::vector<float> anew(const MeshTopology& topology, const PelCurvatureParams& params) const {
-        const Buffer out(device(), n * floats * sizeof(float));
-        if (given)
-            topology.curvature(params, vertexView(positions, n), normalView(), vertexView(out, n));
-        else
-            topology.curvature(params, vertexView(positions, n), vertexView(out, n));
-        return out.readAll<float>();
+        return OnDevice(mesh, floats).curvature(topology, params, !given);
     }
 };
+
+// What the device has done since `before`, but for launches.
+void expectNoTraffic(const PelDeviceStats& before) {
+    const PelDeviceStats after = device().stats();
+    EXPECT_EQ(after.bytesToDevice, before.bytesToDevice);
+    EXPECT_EQ(after.bytesToHost, before.bytesToHost);
+    EXPECT_EQ(after.bytesAllocated, before.bytesAllocated);
+    EXPECT_EQ(after.programsBuilt, before.programsBuilt);
+}
 
 }  // namespace
 
@@ -77,8 +72,8 @@ TEST(LiveMesh, APartGivesTheBitsOfTheWhole) {
         const MeshTopology topology(device(),
                                     c.welded ? weldedDesc(pose.mesh, 0.04f) : topologyDesc(pose.mesh));
         const LiveMesh live(topology, params);
-        pose.update(live, nullptr);
-        EXPECT_EQ(pose.result.readAll<float>(), pose.anew(topology, params));
+        pose.update(live);
+        EXPECT_EQ(pose.values(), pose.anew(topology, params));
         for (int step = 0; step < 4; ++step) {
             std::vector<PelVertexRange> changed;
             for (int r = 0; r <= step % 2; ++r) {
@@ -87,7 +82,7 @@ TEST(LiveMesh, APartGivesTheBitsOfTheWhole) {
                 pose.move(changed.back(), 0.02f);
             }
             pose.update(live, &changed);
-            EXPECT_EQ(pose.result.readAll<float>(), pose.anew(topology, params))
+            EXPECT_EQ(pose.values(), pose.anew(topology, params))
                 << c.estimator << c.given << c.passes << c.welded << " step " << step;
         }
     }
@@ -104,15 +99,15 @@ TEST(LiveMesh, FewStagesReachAsFarAsTheirWeights) {
                 params.smoothingStages = stages;
                 params.smoothingCrease = 0.5f;
                 params.smoothingWeights = weights;
-                Pose pose(mesh, given, 1);
+                Pose pose(mesh, given);
                 const MeshTopology topology(device(), topologyDesc(pose.mesh));
                 const LiveMesh live(topology, params);
-                pose.update(live, nullptr);
+                pose.update(live);
                 for (int step = 0; step < 8; ++step) {
                     const std::vector<PelVertexRange> changed{{uint32_t(random() % pose.n), 1}};
                     pose.move(changed[0], 0.02f);
                     pose.update(live, &changed);
-                    ASSERT_EQ(pose.result.readAll<float>(), pose.anew(topology, params))
+                    ASSERT_EQ(pose.values(), pose.anew(topology, params))
                         << int(weights) << given << stages << " step " << step;
                 }
             }
@@ -120,10 +115,10 @@ TEST(LiveMesh, FewStagesReachAsFarAsTheirWeights) {
 
 TEST(LiveMesh, WorksOnNoMoreRowsThanTheChangeReaches) {
     const Mesh mesh = torus(400, 200);
-    Pose pose(mesh, true, 1);
+    Pose pose(mesh, true);
     const MeshTopology topology(device(), topologyDesc(mesh));
     const LiveMesh live(topology, paramsOf(PEL_CURVATURE_QUADRIC));
-    pose.update(live, nullptr);
+    pose.update(live);
     EXPECT_EQ(live.stats().rowsEstimated, mesh.vertices());
     EXPECT_EQ(live.stats().launches, 4u) << "quadric, two smoothing passes, store";
     const std::vector<PelVertexRange> one{{40100, 1}};
@@ -141,22 +136,19 @@ TEST(LiveMesh, WorksOnNoMoreRowsThanTheChangeReaches) {
     stats = live.stats();
     EXPECT_EQ(stats.bytesUploaded, 0u);
     EXPECT_EQ(stats.rowsStored, 91u);
-    const PelDeviceStats after = device().stats();
-    EXPECT_EQ(after.launches - before.launches, stats.launches);
-    EXPECT_EQ(after.bytesToDevice, before.bytesToDevice);
-    EXPECT_EQ(after.bytesToHost, before.bytesToHost);
-    EXPECT_EQ(after.bytesAllocated, before.bytesAllocated);
+    EXPECT_EQ(device().stats().launches - before.launches, stats.launches);
+    expectNoTraffic(before);
 }
 
 TEST(LiveMesh, NothingChangedCostsNothing) {
-    Pose pose(torus(sized(64, 32), sized(48, 24)), false, 1);
+    Pose pose(torus(sized(64, 32), sized(48, 24)));
     const MeshTopology topology(device(), topologyDesc(pose.mesh));
     const LiveMesh live(topology, pelCurvatureParamsDefaults());
     const std::vector<PelVertexRange> none, empty{{5, 0}}, some{{100, 9}};
     pose.update(live, &none);
     EXPECT_EQ(live.stats().rowsStored, pose.n)
         << "the first update measures everything, whatever its ranges are";
-    const std::vector<float> values = pose.result.readAll<float>();
+    const std::vector<float> values = pose.values();
     const PelDeviceStats before = device().stats();
     const spy::Counts asked = spy::counts();
     pose.update(live, &none);
@@ -164,19 +156,16 @@ TEST(LiveMesh, NothingChangedCostsNothing) {
     EXPECT_EQ(spy::counts().transfers, asked.transfers);
     EXPECT_EQ(spy::counts().launches, asked.launches);
     EXPECT_EQ(spy::counts().buffersMade, asked.buffersMade);
-    const PelDeviceStats after = device().stats();
-    EXPECT_EQ(after.launches, before.launches);
-    EXPECT_EQ(after.bytesToDevice, before.bytesToDevice);
-    EXPECT_EQ(after.bytesAllocated, before.bytesAllocated);
+    EXPECT_EQ(device().stats().launches, before.launches);
+    expectNoTraffic(before);
     EXPECT_EQ(live.stats().launches, 0u);
-    EXPECT_EQ(pose.result.readAll<float>(), values);
+    EXPECT_EQ(pose.values(), values);
     // An event comes all the same, and an update of a part reads nothing back.
     const uint64_t read = device().stats().bytesToHost;
     for (const auto& changed : {none, some}) {
         PelEvent event = nullptr;
         const PelSubmit submit{nullptr, 0, &event};
-        live.update(vertexView(pose.positions, pose.n), nullptr, vertexView(pose.result, pose.n), changed,
-                    &submit);
+        pose.update(live, &changed, &submit);
         ASSERT_NE(event, nullptr);
         Event(event).wait();
     }
@@ -184,25 +173,24 @@ TEST(LiveMesh, NothingChangedCostsNothing) {
 }
 
 TEST(LiveMesh, AnotherTargetIsWrittenWholeAndNormalsThatAppearCount) {
-    Pose pose(torus(sized(64, 32), sized(48, 24)), true, 1);
+    Pose pose(torus(sized(64, 32), sized(48, 24)), true);
     const MeshTopology topology(device(), topologyDesc(pose.mesh));
     const PelCurvatureParams params = paramsOf(PEL_CURVATURE_TENSOR);
     const LiveMesh live(topology, params);
-    pose.update(live, nullptr);
+    pose.update(live);
     const std::vector<PelVertexRange> some{{100, 9}}, none;
     pose.move(some[0], 0.05f);
-    const Buffer other(device(), pose.n * 4);
-    const PelVertexView normals = pose.normalView();
-    live.update(vertexView(pose.positions, pose.n), &normals, vertexView(other, pose.n), some);
-    EXPECT_EQ(other.readAll<float>(), pose.anew(topology, params));
+    pose.out = Buffer(device(), pose.n * 4);
+    pose.update(live, &some);
+    EXPECT_EQ(pose.values(), pose.anew(topology, params));
     EXPECT_LT(live.stats().rowsEstimated, pose.n / 4) << "estimates are kept";
     pose.given = false;
-    live.update(vertexView(pose.positions, pose.n), nullptr, vertexView(other, pose.n), none);
-    EXPECT_EQ(other.readAll<float>(), pose.anew(topology, params));
+    pose.update(live, &none);
+    EXPECT_EQ(pose.values(), pose.anew(topology, params));
 }
 
 TEST(LiveMesh, NamesWhatIsWrong) {
-    Pose pose(torus(8, 6), false, 1);
+    Pose pose(torus(8, 6));
     const MeshTopology topology(device(), topologyDesc(pose.mesh));
     const LiveMesh live(topology, pelCurvatureParamsDefaults());
     for (PelVertexRange range :
@@ -216,8 +204,25 @@ TEST(LiveMesh, NamesWhatIsWrong) {
     EXPECT_EQ(pelLiveMeshCreate(topology.get(), &params, &handle), PEL_ERROR_INVALID_ARGUMENT);
     EXPECT_EQ(pelLiveMeshCreate(nullptr, &params, &handle), PEL_ERROR_INVALID_ARGUMENT);
     EXPECT_EQ(handle, nullptr);
-    const Mesh none;
-    const MeshTopology empty(device(), topologyDesc(none));
+    const MeshTopology empty(device(), topologyDesc(Mesh()));
     const Buffer any(device(), 16);
     LiveMesh(empty, pelCurvatureParamsDefaults()).update(vertexView(any, 0), nullptr, vertexView(any, 0));
+}
+
+TEST(MeshLive, ANewPoseIsOneSubmitWithoutCopiesOrBuilds) {
+    const Pose pose(torus(sized(64, 32), sized(48, 24)));
+    const MeshTopology topology(device(), topologyDesc(pose.mesh));
+    const PelCurvatureParams params = paramsOf(PEL_CURVATURE_TENSOR);
+    pose.curvature(topology, params, true);
+    const PelDeviceStats before = device().stats();
+    const spy::Counts asked = spy::counts();
+    PelEvent event = nullptr;
+    const PelSubmit submit{nullptr, 0, &event};
+    topology.curvature(params, pose.at(), pose.result(), nullptr, &submit);
+    Event(event).wait();
+    EXPECT_EQ(spy::counts().transfers, asked.transfers);
+    EXPECT_EQ(spy::counts().buffersMade, asked.buffersMade);
+    EXPECT_EQ(device().stats().launches - before.launches, 5u)
+        << "normals, tensor, two smoothing passes, store";
+    expectNoTraffic(before);
 }

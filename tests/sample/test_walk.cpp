@@ -238,6 +238,28 @@ TEST(WalkLight, RefusesWhatHasNoResult) {
     for (float v : open.first) EXPECT_TRUE(std::isfinite(v));
 }
 
+TEST(WalkLight, BallsEqualAnotherProgramsWalks) {
+    const char* folder = std::getenv("PELLUCID_RULER_DIR");
+    if (!folder) GTEST_SKIP() << "PELLUCID_RULER_DIR names no folder";
+    const npy::Array<double> theirs = npy::read<double>(std::filesystem::path(folder) / "ball_walks_f64.npy");
+    ASSERT_EQ(theirs.shape, (std::vector<size_t>{6, 101, 3}));
+    const sample::Scene scene(sample::makeSphere(1, 192, 384).view());
+    const sample::WalkBody body(scene, 0);
+    const auto points = middles(scene, testsAreSmall() ? 8000 : 800);
+    const double radii[] = {3.47, 8.68, 11.57, 17.35, 28.92, 57.84};
+    for (size_t ball = 0; ball < 6; ball += 3) {
+        const sample::WalkedLight light =
+            walkLight(body, fromAbove(), points, medium(1 / radii[ball]), {uint32_t(sized(64, 4))});
+        const Error e = errorOf(light, [&](size_t i) {
+            const double at = (cosineAt(scene, points[i / 3]) + 1) * 50;
+            const size_t node = std::min<size_t>(99, size_t(at));
+            const double *a = &theirs.data[3 * (101 * ball + node)], *b = a + 3;
+            return a[1] + (at - double(node)) * (b[1] - a[1]);
+        });
+        EXPECT_LT(e.mean, ballError * ballError + 3 * e.uncertainty) << radii[ball];
+    }
+}
+
 namespace {
 
 // The head of the G-buffers: the triangles of the reference data are halves of quads, which were subdivided
