@@ -19,25 +19,30 @@ class CommandTest : public FolderTest {
 
     // `environment`: "NAME=value" words put before the command.
     Result run(const std::vector<std::string>& arguments, const std::string& environment = "") const {
-        const std::string out = scratch_ + "/stdout", err = scratch_ + "/stderr";
-        std::string line = environment + " " + quoted(PELLUCID_COMMAND);
-        for (const std::string& argument : arguments) line.append(" ").append(quoted(argument));
-        line += " >" + quoted(out) + " 2>" + quoted(err) + " </dev/null";
-        const int status = std::system(line.c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
+        return start(joined(arguments), environment);
+    }
+    // The words of a line as a shell reads them, with redirections; each @ stands for the test's folder.
+    Result cli(const std::string& line, const std::string& environment = "") const {
+        return start(filled(line), filled(environment));
+    }
+    // The same, which must succeed; and its report.
+    Result done(const std::string& line, const std::string& environment = "") const {
+        const Result result = cli(line, environment);
+        EXPECT_EQ(result.exitCode, 0) << line << "\n" << result.err;
+        return result;
+    }
+    nlohmann::json reportOf(const std::string& line, const std::string& environment = "") const {
+        return done(line + " --json", environment).json();
     }
 
     // Wrong use or bad input: this exit code, this text on stderr, nothing on stdout, no file left behind.
+    void refused(const std::string& line, int exitCode, const std::string& message,
+                 const std::string& environment = "") const {
+        expectRefusal(filled(line), exitCode, message, filled(environment));
+    }
     void expectRefused(const std::vector<std::string>& arguments, int exitCode, const std::string& message,
                        const std::string& environment = "") const {
-        const size_t files = filesInFolder();
-        const Result result = run(arguments, environment);
-        std::string line;
-        for (const std::string& argument : arguments) line += argument + " ";
-        EXPECT_EQ(result.exitCode, exitCode) << line << "\n" << result.err;
-        EXPECT_TRUE(contains(result.err, message)) << line;
-        EXPECT_EQ(result.out, "") << line;
-        EXPECT_EQ(filesInFolder(), files) << line;
+        expectRefusal(joined(arguments), exitCode, message, environment);
     }
 
     // The keys that every report has.
@@ -61,12 +66,36 @@ class CommandTest : public FolderTest {
 
     // A folder whose files are not counted.
     const std::string& scratch() const { return scratch_; }
+    std::string filled(std::string line) const {
+        for (size_t at; (at = line.find('@')) != std::string::npos;) line.replace(at, 1, path(""));
+        return line;
+    }
 
   private:
-    static std::string quoted(const std::string& text) {
-        std::string out = "'";
-        for (char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-        return out + "'";
+    Result start(const std::string& words, const std::string& environment) const {
+        const std::string out = scratch_ + "/stdout", err = scratch_ + "/stderr";
+        const int status = std::system(
+            (environment + " '" PELLUCID_COMMAND "' >'" + out + "' 2>'" + err + "' </dev/null " + words)
+                .c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
+    }
+    void expectRefusal(const std::string& words, int exitCode, const std::string& message,
+                       const std::string& environment) const {
+        const size_t files = filesInFolder();
+        const Result result = start(words, environment);
+        EXPECT_EQ(result.exitCode, exitCode) << words << "\n" << result.err;
+        EXPECT_TRUE(contains(result.err, message)) << words;
+        EXPECT_EQ(result.out, "") << words;
+        EXPECT_EQ(filesInFolder(), files) << words;
+    }
+    static std::string joined(const std::vector<std::string>& arguments) {
+        std::string line;
+        for (const std::string& argument : arguments) {
+            line += " '";
+            for (char c : argument) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+            line += "'";
+        }
+        return line;
     }
     std::string scratch_;
 };

@@ -1,6 +1,7 @@
-// A small G-buffer and its scene file for tests of `pellucid shade`.
+// A small G-buffer and its scene file for tests of `pellucid shade`, and small meshes.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "cli_run.h"
@@ -10,8 +11,20 @@
 namespace shade_files {
 
 inline constexpr int width = 12, height = 5;
-inline const std::vector<std::string> normalNames = {"View.N.X", "View.N.Y", "View.N.Z"};
-inline const std::vector<std::string> albedoNames = {"View.Col.R", "View.Col.G", "View.Col.B"};
+using Names = std::vector<std::string>;
+inline const Names normalNames = {"View.N.X", "View.N.Y", "View.N.Z"};
+inline const Names albedoNames = {"View.Col.R", "View.Col.G", "View.Col.B"};
+inline const Names positionNames = {"P.X", "P.Y", "P.Z"}, colorNames = {"R", "G", "B"};
+
+// Channels whose values follow from column, row and number of the channel.
+template <class Value>
+void addChannels(pellucid::io::Image& image, const Names& names, const Value& value) {
+    std::vector<float> values;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            for (size_t c = 0; c < names.size(); ++c) values.push_back(float(value(x, y, c)));
+    image.addInterleaved(names, values);
+}
 
 class Shade : public CommandTest {
   protected:
@@ -20,16 +33,13 @@ class Shade : public CommandTest {
         CommandTest::SetUp();
         gbuffer_.width = width;
         gbuffer_.height = height;
-        std::vector<float> normals, albedos, ids;
-        for (int i = 0; i < width * height; ++i) {
-            const float angle = 0.2f * static_cast<float>(i % width);
-            normals.insert(normals.end(), {std::sin(angle), 0.0f, std::cos(angle)});
-            albedos.insert(albedos.end(), {0.5f, 0.25f, 0.125f});
-            ids.push_back(i % width < 2 ? 0.0f : 1.0f);
-        }
-        gbuffer_.addInterleaved(normalNames, normals);
+        addChannels(gbuffer_, normalNames, [](int x, int, size_t c) {
+            return c == 1 ? 0.0f : c ? std::cos(0.2f * float(x)) : std::sin(0.2f * float(x));
+        });
+        std::vector<float> albedos;
+        for (int i = 0; i < width * height; ++i) albedos.insert(albedos.end(), {0.5f, 0.25f, 0.125f});
         gbuffer_.addInterleaved(albedoNames, albedos, pellucid::io::ChannelType::Half);
-        gbuffer_.addInterleaved(std::vector<std::string>{"View.Id.X"}, ids);
+        addChannels(gbuffer_, {"View.Id.X"}, [](int x, int, size_t) { return x >= 2; });
         pellucid::io::writeExr(path("g.exr"), gbuffer_);
 
         scene_.channels[PEL_SLOT_NORMAL_SHADING] = {"N.X", "N.Y", "N.Z"};
@@ -41,13 +51,59 @@ class Shade : public CommandTest {
         std::copy(color, color + 3, scene_.lights[0].light.color);
         pellucid::io::writeScene(path("s.toml"), scene_);
     }
-    std::vector<std::string> command(const std::string& scene = "s.toml",
-                                     const std::string& gbuffer = "g.exr") const {
-        return {"shade", path(gbuffer), "--scene", path(scene), "-o", path("o.exr")};
+    // What `pellucid shade` makes of the scene and the G-buffer as they are now.
+    std::vector<float> shaded(const std::string& more = "") {
+        pellucid::io::writeExr(path("g.exr"), gbuffer_);
+        pellucid::io::writeScene(path("s.toml"), scene_);
+        said_ = done(shade_ + " --json " + more);
+        return pellucid::io::readImage(path("o.exr")).interleaved(colorNames);
+    }
+    // What is wrong with them.
+    void refuses(const std::string& message, const std::string& more = "") {
+        std::filesystem::remove(path("o.exr"));
+        pellucid::io::writeExr(path("g.exr"), gbuffer_);
+        pellucid::io::writeScene(path("s.toml"), scene_);
+        refused(shade_ + " " + more, 3, message);
+    }
+    std::vector<float> channel(const std::string& file, const std::string& name) const {
+        return pellucid::io::readImage(path(file)).channel(name).pixels;
     }
 
+    const std::string shade_ = "shade @g.exr --scene @s.toml -o @o.exr";
     pellucid::io::Image gbuffer_;
     pellucid::io::SceneFile scene_;
+    Result said_{};
 };
+
+template <class Mesh>
+std::string offText(const Mesh& mesh) {
+    std::ostringstream text;
+    text << "OFF\n" << mesh.positions.size() / 3 << ' ' << mesh.triangles.size() / 3 << " 0";
+    for (size_t i = 0; i < mesh.positions.size(); ++i) text << (i % 3 ? " " : "\n") << mesh.positions[i];
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) text << (i % 3 ? " " : "\n3 ") << mesh.triangles[i];
+    return text.str() + "\n";
+}
+
+// A regular icosahedron of radius 2, faces outwards: its vertex normals are radial by symmetry.
+inline std::string icosahedron(const std::string& extraVertices = "", const std::string& extraFaces = "",
+                               int vertices = 12, int faces = 20) {
+    const double g = (1 + std::sqrt(5.0)) / 2, a = 2 / std::sqrt(1 + g * g), b = a * g;
+    std::ostringstream text;
+    text.precision(9);
+    text << "OFF\n" << vertices << ' ' << faces << " 0\n";
+    for (int plane = 0; plane < 3; ++plane)
+        for (int corner = 0; corner < 4; ++corner) {
+            std::array<double, 3> p{};
+            p[size_t(plane)] = corner % 2 ? a : -a;
+            p[size_t(plane + 1) % 3] = corner < 2 ? b : -b;
+            text << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+        }
+    text << extraVertices;
+    for (const char* face :
+         {"0 11 5", "0 5 1", "0 1 7", "0 7 10", "0 10 11", "1 5 9", "5 11 4", "11 10 2", "10 7 6", "7 1 8",
+          "3 9 4",  "3 4 2", "3 2 6", "3 6 8",  "3 8 9",   "4 9 5", "2 4 11", "6 2 10",  "8 6 7",  "9 8 1"})
+        text << "3 " << face << '\n';
+    return text.str() + extraFaces;
+}
 
 }  // namespace shade_files

@@ -1,19 +1,151 @@
-// The command line's contract: names, flags, exit codes, JSON on stdout and nothing else, no partial files.
+// The command line's contract: names, flags, exit codes, JSON on stdout and nothing else, no partial files, messages
+// about wrong values; and every command and option that the pages show exists.
 #include <pellucid/pellucid.hpp>
+#include <regex>
+#include <set>
 
-#include "cli_mesh.h"
+#include "cli_shade.h"
+#include "docs/pages.h"
 
 using namespace pellucid;
+using nlohmann::json;
 
-using Cli = CommandOnMesh;
+namespace {
+
+class Cli : public shade_files::Shade {
+  protected:
+    // Calls with every subcommand, by its words with a blank behind each, and what `describe` says of it.
+    using Visit = std::function<void(const std::string&, const json&)>;
+    void eachCommand(const Visit& visit) const { walk(done("describe").json(), "", visit); }
+
+  private:
+    static void walk(const json& app, const std::string& name, const Visit& visit) {
+        visit(name, app);
+        for (const json& sub : app.at("subcommands"))
+            walk(sub, name + sub.at("name").get<std::string>() + " ", visit);
+    }
+};
+
+struct Refusal {
+    const char* line;
+    int exitCode;
+    const char *message, *environment = "";
+};
+
+const std::string unread = "shade a.exr --scene a.toml -o @a.exr ";  // wrong values are seen before files
+
+const Refusal refusals[] = {
+    {"", 2, "subcommand"},
+    {"lut curvatur", 2,
+     "no subcommand 'lut curvatur'; did you mean curvature? there are curvature, shadow, specular"},
+    {"curvatur", 2, "curvatur"},
+    {"shde", 2, "no subcommand 'shde'; did you mean shade?"},
+    {"shade --exposre 2", 2, "pellucid shade has no '--exposre'; did you mean --exposure?"},
+    {"devices --device 'no such device'", 4, "no such device"},
+    {"devices", 4, "abacus", "PELLUCID_DEVICE=abacus"},
+    {"lut curvature -o @l.npy", 4, "pocl-opencl-icd", "OCL_ICD_VENDORS=@folder"},  // no drivers at all
+    {"view", 2, "cannot be started", "PELLUCID_PYTHON=@none"},
+    {"lut curvature", 2, "--output"},
+    {"lut curvature -o @l.npy --sise 8x8", 2, "pellucid lut curvature has no '--sise'; did you mean --size?"},
+    {"lut curvature -o @l.npy --size=8", 2, "--size"},
+    {"lut curvature -o @l.npy --size=8x", 2, "--size"},
+    {"lut curvature -o @l.npy --size=0x8", 2, "--size"},
+    {"lut curvature -o @l.npy --size=-1x8", 2, "--size"},
+    {"lut curvature -o @l.npy --size=8x8x8", 2, "--size"},
+    {"lut curvature -o @l.npy --size=eight", 2, "--size"},
+    {"lut curvature -o @l.png --encoding float", 2, "faceworks8"},
+    {"lut curvature -o @l.npy --radius-min -1", 2, "radius"},
+    {"lut curvature -o @l.npy --radius-min 9 --radius-max 3", 2, "radius"},
+    {"lut curvature -o @l.npy --profile granite", 3, "granite"},
+    {"lut shadow -o @l.npy --sharpening 0.5", 2, "sharpening"},
+    {"lut shadow -o @l.npy --diffusion-radius -1", 2, "diffusionRadius"},
+    {"lut shadow -o @no/l.exr", 2, "no folder"},
+    {"lut shadow -o @d.npy", 2, "is a folder"},
+    {"lut eye -o @x.exr --size 64x64", 2, "64x64x32"},
+    {"lut eye -o @x.exr --limbus-radius 12", 2, "limbusRadius"},
+    {"curvature @m.off -o @c.obj", 2, ".npy, .ply"},
+    {"curvature @m.off -o @no/such/c.npy", 2, "no folder"},
+    {"curvature @m.off -o @c.npy --smooth -1", 2, "--smooth"},
+    {"curvature @m.off -o @c.npy --estimator edge --quantity mean", 2, "tensor or quadric"},
+    {"curvature @m.off -o @c.npy --weld -1", 2, "tolerance above 0"},
+    {"curvature @m.off -o @c.npy --smooth-radius -1", 2, "--smooth-radius"},
+    {"curvature @m.off -o @c.npy --smooth-crease 180.5", 2, "is not a number from 0 to 180"},
+    {"curvature @m.off -o @c.npy --scale nan", 2, "scale"},
+    {"curvature @m.off -o @c.npy --picture @c.jpg", 2, ".png"},
+    {"curvature @m.off -o @c.ply --range 2 1", 2, "lower one first"},
+    {"curvature @m.off -o @c.ply --range 2", 2, "--range"},
+    {"curvature @nan.off -o @c.npy", 3, "nan.off:4: "},
+    {"curvature @none.off -o @c.npy", 3, "No such file"},
+    {"profile show granite", 3, "granite"},
+    {"profile fit skin --gaussians 13", 2, "'13' is not a whole number from 1 to 12"},
+    {"shade @g.exr -o @o.exr", 2, "--scene"},
+    {"shade @g.exr --scene @s.toml -o @no/o.exr", 2, "no folder"},
+    {"shade @g.exr --scene @s.toml -o @o.exr --show diffuse", 2, "--picture"},
+    {"shade @g.exr --scene @s.toml -o @o.exr --picture @p.exr", 2, ".png"},
+    {"shade @g.exr --scene @s.toml -o @o.exr --picture @p.png --show final,nothing", 2, "show"},
+    {"shade @g.exr --scene @s.toml -o @o.png --picture @p.png", 2, "-o is a picture already"},
+    {"shade @none.exr --scene @s.toml -o @o.exr", 3, "none.exr: cannot be read"},
+    {"shade @text.exr --scene @s.toml -o @o.exr", 3, "text.exr"},
+    {"shade @cut.exr --scene @s.toml -o @o.exr", 3, "cut.exr"},
+    {"shade @g.exr --scene @none.toml -o @o.exr", 3, "none.toml: cannot be read"},
+    {"shade @g.exr --scene @bad.toml -o @o.exr", 3, "bad.toml:2: 'version' in the scene is a string"},
+    {"warm-up @none.toml", 3, "none.toml"},
+    {"warm-up --luts", 2, "PELLUCID_CACHE is \"perhaps\"; it can be on, off or auto",
+     "PELLUCID_CACHE=perhaps"},
+    {"warm-up --luts", 2, "PELLUCID_CACHE_MB is \"much\"",
+     "PELLUCID_CACHE=on PELLUCID_CACHE_DIR=@folder PELLUCID_CACHE_MB=much"},
+    {"demo @none.off -o @folder", 3, "No such file"},
+    {"demo @m.off -o @m.off", 2, "m.off"},
+    {"demo @m.off -o @folder --size 0x0", 2, "--size"},
+    {"bench --quick", 2, "-o is needed"},
+    {"bench -o /proc/nowhere", 2, "/proc/nowhere"},
+    {"bench compare @none.json @none.json", 3, "none.json: cannot be read"},
+    {"bench compare @a.json @a.json", 3, "not a report"},
+    {"bench compare @b.json @b.json", 3, "not whole"},
+};
+
+}  // namespace
+
+TEST_F(Cli, WrongUseAndBadInputAreRefused) {
+    write("m.off", shade_files::icosahedron());
+    write("nan.off", "OFF\n3 1 0\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n");
+    write("text.exr", "no image at all");
+    const std::string whole = read(path("g.exr"));
+    write("cut.exr", whole.substr(0, whole.size() - 30));
+    write("bad.toml", "# a scene\nversion = \"2\"\n");
+    write("a.json", "{}");
+    write("b.json", "{\"devices\":[{}]}");
+    std::filesystem::create_directories(path("d.npy"));
+    std::filesystem::create_directories(path("folder"));
+    for (const Refusal& r : refusals) refused(r.line, r.exitCode, r.message, r.environment);
+    refused(unread + "--tonemap filmc", 2,
+            "pellucid: --tonemap: there is no 'filmc'; did you mean filmic? there are soft, none, filmic, "
+            "agx-like\n");
+    refused(unread + "--tonemap 2", 2, "there is no '2'");
+    refused(unread + "--outputs diffuse,speculr", 2, "there is no 'speculr'; did you mean specular?");
+    refused(unread + "--exposure -1", 2, "--exposure: '-1' is not a number above 0\n");
+    refused(unread + "--exposure 0", 2, "is not a number above 0");
+    refused(unread + "--scratch-mib 1.5", 2,
+            "--scratch-mib: '1.5' is not a whole number from 0 to 1073741824\n");
+    // Capital letters are as good; what is missing next is the scene.
+    refused(unread + "--tonemap Filmic", 3, "a.toml: cannot be read");
+    // The name of a file whose extension stands for no format is wrong use in every argument.
+    write("a.foo", "");
+    for (const char* line :
+         {"curvature @a.foo -o @o.npy", "curvature @m.ply -o @a.foo",
+          "curvature @m.ply -o @o.npy --picture @a.foo", "lut shadow -o @a.foo", "lut shadow --output=@a.foo",
+          "profile plot skin -o @a.foo", "profile fit skin -o @a.foo",
+          "shade @g.exr --scene @s.toml -o @a.foo", "shade @g.exr --scene @s.toml -o @o.exr --picture @a.foo",
+          "demo @a.foo -o @folder", "import @a.foo -o @folder", "reference @a.foo --scene @s.toml -o @o.npy",
+          "reference @m.ply --scene @s.toml -o @a.foo"})
+        refused(line, 2, "a.foo: has the unknown extension '.foo'; known here: ");
+}
 
 TEST_F(Cli, DevicesAreListed) {
-    const Result text = run({"devices"});
-    EXPECT_EQ(text.exitCode, 0) << text.err;
-    const Result result = run({"devices", "--json"});
-    ASSERT_EQ(result.exitCode, 0) << result.err;
-    const nlohmann::json report = result.json();
+    const std::string text = done("devices").out;
+    const json report = reportOf("devices --device 0");
     expectReport(report);
+    EXPECT_EQ(report.at("default"), 0);
     const std::vector<PelDeviceInfo> devices = Device::all();
     ASSERT_EQ(report.at("devices").size(), devices.size());
     for (size_t i = 0; i < devices.size(); ++i) {
@@ -21,125 +153,143 @@ TEST_F(Cli, DevicesAreListed) {
         EXPECT_EQ(d.at("name"), devices[i].name);
         EXPECT_EQ(d.at("compute_units"), devices[i].computeUnits);
         EXPECT_EQ(d.at("global_memory_bytes"), devices[i].globalMemoryBytes);
-        EXPECT_TRUE(contains(text.out, devices[i].name));
+        EXPECT_TRUE(contains(text, devices[i].name));
         for (const char* key : {"version", "driver", "type", "platform", "preferred_float_width", "quirks"})
             EXPECT_TRUE(d.contains(key));
     }
 }
 
-TEST_F(Cli, DevicesAreChosenOrNamedMissing) {
-    const Result byNumber = run({"devices", "--json", "--device", "0"});
-    EXPECT_EQ(byNumber.exitCode, 0);
-    EXPECT_EQ(byNumber.json().at("default"), 0);
-    expectRefused({"devices", "--device", "no such device"}, 4, "no such device");
-    expectRefused({"devices"}, 4, "abacus", "PELLUCID_DEVICE=abacus");
-    // No OpenCL platform at all: the loader is shown an empty folder of drivers.
-    std::filesystem::create_directories(path("no-icds"));
-    expectRefused({"lut", "curvature", "-o", path("l.npy")}, 4, "pocl-opencl-icd",
-                  "OCL_ICD_VENDORS=" + path("no-icds"));
-}
-
-TEST_F(Cli, WrongUseIsRefused) {
-    expectRefused({}, 2, "subcommand");
-    expectRefused(
-        {"lut", "curvatur"}, 2,
-        "no subcommand 'lut curvatur'; did you mean curvature? there are curvature, shadow, specular");
-    expectRefused({"curvatur"}, 2, "curvatur");
-    expectRefused({"lut", "curvature"}, 2, "--output");
-    expectRefused({"lut", "curvature", "-o", path("l.npy"), "--sise", "8x8"}, 2,
-                  "pellucid lut curvature has no '--sise'; did you mean --size?");
-    expectRefused({"shde"}, 2, "no subcommand 'shde'; did you mean shade?");
-    expectRefused({"shade", "--exposre", "2"}, 2,
-                  "pellucid shade has no '--exposre'; did you mean --exposure?");
-    for (const char* size : {"8", "8x", "0x8", "-1x8", "8x8x8", "eight"}) {
-        expectRefused({"lut", "curvature", "-o", path("l.npy"), std::string("--size=") + size}, 2, "--size");
-    }
-    expectRefused({"lut", "curvature", "-o", path("l.npy"), "--form", "cube"}, 2, "arc");
-    expectRefused({"lut", "curvature", "-o", path("l.gif")}, 2, ".exr");
-    expectRefused({"lut", "curvature", "-o", path("l.png"), "--encoding", "float"}, 2, "faceworks8");
-    expectRefused({"lut", "curvature", "-o", path("l.npy"), "--radius-min", "-1"}, 2, "radius");
-    expectRefused({"lut", "curvature", "-o", path("l.npy"), "--radius-min", "9", "--radius-max", "3"}, 2,
-                  "radius");
-    expectRefused({"lut", "shadow", "-o", path("l.npy"), "--sharpening", "0.5"}, 2, "sharpening");
-    expectRefused({"lut", "shadow", "-o", path("l.npy"), "--diffusion-radius", "-1"}, 2, "diffusionRadius");
-    const std::string mesh = icosahedron();
-    expectRefused({"curvature", mesh, "-o", path("c.obj")}, 2, ".npy, .ply");
-    expectRefused({"curvature", mesh, "-o", path("c.npy"), "--estimator", "guess"}, 2, "edge");
-    expectRefused({"curvature", mesh, "-o", path("c.npy"), "--smooth", "-1"}, 2, "--smooth");
-    expectRefused({"curvature", mesh, "-o", path("c.npy"), "--estimator", "edge", "--quantity", "mean"}, 2,
-                  "tensor or quadric");
-    expectRefused({"curvature", mesh, "-o", path("c.npy"), "--quantity", "size"}, 2, "gaussian");
-    expectRefused({"curvature", mesh, "-o", path("c.npy"), "--weld", "-1"}, 2, "tolerance above 0");
-    expectRefused({"curvature", mesh, "-o", path("c.npy"), "--smooth-radius", "-1"}, 2, "--smooth-radius");
-    expectRefused({"curvature", mesh, "-o", path("c.npy"), "--smooth-weights", "length"}, 2, "cotangent");
-    expectRefused({"curvature", mesh, "-o", path("c.ply"), "--range", "2", "1"}, 2, "lower one first");
-    expectRefused({"curvature", mesh, "-o", path("c.ply"), "--range", "2"}, 2, "--range");
-    expectRefused({"curvature", mesh, "-o", path("c.npy"), "--picture", path("c.jpg")}, 2, ".png");
-    expectRefused({"curvature", mesh, "-o", path("c.npy"), "--scale", "nan"}, 2, "scale");
-}
-
-TEST_F(Cli, UnwritableOutputsAreRefusedBeforeWork) {
-    const std::string mesh = icosahedron();
-    expectRefused({"curvature", mesh, "-o", path("no/such/c.npy")}, 2, "no folder");
-    expectRefused({"lut", "shadow", "-o", path("no/l.exr")}, 2, "no folder");
-    std::filesystem::create_directories(path("d.npy"));
-    expectRefused({"lut", "shadow", "-o", path("d.npy")}, 2, "is a folder");
-}
-
-// The viewer is part of the Python package: the command passes all arguments on, and names what is missing.
+// The viewer is part of the Python package: the command passes all arguments on.
 TEST_F(Cli, ViewStartsThePython) {
     const std::string python = write("python", "#!/bin/sh\nprintf '%s\\n' \"$@\" | tail -n +7\n");
     std::filesystem::permissions(python, std::filesystem::perms::owner_all);
-    setenv("PELLUCID_PYTHON", python.c_str(), 1);
-    for (const std::string command : {"view", "gallery"}) {
-        const Result handed = run({command, "--port", "8351", "head.obj", "--no-browser"});
-        EXPECT_EQ(handed.exitCode, 0) << handed.err;
-        EXPECT_NE(handed.out.find(command == "view" ? "pellucid.view\n" : "pellucid.view.gallery\n"),
-                  std::string::npos)
-            << handed.out;
-        EXPECT_NE(handed.out.find("--port\n8351\nhead.obj\n--no-browser\n"), std::string::npos) << handed.out;
+    for (const auto& [command, module] :
+         {std::pair{"view", "pellucid.view\n"}, {"gallery", "pellucid.view.gallery\n"}}) {
+        const std::string handed =
+            done(std::string(command) + " --port 8351 head.obj --no-browser", "PELLUCID_PYTHON=@python").out;
+        EXPECT_TRUE(contains(handed, module));
+        EXPECT_TRUE(contains(handed, "--port\n8351\nhead.obj\n--no-browser\n"));
     }
-    setenv("PELLUCID_PYTHON", path("none").c_str(), 1);
-    expectRefused({"view"}, 2, "cannot be started");
-    unsetenv("PELLUCID_PYTHON");
 }
 
 // Every subcommand that has --device, by `describe`, opens that device.
 TEST_F(Cli, EveryDeviceOptionIsHeard) {
-    const std::string mesh = icosahedron(), manifest = write("m.toml", "[[lut]]\nsize = 8\n"),
-                      out = path("out");
-    const std::map<std::string, std::vector<std::string>> rest = {
-        {"devices", {}},
-        {"curvature", {mesh, "-o", out + ".npy"}},
-        {"lut curvature", {"-o", out + ".exr"}},
-        {"lut shadow", {"-o", out + ".exr"}},
-        {"lut specular", {"-o", out + ".exr"}},
-        {"lut eye", {"-o", out + ".exr"}},
-        {"warm-up", {}},
-        {"shade", {"--outputs", "diffuse", mesh, "--scene", mesh, "-o", out + ".exr"}},
-        {"reference", {mesh, "--scene", mesh, "-o", out + ".npy"}},
-        {"import", {path("none.glb"), "-o", out}},
-        {"batch", {manifest, "-o", scratch() + "/tables"}},
-        {"demo", {"-o", scratch() + "/demo"}},
-        {"bench", {"-o", scratch() + "/bench"}}};
-    std::set<std::string> heard;
-    const std::function<void(const nlohmann::json&, const std::string&)> walk = [&](const nlohmann::json& app,
-                                                                                    const std::string& name) {
-        for (const nlohmann::json& sub : app.at("subcommands"))
-            walk(sub, name + (name.empty() ? "" : " ") + sub.at("name").get<std::string>());
-        for (const nlohmann::json& option : app.at("options")) {
+    write("m.off", shade_files::icosahedron());
+    write("m.toml", "[[lut]]\nsize = 8\n");
+    for (const char* folder : {"tables", "demo", "bench"}) std::filesystem::create_directories(path(folder));
+    const std::map<std::string, const char*> rest = {
+        {"devices ", ""},
+        {"curvature ", "@m.off -o @o.npy"},
+        {"lut curvature ", "-o @o.exr"},
+        {"lut shadow ", "-o @o.exr"},
+        {"lut specular ", "-o @o.exr"},
+        {"lut eye ", "-o @o.exr"},
+        {"warm-up ", ""},
+        {"shade ", "--outputs diffuse @m.off --scene @m.off -o @o.exr"},
+        {"reference ", "@m.off --scene @m.off -o @o.npy"},
+        {"import ", "@none.glb -o @o"},
+        {"batch ", "@m.toml -o @tables"},
+        {"demo ", "-o @demo"},
+        {"bench ", "-o @bench"}};
+    size_t heard = 0;
+    eachCommand([&](const std::string& name, const json& app) {
+        for (const json& option : app.at("options")) {
             const auto names = option.at("names").get<std::vector<std::string>>();
             if (std::find(names.begin(), names.end(), "--device") == names.end()) continue;
-            ASSERT_TRUE(rest.contains(name)) << name << " has --device: add it here";
-            std::vector<std::string> line;
-            std::istringstream words(name);
-            for (std::string word; words >> word;) line.push_back(word);
-            line.insert(line.end(), {"--device", "no such device"});
-            line.insert(line.end(), rest.at(name).begin(), rest.at(name).end());
-            expectRefused(line, 4, "no such device");
-            heard.insert(name);
+            ASSERT_TRUE(rest.contains(name)) << name << "has --device: add it here";
+            refused(name + "--device 'no such device' " + rest.at(name), 4, "no such device");
+            ++heard;
         }
-    };
-    walk(run({"describe"}).json(), "");
-    EXPECT_GE(heard.size(), 8u);
+    });
+    EXPECT_GE(heard, 8u);
+}
+
+// --help shows the words of `pellucid describe`, and nothing of CLI11's own notation.
+TEST_F(Cli, HelpIsReadable) {
+    for (const char* command : {"demo", "lut curvature", "bench", "shade"}) {
+        const std::string help = done(std::string(command) + " --help").out;
+        for (const char* notation : {"{", "INT", "FLOAT", "TEXT", "REQUIRED", "NONNEGATIVE", "]="})
+            EXPECT_FALSE(contains(help, notation)) << command << ": " << notation << "\n" << help;
+    }
+    const std::string help = done("demo --help").out;
+    for (const char* line :
+         {"--smooth N (0 to 1000; default: 2)", "--device DEVICE", "--up auto|y|z (default: auto)",
+          "--size SIZE (default: 1280x720)", "-o,--output PATH", "  --no-reference  "})
+        EXPECT_TRUE(contains(help, line)) << line;
+}
+
+// Messages about wrong values, for every option of every subcommand that takes words or numbers in a range.
+TEST_F(Cli, EveryOptionNamesWhatItTakes) {
+    size_t options = 0;
+    eachCommand([&](const std::string& command, const json& app) {
+        for (const json& option : app.at("options")) {
+            const auto words = option.at("completions").get<std::vector<std::string>>();
+            const bool number = option.at("range") != "",
+                       choice = !words.empty() && contains(option["value"], "|");
+            if (option.at("names").empty() || !(number || choice)) continue;
+            ++options;
+            const std::string name = option["names"].back();
+            SCOPED_TRACE(command + name);
+            for (const char* given : {"somthing", "nan", "1e999"}) {
+                const Result result = cli(command + name + " " + given);
+                EXPECT_EQ(result.exitCode, 2) << result.err;
+                EXPECT_TRUE(contains(result.err, "pellucid: " + name + ": "));
+                EXPECT_TRUE(contains(result.err, choice ? "there is no '" : "' is not a "));
+                EXPECT_LT(result.err.size(), 250u) << result.err;
+                EXPECT_FALSE(contains(result.err, "->")) << result.err;
+                if (choice)
+                    for (const std::string& word : words) EXPECT_TRUE(contains(result.err, word));
+            }
+        }
+    });
+    EXPECT_GT(options, 30u);
+}
+
+TEST_F(Cli, CommandsAndOptionsOfThePagesExist) {
+    std::map<std::string, std::set<std::string>> known;  // options of each subcommand
+    eachCommand([&](const std::string& command, const json& app) {
+        std::set<std::string>& names = known[command];
+        for (const json& option : app.at("options"))
+            for (const std::string name : option.at("names")) names.insert(name);
+        for (const std::string alias : app.value("aliases", json::array())) known[alias + " "] = names;
+    });
+    // "pellucid ..." at the start of an indented line, in a block of code, or in a code span.
+    const std::regex line(R"((^|\n)(    )?pellucid ([^\n#;]*))"), span("`pellucid ([^`]*)`"),
+        brackets(R"([\[\]])");
+    std::vector<std::pair<std::string, std::string>> commands;  // page, command
+    for (const auto& page : pages::all()) {
+        const std::string text = pages::contents(page);
+        for (const auto& [pattern, group] : {std::pair(line, 3), {span, 1}})
+            for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it)
+                commands.emplace_back(page.string(),
+                                      std::regex_replace((*it)[size_t(group)].str(), brackets, " "));
+    }
+    int options = 0;
+    for (const auto& [page, command] : commands) {
+        SCOPED_TRACE(page + ": pellucid " + command);
+        std::vector<std::string> meant = {""};  // `lut curvature|shadow` means two
+        bool first = true;
+        for (std::string word : pages::words(command)) {
+            std::vector<std::string> deeper;
+            std::istringstream choices(word);
+            for (std::string choice; std::getline(choices, choice, '|');)
+                if (meant.size() == 1 && known.contains(meant[0] + choice + " "))
+                    deeper.push_back(meant[0] + choice + " ");
+            if (first && std::islower(word[0])) {
+                EXPECT_FALSE(deeper.empty()) << "no " << word;
+            }
+            first = false;
+            if (!deeper.empty()) meant = deeper;
+            if (!std::regex_search(word, std::regex("^--?[a-z]"))) continue;
+            word = word.substr(0, word.find_first_of("|="));
+            ++options;
+            bool found = false;  // in one of the subcommands that may be meant; `lut` means all kinds
+            for (const auto& [name, names] : known)
+                for (const std::string& m : meant)
+                    found |= (name == m || (m == "lut " && name.starts_with(m))) && names.contains(word);
+            EXPECT_TRUE(found) << "no option " << word;
+        }
+    }
+    EXPECT_GT(commands.size(), 30u);
+    EXPECT_GT(options, 30);
 }

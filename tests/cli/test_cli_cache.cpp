@@ -17,18 +17,22 @@ namespace {
 class ProgramsOnDisk : public CommandTest {
   protected:
     // Builds the programs of tables; returns the report.
-    nlohmann::json warmUp(const std::string& environment) const {
-        const Result result = run({"warm-up", "--luts", "--threads", "1", "--json"}, environment);
-        EXPECT_EQ(result.exitCode, 0) << result.err;
-        return result.exitCode ? nlohmann::json() : result.json();
+    struct Counts {
+        int programs, loaded, stored;
+    };
+    Counts warmUp(const std::string& environment) const {
+        const nlohmann::json said = reportOf("warm-up --luts --threads 1", environment);
+        return {said.at("programs"), said.at("loaded"), said.at("stored")};
     }
-    std::string table(const std::string& environment, const std::string& name) const {
-        const Result result = run({"lut", "shadow", "--size", "24x16", "-o", path(name)}, environment);
-        EXPECT_EQ(result.exitCode, 0) << result.err;
-        return read(path(name));
+    void expectWarmUp(const std::string& environment, const Counts& expected) const {
+        const Counts is = warmUp(environment);
+        EXPECT_EQ(is.programs, expected.programs) << environment;
+        EXPECT_EQ(is.loaded, expected.loaded) << environment;
+        EXPECT_EQ(is.stored, expected.stored) << environment;
     }
-    std::string on(const std::string& more = "") const {
-        return "PELLUCID_CACHE=on PELLUCID_CACHE_DIR='" + path("cache") + "' " + more;
+    std::string table(const std::string& environment) const {
+        done("lut shadow --size 24x16 -o @t.npy", environment);
+        return read(path("t.npy"));
     }
     std::vector<fs::path> files() const {
         std::vector<fs::path> found;
@@ -38,118 +42,93 @@ class ProgramsOnDisk : public CommandTest {
     }
 };
 
+const std::string cache = "PELLUCID_CACHE_DIR=@cache ", on = "PELLUCID_CACHE=on " + cache;
+
 }  // namespace
 
 TEST_F(ProgramsOnDisk, ASecondProcessCompilesNothingAndComputesTheSameBits) {
-    const std::string truth = table("PELLUCID_CACHE=off", "off.npy");
-    const nlohmann::json first = warmUp(on());
-    const int programs = first.at("programs");
-    ASSERT_GT(programs, 3);
-    EXPECT_EQ(first.at("loaded"), 0);
-    EXPECT_EQ(first.at("stored"), programs);
-    EXPECT_EQ(int(files().size()), programs);
-    const nlohmann::json second = warmUp(on());
-    EXPECT_EQ(second.at("programs"), programs);
-    EXPECT_EQ(second.at("loaded"), programs);
-    EXPECT_EQ(second.at("stored"), 0);
-    EXPECT_EQ(table(on(), "on.npy"), truth);
-    EXPECT_EQ(int(files().size()), programs) << "the table's programs were among them";
+    const std::string truth = table("PELLUCID_CACHE=off");
+    const int n = warmUp(on).stored;
+    ASSERT_GT(n, 3);
+    EXPECT_EQ(int(files().size()), n);
+    expectWarmUp(on, {n, n, 0});
+    EXPECT_EQ(table(on), truth);
+    EXPECT_EQ(int(files().size()), n) << "the table's programs were among them";
 
     // Another width is another program.
     const bool eight = pellucid::Device("").info().mathWidth == 8;
-    const nlohmann::json other = warmUp(on(eight ? "PELLUCID_MATH_WIDTH=16" : "PELLUCID_MATH_WIDTH=8"));
-    EXPECT_EQ(other.at("loaded"), 0);
-    EXPECT_EQ(other.at("stored"), programs);
+    expectWarmUp(on + (eight ? "PELLUCID_MATH_WIDTH=16" : "PELLUCID_MATH_WIDTH=8"), {n, 0, n});
 
-    // A file that is damaged, cut short or of another program: compiled again and replaced.
+    // A file that is damaged, cut short, of another program, or has the right checksum of what is no program:
+    // compiled again and replaced.
     const std::vector<fs::path> all = files();
     for (size_t i = 0; i < all.size(); ++i) {
         std::string text = read(all[i].string());
-        if (i % 3 == 0) text[text.size() / 2] ^= 1;
-        if (i % 3 == 1) text.resize(text.size() / 2);
-        if (i % 3 == 2) text = "not a program";
+        if (i % 4 == 0) text[text.size() / 2] ^= 1;
+        if (i % 4 == 1) text.resize(text.size() / 2);
+        if (i % 4 == 2) text = "not a program";
+        if (i % 4 == 3) {
+            const std::string nonsense(1000, 'n');
+            text = Digest().addPart(all[i].stem().string()).add(nonsense).text() + nonsense;
+        }
         std::ofstream(all[i], std::ios::binary) << text;
     }
-    const nlohmann::json mended = warmUp(on());
-    EXPECT_EQ(mended.at("loaded"), 0);
-    EXPECT_EQ(mended.at("stored"), programs);
-    EXPECT_EQ(warmUp(on()).at("loaded"), programs);
-    EXPECT_EQ(table(on(), "mended.npy"), truth);
+    expectWarmUp(on, {n, 0, n});
+    expectWarmUp(on, {n, n, 0});
+    EXPECT_EQ(table(on), truth);
+    // No room: built, not kept.
+    EXPECT_EQ(warmUp(on + "PELLUCID_CACHE_MB=0").loaded, 0);
+    for (const char* off : {"PELLUCID_CACHE=off", "PELLUCID_CACHE_DIR=", "PELLUCID_CACHE_DIR=off"})
+        expectWarmUp(on + off, {n, 0, 0});
 }
 
 TEST_F(ProgramsOnDisk, AWarmUpMakesBinariesForPoclAndOthersLoadThem) {
-    const std::string folder = "PELLUCID_CACHE_DIR='" + path("cache") + "' ";
-    const std::string truth = table(folder, "before.npy");
+    const std::string truth = table(cache);
     if (pellucid::Device("").info().platform != std::string("Portable Computing Language"))
         GTEST_SKIP() << "PoCL is not the device";
     EXPECT_TRUE(files().empty()) << "a table alone makes none: that would compile everything once more";
-    const nlohmann::json made = warmUp(folder);
-    EXPECT_EQ(made.at("stored"), made.at("programs"));
-    const nlohmann::json quick = warmUp(folder + "PELLUCID_CACHE=auto");
-    EXPECT_EQ(quick.at("loaded"), made.at("programs"));
-    EXPECT_EQ(quick.at("stored"), 0);
-    EXPECT_EQ(table(folder, "after.npy"), truth);
+    const Counts made = warmUp(cache);
+    EXPECT_EQ(made.stored, made.programs);
+    expectWarmUp(cache + "PELLUCID_CACHE=auto", {made.programs, made.programs, 0});
+    EXPECT_EQ(table(cache), truth);
     // Not from a folder where others may write.
     fs::permissions(path("cache"), fs::perms::all);
-    const nlohmann::json open = warmUp(folder + "PELLUCID_CACHE=auto");
-    EXPECT_EQ(open.at("loaded"), 0);
-    EXPECT_EQ(open.at("programs"), made.at("programs"));
-}
-
-TEST_F(ProgramsOnDisk, ABinaryThatTheDriverRefusesIsCompiledAgain) {
-    const nlohmann::json first = warmUp(on());
-    // Complete files with the right checksum of something that is not a program.
-    for (const fs::path& file : files()) {
-        const std::string nonsense(1000, 'n');
-        const Digest sum = Digest().addPart(file.stem().string()).add(nonsense);
-        std::ofstream(file, std::ios::binary) << sum.text() << nonsense;
-    }
-    const nlohmann::json again = warmUp(on());
-    EXPECT_EQ(again.at("loaded"), 0);
-    EXPECT_EQ(again.at("stored"), first.at("programs"));
+    const Counts open = warmUp(cache + "PELLUCID_CACHE=auto");
+    EXPECT_EQ(open.loaded, 0);
+    EXPECT_EQ(open.programs, made.programs);
 }
 
 TEST_F(ProgramsOnDisk, AFolderThatCannotBeWrittenIsNoError) {
     // A file where the folder should be: root may write wherever there is a folder.
     write("cache", "a file");
-    const nlohmann::json blocked = warmUp(on());
-    EXPECT_GT(blocked.at("programs"), 3);
-    EXPECT_EQ(blocked.at("loaded"), 0);
-    EXPECT_EQ(blocked.at("stored"), 0);
+    const Counts blocked = warmUp(on);
+    EXPECT_GT(blocked.programs, 3);
+    EXPECT_EQ(blocked.loaded, 0);
+    EXPECT_EQ(blocked.stored, 0);
     fs::remove(path("cache"));
     if (::geteuid() == 0) return;
     fs::create_directories(path("cache"));
     fs::permissions(path("cache"), fs::perms::owner_read | fs::perms::owner_exec);
-    EXPECT_EQ(warmUp(on()).at("stored"), 0);
+    EXPECT_EQ(warmUp(on).stored, 0);
     fs::permissions(path("cache"), fs::perms::owner_all);
 }
 
-TEST_F(ProgramsOnDisk, TwoProcessesAtOnceAndTheSwitch) {
+TEST_F(ProgramsOnDisk, TwoProcessesAtOnce) {
     nlohmann::json said[2];
     const auto one = [&](int i) {
-        // Not by run(), which has one place for what is printed.
+        // Not by cli(), which has one place for what is printed.
         const std::string out = path("said" + std::to_string(i));
         const std::string line =
-            on() + PELLUCID_COMMAND + " prefill --luts --threads 1 --json >" + out + " 2>/dev/null";
+            filled(on) + PELLUCID_COMMAND + " prefill --luts --threads 1 --json >" + out + " 2>/dev/null";
         ASSERT_EQ(std::system(line.c_str()), 0);
         said[i] = nlohmann::json::parse(read(out));
     };
     std::thread other(one, 0);
     one(1);
     other.join();
-    const int programs = said[0].at("programs");
-    for (const auto& s : said) EXPECT_EQ(s.at("loaded").get<int>() + s.at("stored").get<int>(), programs);
-    EXPECT_EQ(int(files().size()), programs);
+    const int n = said[0].at("programs");
+    for (const auto& s : said) EXPECT_EQ(s.at("loaded").get<int>() + s.at("stored").get<int>(), n);
+    EXPECT_EQ(int(files().size()), n);
     for (const fs::path& file : files()) EXPECT_EQ(file.extension(), ".bin");
-    EXPECT_EQ(warmUp(on()).at("loaded"), programs);
-
-    for (const char* off : {"PELLUCID_CACHE=off", "PELLUCID_CACHE_DIR=", "PELLUCID_CACHE_DIR=off"}) {
-        const nlohmann::json none = warmUp(on(off));
-        EXPECT_EQ(none.at("loaded").get<int>() + none.at("stored").get<int>(), 0) << off;
-    }
-    expectRefused({"warm-up", "--luts"}, 2, "PELLUCID_CACHE is \"perhaps\"; it can be on, off or auto",
-                  "PELLUCID_CACHE=perhaps");
-    expectRefused({"warm-up", "--luts"}, 2, "PELLUCID_CACHE_MB is \"much\"", on("PELLUCID_CACHE_MB=much"));
-    // No room: built, not kept.
-    EXPECT_EQ(warmUp(on("PELLUCID_CACHE_MB=0")).at("loaded"), 0);
+    EXPECT_EQ(warmUp(on).loaded, n);
 }

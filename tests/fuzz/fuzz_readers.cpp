@@ -1,183 +1,116 @@
 // fuzz_readers [--seconds S | --runs N] [--seed N] [--only READER] [--corpus FOLDER] [--keep FOLDER]
 //
-// Gives damaged input to every reader of files: first inputs that once exposed a fault (FOLDER/READER/*),
-// then mutants of valid files, which are determined by the seed and their number. A reader may throw its
-// documented error. It must not crash, throw another error, run long or use much memory. Readers run in a
-// child process; if it dies, the input is kept and another child continues with the next one.
+// Gives damaged input to every reader of files: first inputs that once exposed a fault (FOLDER/READER/*), then whole
+// files, then mutants of those, which are determined by the seed and their number. A reader may throw its documented
+// error. It must not crash, throw another error, run long or use much memory. Readers run in a child process; if it
+// dies, the input is kept and another child continues with the next one.
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
+#include <map>
 #include <new>
-#include <optional>
-#include <sstream>
+#include <set>
 
-#include "fuzz/mutate.h"
 #include "fuzz/readers.h"
 
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int mostReaders = 64;
-constexpr double longestRead = 20;  // s, of one input, under sanitizers and beside other work
+constexpr unsigned longestRead = 20;  // s, of one input, under sanitizers and beside other work
 constexpr int faultCode = 86;
 
-struct Options {
-    double seconds = 0;
-    uint64_t runs = 200, seed = 1;
-    std::string only, corpus, keep = "fuzz-faults";
-};
+using Options = std::map<std::string, std::string>;
 
-// Shared by parent and child: the child's position, and how many inputs of each reader were read and refused.
+// Shared by parent and child: where the child is, how many inputs of this reader were refused, and the input.
 struct Place {
-    std::atomic<int> reader, count;
-    std::atomic<uint64_t> input;
-    std::atomic<uint64_t> done[mostReaders], refused[mostReaders];
-    char names[mostReaders][32];
-    char what[1024];
+    std::atomic<size_t> reader, input, refused, size;
+    char name[32], what[1024], bytes[1 << 20];
 };
 
 double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::vector<std::string> corpusOf(const Options& o, const std::string& reader) {
-    std::vector<fs::path> files;
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(fs::path(o.corpus) / reader, none))
-        files.push_back(entry.path());
-    std::sort(files.begin(), files.end());
-    std::vector<std::string> texts;
-    for (const fs::path& file : files) {
-        std::ostringstream text;
-        text << std::ifstream(file, std::ios::binary).rdbuf();
-        texts.push_back(text.str());
-    }
-    return texts;
-}
-
-// Input `i` of a reader: the corpus, its own seeds, then mutants.
-std::string inputOf(const fuzz::Reader& reader, const std::vector<std::string>& corpus, const Options& o,
+// Input `i` of a reader: the corpus and its own seeds, then mutants.
+std::string inputOf(const fuzz::Reader& reader, const std::vector<std::string>& whole, uint64_t seed,
                     uint64_t i) {
-    if (i < corpus.size()) return corpus[i];
-    if (i - corpus.size() < reader.seeds.size()) return reader.seeds[i - corpus.size()];
+    if (i < whole.size()) return whole[i];
     uint64_t name = 0;
     for (char c : reader.name) name = 131 * name + uint8_t(c);
-    fuzz::Random random(o.seed * 0x100000001b3u + name * 0x9e3779b9u + i * 0x2545f4914f6cdd1du);
+    fuzz::Random random(seed * 0x100000001b3u + name * 0x9e3779b9u + i * 0x2545f4914f6cdd1du);
     if (reader.structured && random.below(4)) return reader.structured(random);
     const std::string bytes = fuzz::mutant(random, reader.seeds, reader.words);
     return reader.mend && random.below(8) ? reader.mend(bytes) : bytes;
 }
 
-void work(const Options& o, Place& place, double end) {
+// From where the last child ended to the end. With a limit of time, each reader has its share.
+void work(const Options& o, Place& place, double begin) {
     const std::vector<fuzz::Reader> readers = fuzz::readers();
-    place.count = int(readers.size());
-    std::vector<std::vector<std::string>> corpora;
-    for (const fuzz::Reader& r : readers) corpora.push_back(corpusOf(o, r.name));
-    for (size_t k = 0; k < readers.size(); ++k) std::strncpy(place.names[k], readers[k].name.c_str(), 31);
-    constexpr uint64_t turn = 50;  // inputs of one reader before the next reader
-    for (bool more = true; more;) {
-        more = false;
-        for (size_t k = 0; k < readers.size(); ++k) {
-            if (!o.only.empty() && readers[k].name != o.only) continue;
-            const uint64_t all =
-                o.seconds > 0 ? ~uint64_t{0} : corpora[k].size() + readers[k].seeds.size() + o.runs;
-            for (uint64_t t = 0; t < turn && place.done[k] < all; ++t) {
-                if (o.seconds > 0 && now() > end) return;
-                place.reader = int(k);
-                const uint64_t i = place.input = place.done[k]++;
-                const std::string bytes = inputOf(readers[k], corpora[k], o, i);
-                const bool seed = i >= corpora[k].size() && i < corpora[k].size() + readers[k].seeds.size();
-                try {
-                    readers[k].read(bytes);
-                } catch (const std::exception& e) {
-                    ++place.refused[k];
-                    if (!fuzz::promised(e) || seed) {
-                        std::snprintf(
-                            place.what, sizeof place.what, "%s%s",
-                            seed ? "a whole file is refused: " : "an error that is not promised: ", e.what());
-                        ::_exit(faultCode);
-                    }
-                }
-                more |= place.done[k] < all;
+    const std::string &only = o.at("--only"), seconds = o.at("--seconds");
+    const uint64_t runs = std::stoull(o.at("--runs")), seed = std::stoull(o.at("--seed"));
+    for (; place.reader < readers.size(); ++place.reader, place.input = place.refused = 0) {
+        const fuzz::Reader& reader = readers[place.reader];
+        if (!only.empty() && reader.name != only) continue;
+        std::snprintf(place.name, sizeof place.name, "%s", reader.name.c_str());
+        std::set<fs::path> files;
+        std::error_code none;
+        for (const auto& entry : fs::directory_iterator(fs::path(o.at("--corpus")) / reader.name, none))
+            files.insert(entry.path());
+        std::vector<std::string> whole;
+        for (const fs::path& file : files) whole.push_back(fuzz::bytesOf(file));
+        whole.insert(whole.end(), reader.seeds.begin(), reader.seeds.end());
+        const double share = only.empty() ? double(place.reader + 1) / double(readers.size()) : 1,
+                     end = begin + share * std::stod(seconds);
+        for (; place.input < whole.size() + (seconds == "0" ? runs
+                                             : now() < end  ? SIZE_MAX / 2
+                                                            : 0);
+             ++place.input) {
+            const std::string bytes = inputOf(reader, whole, seed, place.input);
+            place.size = std::min(bytes.size(), sizeof place.bytes);
+            std::memcpy(place.bytes, bytes.data(), place.size);
+            const bool seedFile = place.input < whole.size() && place.input >= files.size();
+            ::alarm(longestRead);
+            try {
+                reader.read(bytes);
+            } catch (const std::exception& e) {
+                ++place.refused;
+                if (fuzz::promised(e) && !seedFile) continue;
+                std::snprintf(place.what, sizeof place.what, "%s: %s",
+                              seedFile ? "a whole file is refused" : "an error that is not promised",
+                              e.what());
+                ::_exit(faultCode);
             }
         }
+        std::printf("%-10s %9zu inputs, %3.0f %% refused\n", place.name, place.input.load(),
+                    100.0 * double(place.refused) / double(place.input));
     }
+    ::alarm(0);
 }
 
-// Saves the input at which the child died.
-std::string keep(const Options& o, const Place& place) {
-    const std::string name = o.keep + "/" + place.names[place.reader] + "-" + std::to_string(o.seed) + "-" +
-                             std::to_string(place.input);
-    const pid_t child = ::fork();
-    if (child == 0) {
-        fs::create_directories(o.keep);
-        for (const fuzz::Reader& r : fuzz::readers())
-            if (r.name == place.names[place.reader])
-                std::ofstream(name, std::ios::binary) << inputOf(r, corpusOf(o, r.name), o, place.input);
-        ::_exit(0);
-    }
-    ::waitpid(child, nullptr, 0);
-    return name;
-}
-
-// Waits for the child, and kills it if one input takes too long. Returns how it ended, or "" without a fault.
-std::string ending(pid_t child, Place& place) {
-    uint64_t seen = ~uint64_t{0};
-    int reader = -1, status = 0;
-    double since = now();
-    while (::waitpid(child, &status, WNOHANG) == 0) {
-        ::usleep(20000);
-        if (place.input != seen || place.reader != reader) {
-            seen = place.input, reader = place.reader;
-            since = now();
-        } else if (reader >= 0 && now() - since > longestRead) {
-            ::kill(child, SIGKILL);
-            ::waitpid(child, &status, 0);
-            return "takes more than 20 s";
-        }
-    }
+// How the child ended, "" without a fault.
+std::string ending(pid_t child, const Place& place) {
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) return "takes more than 20 s";
     if (WIFSIGNALED(status)) return std::string("crashes: ") + strsignal(WTERMSIG(status));
     if (WEXITSTATUS(status) == faultCode) return place.what;
     return WEXITSTATUS(status) ? "ends the process with code " + std::to_string(WEXITSTATUS(status)) : "";
 }
 
-Options optionsOf(int argc, char** argv) {
-    Options o;
-    for (int i = 1; i + 1 < argc; i += 2) {
-        const std::string name = argv[i], value = argv[i + 1];
-        if (name == "--seconds")
-            o.seconds = std::stod(value);
-        else if (name == "--runs")
-            o.runs = std::stoull(value);
-        else if (name == "--seed")
-            o.seed = std::stoull(value);
-        else if (name == "--only")
-            o.only = value;
-        else if (name == "--corpus")
-            o.corpus = value;
-        else if (name == "--keep")
-            o.keep = value;
-        else
-            throw std::invalid_argument("no option " + name);
-    }
-    return o;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-    const Options o = optionsOf(argc, argv);
+    Options o{{"--seconds", "0"}, {"--runs", "200"}, {"--seed", "1"},
+              {"--only", ""},     {"--corpus", ""},  {"--keep", "fuzz-faults"}};
+    for (int i = 1; i + 1 < argc; i += 2) o.at(argv[i]) = argv[i + 1];
+    std::setvbuf(stdout, nullptr, _IOLBF, 0);
     ::setenv("PELLUCID_INPUT_LIMIT_MIB", "64", 1);
 #ifndef __SANITIZE_ADDRESS__
     // Address space: what takes more gets std::bad_alloc
@@ -186,35 +119,27 @@ int main(int argc, char** argv) {
 #endif
     auto& place = *new (
         ::mmap(nullptr, sizeof(Place), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) Place();
-    const double end = now() + o.seconds;
+    const double begin = now();
     int faults = 0;
-    for (;;) {
-        place.reader = -1;
+    for (; faults < 200; ++faults, ++place.input) {
         const pid_t child = ::fork();
         if (child == 0) {
-            work(o, place, end);
-            std::fflush(nullptr);
+            work(o, place, begin);
             ::_exit(0);
         }
         const std::string how = ending(child, place);
         if (how.empty()) break;
-        if (place.reader < 0) {
+        if (!place.name[0]) {
             std::printf("fuzz_readers cannot begin: %s\n", how.c_str());
             return 1;
         }
-        ++faults;
-        std::printf("%s, input %llu of seed %llu: %s\n  kept as %s\n", place.names[place.reader],
-                    static_cast<unsigned long long>(place.input), static_cast<unsigned long long>(o.seed),
-                    how.c_str(), keep(o, place).c_str());
-        std::fflush(stdout);
-        if (o.seconds > 0 && now() > end) break;
-        if (faults >= 200) break;
+        const std::string name =
+            o["--keep"] + "/" + place.name + "-" + o["--seed"] + "-" + std::to_string(place.input);
+        fs::create_directories(o["--keep"]);
+        std::ofstream(name, std::ios::binary).write(place.bytes, std::streamsize(place.size));
+        std::printf("%s, input %zu of seed %s: %s\n  kept as %s\n", place.name, place.input.load(),
+                    o["--seed"].c_str(), how.c_str(), name.c_str());
     }
-    for (int k = 0; k < place.count; ++k)
-        if (place.done[k])
-            std::printf("%-10s %9llu inputs, %3.0f %% refused\n", place.names[k],
-                        static_cast<unsigned long long>(place.done[k]),
-                        100.0 * double(place.refused[k]) / double(place.done[k]));
     std::printf("%d faults\n", faults);
     return faults > 0;
 }

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "fuzz/reader_parts.h"
+#include "fuzz/readers.h"
 #include "io/image/image_file.h"
 #include "io/lut/lut_exr.h"
 #include "io/lut/lut_file.h"

@@ -3,7 +3,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include "fuzz/reader_parts.h"
+#include "fuzz/readers.h"
 #include "io/file_error.h"
 #include "io/mesh/mesh_file.h"
 #include "io/mesh/mesh_parts.h"

@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "batch/batch_manifest.h"
-#include "fuzz/reader_parts.h"
 #include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/lut/profile_file.h"
