@@ -214,7 +214,7 @@ TEST_F(Cli, HelpIsReadable) {
     const std::string help = done("demo --help").out;
     for (const char* line :
          {"--smooth N (0 to 1000; default: 2)", "--device DEVICE", "--up auto|y|z (default: auto)",
-          "--size SIZE (default: 1280x720)", "-o,--output PATH", "  --no-reference  "})
+          "--size SIZE (default: 1280x720)", "-o,--output PATH", "  --orient  "})
         EXPECT_TRUE(contains(help, line)) << line;
 }
 

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ctime>
 
+#include "fields/field_ranges.h"
 #include "io/io_files.h"
 
 using namespace pellucid;
@@ -125,6 +127,123 @@ TEST_F(SceneFrames, PreparedReadsAndMakesNothingTwice) {
     EXPECT_EQ(device.stats().programsBuilt, before.programsBuilt);
     prepared.shade();
     EXPECT_EQ(device.stats().programsBuilt, before.programsBuilt);
+}
+
+// A field of a structure at an end of its range, or at its special value.
+template <class Struct>
+struct End {
+    std::string what;
+    std::function<void(Struct&)> set;
+};
+
+template <class T>
+void fill(T& field, float value) {
+    if constexpr (std::is_array_v<T>)
+        std::fill(std::begin(field), std::end(field), value);
+    else  // the largest number of a field of whole numbers is no float
+        field = std::is_integral_v<T> ? T(std::min(value, 4294967040.0f)) : T(value);
+}
+#define AT_ENDS(type, name, value, min, max, special, ...)                            \
+    for (const float end : {float(min), float(max), float(special)})                  \
+        if (!std::isnan(end) && (end >= 0 || !std::is_integral_v<decltype(S::name)>)) \
+            all.push_back(                                                            \
+                {#name " = " + (std::ostringstream() << end).str(), [end](S& s) { fill(s.name, end); }});
+
+std::vector<End<PelMaterial>> endsOfMaterials() {
+    using S = PelMaterial;
+    std::vector<End<S>> all;
+    PEL_EACH_MATERIAL_FIELD(AT_ENDS)
+    return all;
+}
+std::vector<End<PelLight>> endsOfLights() {
+    using S = PelLight;
+    std::vector<End<S>> all;
+    PEL_EACH_LIGHT_FIELD(AT_ENDS)
+    PEL_EACH_DIRECTIONAL_LIGHT_FIELD(AT_ENDS)
+    PEL_EACH_POSITIONAL_LIGHT_FIELD(AT_ENDS)
+    PEL_EACH_SPOT_LIGHT_FIELD(AT_ENDS)
+    PEL_EACH_SHADOW_MAP_FIELD(AT_ENDS)
+    return all;
+}
+std::vector<End<PelEye>> endsOfEyes() {
+    using S = PelEye;
+    std::vector<End<S>> all;
+    PEL_EACH_EYE_FIELD(AT_ENDS)
+    return all;
+}
+
+// Ends of ranges, each alone, in small frames: soon there and finite, or refused.
+class FieldBounds : public SceneFrames {
+  protected:
+    template <class Struct>
+    void expectBounded(const io::SceneFile& usual, const std::vector<End<Struct>>& ends,
+                       const std::function<Struct&(io::SceneFile&)>& of) {
+        constexpr double maxSeconds = 10;  // of the processor: five seconds on two cores
+        const std::vector<PelImageSlot> outputs{PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER,
+                                                PEL_SLOT_OUT_SPECULAR, PEL_SLOT_OUT_THICKNESS};
+        size_t made = 0;
+        for (const End<Struct>& end : ends) {
+            SCOPED_TRACE(end.what);
+            io::SceneFile s = usual;
+            end.set(of(s));
+            const std::clock_t start = std::clock();
+            try {
+                io::SceneFrame frame(device_, gbuffer_, s, luts_, {}, pelShaderOptionsDefaults(), outputs);
+                frame.shade();
+                std::vector<float> values = frame.radiance();
+                for (const PelImageSlot slot : outputs)
+                    for (const float v : frame.output(slot)) values.push_back(v);
+                EXPECT_TRUE(std::ranges::all_of(values, [](float v) { return std::isfinite(v); }));
+                ++made;
+            } catch (const io::FileError& e) {  // names the scene and the field
+                EXPECT_TRUE(contains(e.what(), "a scene: Pel"));
+            } catch (const Error& e) {
+                EXPECT_EQ(e.code(), PEL_ERROR_INVALID_ARGUMENT) << e.what();
+            }
+            EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, maxSeconds);
+        }
+        EXPECT_GT(made, ends.size() / 2);
+    }
+    const Device device_{""};
+    io::LutStore luts_{device_};
+    const io::Image gbuffer_ = ball();
+};
+
+TEST_F(FieldBounds, OfMaterials) {
+    for (const PelScattering scattering : {PEL_SCATTERING_AUTO, PEL_SCATTERING_PREINTEGRATED,
+                                           PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_SCREEN}) {
+        io::SceneFile s = scene();
+        PelMaterial& m = s.materials[0].material;
+        m.scattering = scattering;
+        m.specular = 1;
+        std::fill_n(m.deepScatterColor, 3, 0.5f);
+        expectBounded<PelMaterial>(
+            s, endsOfMaterials(), [](io::SceneFile & f) -> auto& { return f.materials[0].material; });
+    }
+}
+
+TEST_F(FieldBounds, OfLights) {
+    const io::SceneFile sun = scene();
+    io::SceneFile moments = sun, spot = sun;
+    moments.lights[0].light.shadowContent = PEL_SHADOW_CONTENT_MOMENTS;
+    moments.lights[0].secondChannel = "Z";
+    spot.lights[0].light.type = PEL_LIGHT_SPOT;
+    spot.lights[0].light.position[2] = 60;
+    spot.lights[0].light.shadowProjection = PEL_SHADOW_PERSPECTIVE;
+    spot.lights[0].light.shadowDepthA = -1, spot.lights[0].light.shadowDepthB = 1;
+    const float seen[16] = {0.5f, 0, -0.5f, 30, 0, 0.5f, -0.5f, 30,
+                            0,    0, -1,    59, 0, 0,    -1,    60};  // from z = 60
+    std::copy_n(seen, 16, spot.lights[0].light.worldToShadow);
+    for (io::SceneFile s : {sun, moments, spot}) {
+        std::fill_n(s.materials[0].material.deepScatterColor, 3, 0.5f);
+        expectBounded<PelLight>(
+            s, endsOfLights(), [](io::SceneFile & f) -> auto& { return f.lights[0].light; });
+    }
+}
+
+TEST_F(FieldBounds, OfEyes) {
+    expectBounded<PelEye>(
+        scene(), endsOfEyes(), [](io::SceneFile & f) -> auto& { return f.eyes[0].eye; });
 }
 
 }  // namespace
