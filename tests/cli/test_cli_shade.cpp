@@ -1,6 +1,7 @@
 // `pellucid shade` and `pellucid warm-up`: G-buffer and scene file in, pictures out; what is wrong with
 // either.
 #include "cli_shade.h"
+#include "io/image/color_map.h"
 #include "tolerances.h"
 
 using namespace pellucid;
@@ -35,11 +36,9 @@ TEST_F(Shade, PicturesToLookAt) {
         ASSERT_EQ(picture.channels.size(), 3u);
         if (name == "p.jpg") continue;  // close to it only
         const std::vector<float> shown = picture.interleaved(colorNames);
-        for (size_t i = 0; i < shown.size(); ++i) {
-            const double x = std::min(0.5 * radiance[i], 1.0);
-            const double srgb = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
-            EXPECT_NEAR(255 * shown[i], 255 * srgb, 0.51) << name << i;
-        }
+        for (size_t i = 0; i < shown.size(); ++i)
+            EXPECT_NEAR(255 * shown[i], 255 * io::encodeSrgb(std::min(0.5f * radiance[i], 1.0f)), 0.51)
+                << name << i;
     }
 }
 

@@ -1,9 +1,8 @@
 // What the pages say about the tree must be so: the README quotes the minimal example, links lead somewhere,
-// files that are named exist. What they say about the command is in test_cli_docs.cpp.
+// files that are named exist. What they say about the command is in test_cli.cpp.
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <map>
 #include <regex>
 #include <set>
 
@@ -21,11 +20,9 @@ TEST(Docs, LinksLeadSomewhere) {
     const std::regex link(R"(\]\(([^)#:]+)(#[^)]*)?\))");
     for (const auto& page : pages::all()) {
         const std::string text = pages::contents(page);
-        for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it) {
-            ++links;
+        for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it, ++links)
             EXPECT_TRUE(std::filesystem::exists(page.parent_path() / (*it)[1].str()))
                 << page << " links to " << (*it)[1];
-        }
     }
     EXPECT_GT(links, 50);
 }
@@ -33,19 +30,15 @@ TEST(Docs, LinksLeadSomewhere) {
 // In code spans: paths whose first folder is one of the tree's, and sources by their name alone. `x.*` stands
 // for any ending.
 TEST(Docs, NamedFilesExist) {
-    std::multimap<std::string, std::filesystem::path> byName;
+    std::vector<std::filesystem::path> files;
     for (const auto& folder : pages::folders)
         for (const auto& entry : std::filesystem::recursive_directory_iterator(pages::root / folder))
-            byName.emplace(entry.path().filename().string(), entry.path());
-    const auto exists = [&](std::string path) {
-        const bool anyEnding = path.ends_with(".*");
-        if (anyEnding) path.resize(path.size() - 2);
-        const std::filesystem::path name = std::filesystem::path(path).filename();
-        if (!anyEnding && name.empty()) return std::filesystem::is_directory(pages::root / path);
-        for (const auto& [file, whole] : byName) {
-            const std::string known =
-                anyEnding ? (whole.parent_path() / whole.stem()).string() : whole.string();
-            if (known.ends_with("/" + path)) return true;
+            files.push_back(entry.path());
+    const auto exists = [&](const std::string& path) {
+        if (path.ends_with("/")) return std::filesystem::is_directory(pages::root / path);
+        for (const std::filesystem::path& file : files) {
+            const std::string any = (file.parent_path() / file.stem()).string() + ".*";
+            if (file.string().ends_with("/" + path) || any.ends_with("/" + path)) return true;
         }
         return std::filesystem::exists(pages::root / path);
     };
@@ -53,22 +46,21 @@ TEST(Docs, NamedFilesExist) {
         path(R"([\w.-]+/[\w./-]*(\.\*)?)");
     // attributes of Python objects
     const std::set<std::string> hosts = {"device.cl", "buffer.cl", "event.cl"};
-    int files = 0;
+    int named = 0;
     for (const auto& page : pages::all()) {
         if (page.filename() == "CHANGELOG.md") continue;  // history may name files that are gone
         const std::string text = pages::withoutBlocks(pages::contents(page));
         for (std::sregex_iterator it(text.begin(), text.end(), span), end; it != end; ++it) {
-            const std::string code = (*it)[1];
-            for (const std::string& word : pages::words(code)) {
+            for (const std::string& word : pages::words((*it)[1])) {
                 const std::string first = word.substr(0, word.find('/'));
                 const bool inTree = pages::folders.contains(first) && std::regex_match(word, path);
                 if (!inTree && (!std::regex_match(word, source) || hosts.contains(word))) continue;
-                ++files;
+                ++named;
                 EXPECT_TRUE(exists(word)) << page << " names " << word;
             }
         }
     }
-    EXPECT_GT(files, 100);
+    EXPECT_GT(named, 100);
 }
 
 TEST(Docs, FiguresAreShownAndSmall) {

@@ -23,10 +23,7 @@ class Tables(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.folder.cleanup()
+        cls.addClassCleanup(cls.folder.cleanup)
 
     def table(self, name, encoding, size=f"{WIDTH}x{HEIGHT}"):
         path = Path(self.folder.name) / f"{size}-{name}"

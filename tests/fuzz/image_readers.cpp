@@ -1,6 +1,6 @@
 #include <OpenImageIO/imageio.h>
 
-#include <array>
+#include <boost/crc.hpp>
 
 #include "fuzz/readers.h"
 #include "io/image/image_file.h"
@@ -47,21 +47,13 @@ std::string parts(const Folder& folder) {
 
 // CRC of each chunk [PNG Specification 1.2, annex D].
 std::string mendPng(std::string b) {
-    static const std::array<uint32_t, 256> table = [] {
-        std::array<uint32_t, 256> t{};
-        for (uint32_t n = 0; n < 256; ++n) {
-            t[n] = n;
-            for (int k = 0; k < 8; ++k) t[n] = t[n] & 1 ? 0xedb88320u ^ t[n] >> 1 : t[n] >> 1;
-        }
-        return t;
-    }();
     for (size_t at = 8; b.size() - std::min(at, b.size()) >= 12;) {
-        uint32_t length = 0, crc = ~0u;
+        uint32_t length = 0;
         for (size_t i = 0; i < 4; ++i) length = length << 8 | uint8_t(b[at + i]);
         if (length > b.size() - at - 12) break;
-        for (size_t i = at + 4; i < at + 8 + length; ++i) crc = table[(crc ^ uint8_t(b[i])) & 255] ^ crc >> 8;
-        crc = ~crc;
-        for (size_t i = 0; i < 4; ++i) b[at + 8 + length + i] = char(crc >> (24 - 8 * i));
+        boost::crc_32_type crc;
+        crc.process_bytes(&b[at + 4], 4 + length);
+        for (size_t i = 0; i < 4; ++i) b[at + 8 + length + i] = char(crc.checksum() >> (24 - 8 * i));
         at += 12 + length;
     }
     return b;

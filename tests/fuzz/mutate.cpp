@@ -92,16 +92,13 @@ void collect(json& value, std::vector<json*>& all) {
 
 void replaceNumber(Random& r, json& value) {
     constexpr double extremes[] = {0, -1, 1e-30, 0.5, 1e9, 1e12, -1e12, 1e30, 3.5e38, 1e300};
-    switch (r.below(3)) {
-        case 0:
-            value = r.below(6);
-            break;
-        case 1:
-            value = special[r.below(std::size(special))];
-            break;
-        default:
-            value = extremes[r.below(std::size(extremes))];
-    }
+    const size_t kind = r.below(3);
+    if (kind == 0)
+        value = r.below(6);
+    else if (kind == 1)
+        value = special[r.below(std::size(special))];
+    else
+        value = extremes[r.below(std::size(extremes))];
 }
 
 }  // namespace
@@ -123,8 +120,7 @@ void mutateJson(Random& r, json& document, const std::vector<std::string>& words
             else
                 value.insert(value.end(), r.below(20) ? 1 : 2000, json(value[at]));
         } else if (value.is_object() && !value.empty()) {
-            auto member = value.begin();
-            std::advance(member, std::ptrdiff_t(r.below(value.size())));
+            const auto member = std::next(value.begin(), std::ptrdiff_t(r.below(value.size())));
             if (r.below(3) == 0)
                 value.erase(member);
             else if (r.below(3) == 0)

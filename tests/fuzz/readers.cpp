@@ -52,20 +52,19 @@ std::vector<Reader> readers() {
     addMeshes(all, folder);
     addImages(all, folder);
     all.push_back(table(folder, device));
-    std::vector<std::string> profiles;
-    for (const char* file :
-         {"name = \"a\"\nkind = \"skin\"\nsource = \"s\"\n",
-          "name = \"a\"\nkind = \"dipole\"\nunit = \"mm\"\nsource = \"s\"\nabsorption = [0.0021, 0.0041, "
-          "0.0071]\n"
-          "reduced_scattering = [2.19, 2.62, 3.00]\neta = 1.5\n",
-          "name = \"a\"\nkind = \"burley\"\nunit = \"cm\"\nsource = \"s\"\nmean_free_path = [1.3, 0.95, "
-          "0.67]\n"
-          "albedo = [0.44, 0.22, 0.13]\nfit = \"searchlight\"\n",
-          "name = \"a\"\nkind = \"burley\"\nunit = \"um\"\nsource = \"s\"\ndistance = [300, 100, 50]\n"})
-        profiles.emplace_back(file);
-    profiles.emplace_back(
-        "name = \"t\"\nkind = \"table\"\nunit = \"mm\"\nsource = \"s\"\n[[sample]]\ndistance = 0\nvalue = "
-        "[1, 1, 1]\n[[sample]]\ndistance = 2\nvalue = [0, 0, 0]\n");
+    const std::string head = "name = \"a\"\nsource = \"s\"\nkind = ";
+    const std::vector<std::string> profiles{
+        head + "\"skin\"\n",
+        head +
+            "\"dipole\"\nunit = \"mm\"\nabsorption = [0.0021, 0.0041, 0.0071]\n"
+            "reduced_scattering = [2.19, 2.62, 3.00]\neta = 1.5\n",
+        head +
+            "\"burley\"\nunit = \"cm\"\nmean_free_path = [1.3, 0.95, 0.67]\n"
+            "albedo = [0.44, 0.22, 0.13]\nfit = \"searchlight\"\n",
+        head + "\"burley\"\nunit = \"um\"\ndistance = [300, 100, 50]\n",
+        head +
+            "\"table\"\nunit = \"mm\"\n[[sample]]\ndistance = 0\nvalue = [1, 1, 1]\n"
+            "[[sample]]\ndistance = 2\nvalue = [0, 0, 0]\n"};
     all.push_back(text(
         "profile", profiles, [](const std::string& t) { io::parseProfile("p.toml", t); },
         {"variance", "weight", "albedo", "mean_free_path", "eta", "table", "[[gaussian]]", "[[sample]]"}));

@@ -103,9 +103,10 @@ TEST_F(AtomicFileTest, AppearsWholeOrNotAtAll) {
     EXPECT_EQ(filesInFolder(), 1u);
     checkWritable(path("p.ply"));
     EXPECT_EQ(filesInFolder(), 1u);
-    EXPECT_TRUE(contains(messageOf<FileError>([&] { checkWritable(path("no/such/o.ply")); }), "no folder"));
-    EXPECT_TRUE(contains(messageOf<FileError>([&] { checkWritable(folder_.string()); }), "is a folder"));
-    EXPECT_TRUE(contains(messageOf<FileError>([&] { checkWritable(""); }), "needs a file name"));
+    for (const auto& [name, message] : {std::pair{path("no/such/o.ply"), "no folder"},
+                                        {folder_.string(), "is a folder"},
+                                        {std::string(), "needs a file name"}})
+        EXPECT_TRUE(contains(messageOf<FileError>([&] { checkWritable(name); }), message));
 }
 
 TEST_F(AtomicFileTest, FileAndFolderAreFlushedInTurn) {
@@ -161,10 +162,11 @@ TEST_F(AtomicFileTest, WhatIsNoFileIsNeitherReadNorReplaced) {
                                      {"full", "is a device"},
                                      {"zero", "is a device"},
                                      {"folder", "is a folder"}}) {
+        const std::string file = path(name);
         EXPECT_TRUE(contains(refusal(name), what));
-        EXPECT_TRUE(contains(messageOf<FileError>([&] { checkWritable(path(name)); }), what));
-        EXPECT_TRUE(contains(messageOf<FileError>([&] { readWholeFile(path(name)); }), what));
-        EXPECT_TRUE(contains(messageOf<FileError>([&] { checkReadable(path(name)); }), what));
+        EXPECT_TRUE(contains(messageOf<FileError>([&] { checkWritable(file); }), what));
+        EXPECT_TRUE(contains(messageOf<FileError>([&] { readWholeFile(file); }), what));
+        EXPECT_TRUE(contains(messageOf<FileError>([&] { checkReadable(file); }), what));
     }
     EXPECT_EQ(otherThanFile(path("pipe")), "a pipe");
 }

@@ -1,5 +1,5 @@
-// The library and the scene file accept and refuse the same values of each field (pellucid_fields.h), at both
-// ends of its range and beyond.
+// The library and the scene file accept and refuse the same values of each field (pellucid_fields.h), at both ends of
+// its range and beyond.
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -33,8 +33,7 @@ void fill(T& field, float value) {
 template <class T>
 std::string said(float value) {
     char number[32];
-    std::snprintf(number, sizeof number, std::is_integral_v<std::remove_extent_t<T>> ? "%.0f" : "%.9e",
-                  double(value));
+    std::snprintf(number, sizeof number, std::is_integral_v<T> ? "%.0f" : "%.9e", double(value));
     const std::string one = number;
     return std::is_array_v<T> ? "[" + one + ", " + one + ", " + one + "]" : one;
 }
@@ -64,60 +63,58 @@ bool accepts(const std::function<void()>& body) {
     return false;
 }
 
-int fields = 0;
-
-template <class T>
-void expectSame(const std::string& name, const pel::FieldRange& range,
-                const std::function<bool(float)>& library,
-                const std::function<std::string(const std::string&)>& scene) {
-    ++fields;
-    for (const float value : tried<T>(range)) {
-        const bool right =
-            range.holds(value) && !(name == "thicknessTaps" && (int(value) & (int(value) - 1)));
-        EXPECT_EQ(library(value), right) << name << " = " << value << ": the library";
-        const std::string text = scene(snake(name) + " = " + said<T>(value) + "\n");
-        EXPECT_EQ(accepts([&] { io::parseScene("scene.toml", text); }), right)
-            << name << " = " << value << "\n"
-            << text;
+class FieldRanges : public ::testing::Test {
+  protected:
+    // Each value that is tried of a field, set by the library; and by a scene, of which text() takes a line.
+    template <class T>
+    void expectSame(const std::string& name, const pel::FieldRange& range,
+                    const std::function<bool(float)>& library,
+                    const std::function<std::string(const std::string&)>& text = {}) {
+        ++fields_;
+        for (const float value : tried<T>(range)) {
+            const bool right =
+                range.holds(value) && !(name == "thicknessTaps" && (int(value) & (int(value) - 1)));
+            EXPECT_EQ(library(value), right) << name << " = " << value << ": the library";
+            if (!text) continue;
+            const std::string scene = text(snake(name) + " = " + said<T>(value) + "\n");
+            EXPECT_EQ(accepts([&] { io::parseScene("scene.toml", scene); }), right) << scene;
+        }
     }
-}
+    const Device device_{""};
+    int fields_ = 0;
+};
 
 }  // namespace
 
-TEST(FieldRanges, LibraryAndSceneFileAgree) {
-    const Device device("");
+TEST_F(FieldRanges, LibraryAndSceneFileAgree) {
     const Profile profile =
         Profile::named("marble");  // one that knows its mean free path, which a curvature gain needs
-    const std::string head =
-        "version = 1\n[channels]\nposition = [\"x\", \"y\", \"z\"]\nnormal_shading = [\"a\", \"b\", "
-        "\"c\"]\nmaterial = [\"i\"]\n";
-    const auto material = [&](const std::string& line) { return head + "[[material]]\nid = 1\n" + line; };
+    const auto material = [](const std::string& line) {
+        return "version = 1\n[channels]\nposition = [\"x\", \"y\", \"z\"]\nnormal_shading = [\"a\", \"b\", "
+               "\"c\"]\nmaterial = [\"i\"]\n[[material]]\nid = 1\n" +
+               line;
+    };
     ASSERT_TRUE(accepts([&] { io::parseScene("scene.toml", material("")); })) << "the scene around the field";
-#define CHECK(type, field, ...)                                        \
-    expectSame<decltype(PelMaterial::field)>(                          \
-        #field, pel::range::material::field,                           \
-        [&](float value) {                                             \
-            PelMaterial m = pelMaterialDefaults();                     \
-            m.profile = profile.get();                                 \
-            fill(m.field, value);                                      \
-            return accepts([&] { Shader(device).setMaterial(1, m); }); \
-        },                                                             \
+#define CHECK(type, field, ...)                                         \
+    expectSame<decltype(PelMaterial::field)>(                           \
+        #field, pel::range::material::field,                            \
+        [&](float value) {                                              \
+            PelMaterial m = pelMaterialDefaults();                      \
+            m.profile = profile.get();                                  \
+            fill(m.field, value);                                       \
+            return accepts([&] { Shader(device_).setMaterial(1, m); }); \
+        },                                                              \
         material);
     PEL_EACH_MATERIAL_FIELD(CHECK)
 #undef CHECK
-    EXPECT_GT(fields, 20);
+    EXPECT_GT(fields_, 20);
 }
 
 // Lights and options, whose files have other keys and other conditions.
-TEST(FieldRanges, TheLibraryChecksLightsAndOptions) {
-    const Device device("");
-    fields = 0;
-    const auto expectLibrary = [](const std::string& name, const pel::FieldRange& range, auto field,
-                                  const std::function<bool(float)>& library) {
-        ++fields;
-        for (const float value : tried<decltype(field)>(range))
-            EXPECT_EQ(library(value), range.holds(value)) << name << " = " << value;
-    };
+TEST_F(FieldRanges, TheLibraryChecksLightsAndOptions) {
+    PelLight spot = pelLightDefaults();
+    spot.type = PEL_LIGHT_SPOT;
+    spot.spotCosInner = 1, spot.spotCosOuter = -1;
 #define CHECK_OF(type, name, ...) CHECK_##type(name)
 #define CHECK_UINT(name) CHECK_FLOAT(name)
 #define CHECK_COLOR(name) CHECK_FLOAT(name)
@@ -125,31 +122,29 @@ TEST(FieldRanges, TheLibraryChecksLightsAndOptions) {
 #define CHECK_FREE_UINT(name)
 #define CHECK_VECTOR(name)
 #define CHECK_MATRIX(name)
-#define CHECK_FLOAT(name)                                                                                \
-    expectLibrary(#name, pel::range::light::name, std::remove_all_extents_t<decltype(PelLight::name)>(), \
-                  [&](float value) {                                                                     \
-                      PelLight l = pelLightDefaults();                                                   \
-                      l.type = PEL_LIGHT_SPOT;                                                           \
-                      l.spotCosInner = 1, l.spotCosOuter = -1;                                           \
-                      fill(l.name, value);                                                               \
-                      return accepts([&] { Shader(device).set(std::vector<PelLight>{l}); });             \
-                  });
+#define CHECK_FLOAT(name)                                                           \
+    expectSame<std::remove_all_extents_t<decltype(PelLight::name)>>(                \
+        #name, pel::range::light::name, [&](float value) {                          \
+            PelLight l = spot;                                                      \
+            fill(l.name, value);                                                    \
+            return accepts([&] { Shader(device_).set(std::vector<PelLight>{l}); }); \
+        });
     PEL_EACH_LIGHT_FIELD(CHECK_OF)
     PEL_EACH_POSITIONAL_LIGHT_FIELD(CHECK_OF)
     PEL_EACH_SPOT_LIGHT_FIELD(CHECK_OF)
     PEL_EACH_SHADOW_MAP_FIELD(CHECK_OF)
 #undef CHECK_FLOAT
-#define CHECK_FLOAT(name)                                                                       \
-    expectLibrary(#name, pel::range::options::name, PelShaderOptions().name, [&](float value) { \
-        PelShaderOptions o = pelShaderOptionsDefaults();                                        \
-        fill(o.name, value);                                                                    \
-        return accepts([&] { Shader(device).set(o); });                                         \
+#define CHECK_FLOAT(name)                                                                             \
+    expectSame<decltype(PelShaderOptions::name)>(#name, pel::range::options::name, [&](float value) { \
+        PelShaderOptions o = pelShaderOptionsDefaults();                                              \
+        fill(o.name, value);                                                                          \
+        return accepts([&] { Shader(device_).set(o); });                                              \
     });
     PEL_EACH_OPTION_FIELD(CHECK_OF)
-    EXPECT_GE(fields, 13);
+    EXPECT_GE(fields_, 13);
 }
 
-TEST(FieldRanges, EachRangeIsSaidInWords) {
+TEST(FieldRangeWords, EachRangeIsSaidInWords) {
     using pel::describe;
     EXPECT_EQ(describe(pel::range::material::f0), "from 0 to 1");
     EXPECT_EQ(describe(pel::range::material::normalBlend), "-1, or from 0 to 1");

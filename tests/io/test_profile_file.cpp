@@ -141,12 +141,3 @@ TEST(ProfileFit, SixGaussiansGiveSkinBack) {
     }
     EXPECT_LT(*std::max_element(fit.error, fit.error + 3), tolerance::floatWeights);
 }
-
-TEST(ProfileFit, FindsGaussiansAgain) {
-    const Profile two = Profile::gaussians({{0.2f, {1, 2, 3}}, {4, {3, 2, 1}}});
-    const io::ProfileFit fit = io::fitGaussians(two, 2);
-    EXPECT_LT(*std::max_element(fit.error, fit.error + 3), tolerance::fittedAgain);
-    const auto again = io::parseProfile("fit", io::profileText(fit, "again", "a test"));
-    EXPECT_EQ(again.profile.info().gaussians, 2u);
-    EXPECT_NEAR(again.profile.info().width[0] / two.info().width[0], 1, tolerance::fittedAgain);
-}

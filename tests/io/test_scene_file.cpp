@@ -247,25 +247,20 @@ TEST_F(SceneFileTest, TablesBeginAsTheVersionOrThePresetSays) {
             write("s.toml", head + "[channels]\nnormal_shading = [\"x\", \"y\", \"z\"]\n[[curvature_lut]]\n" +
                                 "name = \"a\"\n" + keys + "[[shadow_lut]]\nname = \"a\"\n" + keys));
     };
-    struct Begin {
-        PelCurvatureForm form;
-        PelLutAxis axis;
-        uint32_t width, closedEnds;
-        float radiusMin, widthMin;
-    };
-    constexpr Begin faceworks{PEL_FORM_ARC, PEL_AXIS_LINEAR, 512, 0, 1, 8},
-        material{PEL_FORM_SPHERE, PEL_AXIS_ROOT, 64, 1, 0, 0};
-    const auto expect = [](const Begin& begin, const SceneFile& scene) {
-        const PelCurvatureLutDesc c = scene.lut("a", PEL_LUT_CURVATURE)->info.curvature;
+    const auto expect = [](LutPreset preset, const SceneFile& scene) {
+        const PelCurvatureLutDesc c = scene.lut("a", PEL_LUT_CURVATURE)->info.curvature,
+                                  ofPreset = presetInfo(preset, PEL_LUT_CURVATURE).curvature;
         const PelShadowLutDesc s = scene.lut("a", PEL_LUT_SHADOW)->info.shadow;
-        EXPECT_EQ(c.form, begin.form);
-        EXPECT_EQ(c.width, begin.width);
-        EXPECT_EQ(c.radiusMin, begin.radiusMin);
-        EXPECT_EQ(c.axis, begin.axis);
-        EXPECT_EQ(s.closedEnds, begin.closedEnds);
-        EXPECT_EQ(s.widthMin, begin.widthMin);
-        EXPECT_EQ(s.axis, begin.axis);
+        EXPECT_EQ(c.form, ofPreset.form);
+        EXPECT_EQ(c.axis, ofPreset.axis);
+        EXPECT_EQ(c.width, ofPreset.width);
+        EXPECT_EQ(c.radiusMin, ofPreset.radiusMin);
+        const PelShadowLutDesc shadow = presetInfo(preset, PEL_LUT_SHADOW).shadow;
+        EXPECT_EQ(s.closedEnds, shadow.closedEnds);
+        EXPECT_EQ(s.widthMin, shadow.widthMin);
+        EXPECT_EQ(s.axis, shadow.axis);
     };
+    const LutPreset faceworks = LutPreset::faceworks, material = LutPreset::material;
     expect(faceworks, tables("", ""));
     expect(faceworks, tables("version = 1\n", ""));
     expect(material, tables("version = 2\n", ""));

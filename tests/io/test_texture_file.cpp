@@ -15,6 +15,9 @@ class TextureFile : public FolderTest {
         std::memcpy(&value, bytes.data() + at, 4);
         return value;
     }
+    static void expectWords(const std::string& bytes, const std::vector<std::pair<size_t, uint32_t>>& words) {
+        for (const auto& [at, value] : words) EXPECT_EQ(word(bytes, at), value) << "at byte " << at;
+    }
     static Lut table() {
         PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
         desc.width = 5;
@@ -38,14 +41,9 @@ TEST_F(TextureFile, Dds) {
     io::writeLut(path("t.dds"), lut);
     const std::string bytes = read(path("t.dds"));
     EXPECT_EQ(bytes.substr(0, 4), "DDS ");
-    EXPECT_EQ(word(bytes, 4), 124u);
-    EXPECT_EQ(word(bytes, 12), 3u) << "height";
-    EXPECT_EQ(word(bytes, 16), 5u) << "width";
-    EXPECT_EQ(word(bytes, 20), 40u) << "bytes of a row";
-    EXPECT_EQ(word(bytes, 76), 32u) << "size of the pixel format";
     EXPECT_EQ(bytes.substr(84, 4), "DX10");
-    EXPECT_EQ(word(bytes, 128), 10u) << "R16G16B16A16_FLOAT";
-    EXPECT_EQ(word(bytes, 132), 3u) << "a 2D texture";
+    // Own size, height, width, bytes of a row, size of the pixel format, R16G16B16A16_FLOAT, a 2D texture.
+    expectWords(bytes, {{4, 124}, {12, 3}, {16, 5}, {20, 40}, {76, 32}, {128, 10}, {132, 3}});
     expectTexels(bytes, 148, lut);
     EXPECT_THROW(io::writeLut(path("u.dds"), lut, PEL_LUT_FLOAT), std::invalid_argument);
 }
@@ -55,23 +53,24 @@ TEST_F(TextureFile, Ktx2) {
     io::writeLut(path("t.ktx2"), lut);
     const std::string bytes = read(path("t.ktx2"));
     EXPECT_EQ(bytes.substr(0, 12), std::string("\xABKTX 20\xBB\r\n\x1A\n", 12));
-    EXPECT_EQ(word(bytes, 12), 97u) << "VK_FORMAT_R16G16B16A16_SFLOAT";
-    EXPECT_EQ(word(bytes, 16), 2u) << "bytes of a component";
-    EXPECT_EQ(word(bytes, 20), 5u);
-    EXPECT_EQ(word(bytes, 24), 3u);
-    EXPECT_EQ(word(bytes, 36), 1u) << "faces";
-    EXPECT_EQ(word(bytes, 40), 1u) << "levels";
-    const size_t descriptor = word(bytes, 48), pairs = word(bytes, 56);
-    EXPECT_EQ(descriptor, 104u);
-    EXPECT_EQ(word(bytes, descriptor), word(bytes, 52)) << "the descriptor knows its own length";
-    EXPECT_EQ(pairs, descriptor + word(bytes, 52));
+    // VK_FORMAT_R16G16B16A16_SFLOAT, bytes of a component, width, height, faces, levels, the descriptor's place and its
+    // own length, the pairs behind it, bytes of texels.
+    const uint32_t length = word(bytes, 52), pairs = 104 + length;
+    expectWords(bytes, {{12, 97},
+                        {16, 2},
+                        {20, 5},
+                        {24, 3},
+                        {36, 1},
+                        {40, 1},
+                        {48, 104},
+                        {104, length},
+                        {56, pairs},
+                        {88, 120}});
     const std::string text = bytes.substr(pairs, word(bytes, 60));
-    EXPECT_NE(text.find(std::string("pellucid:form\0arc", 17)), std::string::npos);
-    EXPECT_NE(text.find(std::string("pellucid:axis\0linear", 20)), std::string::npos);
-    const size_t texels = word(bytes, 80);
-    EXPECT_EQ(texels % 8, 0u);
-    EXPECT_EQ(word(bytes, 88), 120u);
-    expectTexels(bytes, texels, lut);
+    EXPECT_TRUE(contains(text, std::string("pellucid:form\0arc", 17)));
+    EXPECT_TRUE(contains(text, std::string("pellucid:axis\0linear", 20)));
+    EXPECT_EQ(word(bytes, 80) % 8, 0u);
+    expectTexels(bytes, word(bytes, 80), lut);
 }
 
 TEST_F(TextureFile, Bc6h) {
@@ -79,21 +78,18 @@ TEST_F(TextureFile, Bc6h) {
     EXPECT_GT(io::writeLutBc6h(path("t.dds"), lut).max, 0);
     const std::string dds = read(path("t.dds"));
     EXPECT_EQ(word(dds, 8) & 0x80008u, 0x80000u) << "a size of all bytes, not of a row";
-    EXPECT_EQ(word(dds, 20), 32u);
-    EXPECT_EQ(word(dds, 128), 95u) << "BC6H_UF16";
+    expectWords(dds, {{20, 32}, {128, 95}});  // bytes, BC6H_UF16
     ASSERT_EQ(dds.size(), 148u + 32);
 
     io::writeLutBc6h(path("t.ktx2"), lut);
     const std::string ktx = read(path("t.ktx2"));
-    EXPECT_EQ(word(ktx, 12), 143u) << "VK_FORMAT_BC6H_UFLOAT_BLOCK";
-    EXPECT_EQ(word(ktx, 16), 1u);
-    const size_t descriptor = word(ktx, 48), texels = word(ktx, 80);
-    EXPECT_EQ(word(ktx, descriptor), 44u) << "one sample";
+    // VK_FORMAT_BC6H_UFLOAT_BLOCK; of the descriptor: length with one sample, 4x4 texels, bytes of a block.
+    const uint32_t descriptor = word(ktx, 48), texels = word(ktx, 80);
+    expectWords(
+        ktx,
+        {{12, 143}, {16, 1}, {88, 32}, {descriptor, 44}, {descriptor + 16, 0x0303}, {descriptor + 20, 16}});
     EXPECT_EQ(uint8_t(ktx[descriptor + 12]), 133u) << "colour model BC6H";
-    EXPECT_EQ(word(ktx, descriptor + 16), 0x0303u) << "4x4 texels";
-    EXPECT_EQ(word(ktx, descriptor + 20), 16u) << "bytes of a block";
     EXPECT_EQ(texels % 16, 0u);
-    EXPECT_EQ(word(ktx, 88), 32u);
     EXPECT_EQ(ktx.substr(texels), dds.substr(148)) << "the same blocks";
     EXPECT_THROW(io::writeLutBc6h(path("t.exr"), lut), std::invalid_argument);
 }

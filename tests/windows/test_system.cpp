@@ -32,12 +32,10 @@ TEST_F(System, OutputsAppearWholeOrNotAtAll) {
     io::checkWritable(path("new.txt"));
     EXPECT_EQ(filesInFolder(), 1u);
 
-    fs::create_directories(path("folder"));
-    EXPECT_TRUE(
-        contains(messageOf<io::FileError>([&] { io::AtomicFile file(path("folder")); }), "is a folder"));
-    EXPECT_TRUE(contains(messageOf<io::FileError>([&] { io::AtomicFile file(path("no/a.txt")); }),
-                         "there is no folder"));
-    EXPECT_TRUE(contains(messageOf<io::FileError>([] { io::AtomicFile file(""); }), "needs a file name"));
+    for (const auto& [name, message] : {std::pair{folder_.string(), "is a folder"},
+                                        {path("no/a.txt"), "there is no folder"},
+                                        {std::string(), "needs a file name"}})
+        EXPECT_TRUE(contains(messageOf<io::FileError>([&] { io::AtomicFile file(name); }), message));
 }
 
 TEST_F(System, AnOpenTargetIsKept) {
