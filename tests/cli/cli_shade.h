@@ -1,7 +1,6 @@
 // A small G-buffer and its scene file for tests of `pellucid shade`, and small meshes.
 #pragma once
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "cli_run.h"
@@ -24,6 +23,14 @@ void addChannels(pellucid::io::Image& image, const Names& names, const Value& va
         for (int x = 0; x < image.width; ++x)
             for (size_t c = 0; c < names.size(); ++c) values.push_back(float(value(x, y, c)));
     image.addInterleaved(names, values);
+}
+
+template <class Value>
+pellucid::io::Image imageOf(int across, int down, const Names& names, const Value& value) {
+    pellucid::io::Image image;
+    image.width = across, image.height = down;
+    addChannels(image, names, value);
+    return image;
 }
 
 class Shade : public CommandTest {
@@ -75,35 +82,11 @@ class Shade : public CommandTest {
     Result said_{};
 };
 
-template <class Mesh>
-std::string offText(const Mesh& mesh) {
-    std::ostringstream text;
-    text << "OFF\n" << mesh.positions.size() / 3 << ' ' << mesh.triangles.size() / 3 << " 0";
-    for (size_t i = 0; i < mesh.positions.size(); ++i) text << (i % 3 ? " " : "\n") << mesh.positions[i];
-    for (size_t i = 0; i < mesh.triangles.size(); ++i) text << (i % 3 ? " " : "\n3 ") << mesh.triangles[i];
-    return text.str() + "\n";
-}
-
-// A regular icosahedron of radius 2, faces outwards: its vertex normals are radial by symmetry.
-inline std::string icosahedron(const std::string& extraVertices = "", const std::string& extraFaces = "",
-                               int vertices = 12, int faces = 20) {
-    const double g = (1 + std::sqrt(5.0)) / 2, a = 2 / std::sqrt(1 + g * g), b = a * g;
-    std::ostringstream text;
-    text.precision(9);
-    text << "OFF\n" << vertices << ' ' << faces << " 0\n";
-    for (int plane = 0; plane < 3; ++plane)
-        for (int corner = 0; corner < 4; ++corner) {
-            std::array<double, 3> p{};
-            p[size_t(plane)] = corner % 2 ? a : -a;
-            p[size_t(plane + 1) % 3] = corner < 2 ? b : -b;
-            text << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
-        }
-    text << extraVertices;
-    for (const char* face :
-         {"0 11 5", "0 5 1", "0 1 7", "0 7 10", "0 10 11", "1 5 9", "5 11 4", "11 10 2", "10 7 6", "7 1 8",
-          "3 9 4",  "3 4 2", "3 2 6", "3 6 8",  "3 8 9",   "4 9 5", "2 4 11", "6 2 10",  "8 6 7",  "9 8 1"})
-        text << "3 " << face << '\n';
-    return text.str() + extraFaces;
+// A regular octahedron of radius 2, faces outwards: its vertex normals are radial by symmetry.
+inline std::string octahedron(const std::string& moreVertices = "", const std::string& moreFaces = "",
+                              const std::string& counts = "6 8") {
+    return "OFF\n" + counts + " 0\n2 0 0\n-2 0 0\n0 2 0\n0 -2 0\n0 0 2\n0 0 -2\n" + moreVertices +
+           "3 0 2 4\n3 2 1 4\n3 1 3 4\n3 3 0 4\n3 2 0 5\n3 1 2 5\n3 3 1 5\n3 0 3 5\n" + moreFaces;
 }
 
 }  // namespace shade_files

@@ -1,5 +1,5 @@
-// The command line's contract: names, flags, exit codes, JSON on stdout and nothing else, no partial files, messages
-// about wrong values; and every command and option that the pages show exists.
+// The command line's contract: names, flags, exit codes, JSON on stdout and nothing else, no partial files,
+// messages about wrong values; and every command and option that the pages show exists.
 #include <pellucid/pellucid.hpp>
 #include <regex>
 #include <set>
@@ -107,7 +107,7 @@ const Refusal refusals[] = {
 }  // namespace
 
 TEST_F(Cli, WrongUseAndBadInputAreRefused) {
-    write("m.off", shade_files::icosahedron());
+    write("m.off", shade_files::octahedron());
     write("nan.off", "OFF\n3 1 0\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n");
     write("text.exr", "no image at all");
     const std::string whole = read(path("g.exr"));
@@ -174,7 +174,7 @@ TEST_F(Cli, ViewStartsThePython) {
 
 // Every subcommand that has --device, by `describe`, opens that device.
 TEST_F(Cli, EveryDeviceOptionIsHeard) {
-    write("m.off", shade_files::icosahedron());
+    write("m.off", shade_files::octahedron());
     write("m.toml", "[[lut]]\nsize = 8\n");
     for (const char* folder : {"tables", "demo", "bench"}) std::filesystem::create_directories(path(folder));
     const std::map<std::string, const char*> rest = {

@@ -12,23 +12,22 @@ namespace {
 class BenchCommand : public CommandTest {};
 
 // A report of one device with one operation.
-std::string report(double median, double mad, double error, double copy = 1e10,
-                   const std::string& name = "table-arc") {
-    const Json json = {{"host", {{"pellucid", "0"}, {"date", ""}, {"cpu", ""}}},
-                       {"devices",
-                        {{{"name", "D"},
-                          {"platform", "P"},
-                          {"copy_bytes_per_second", copy},
-                          {"operations_per_second", 1e11},
-                          {"operations",
-                           {{{"name", name},
-                             {"group", "tables"},
-                             {"items", 100},
-                             {"samples", 9},
-                             {"median_ms", median},
-                             {"mad_ms", mad},
-                             {"error_max", error}}}}}}}};
-    return json.dump();
+struct Made {
+    double median = 10, mad = 0.01, error = 1e-6, copy = 1e10;
+    const char* name = "table-arc";
+};
+Json report(const Made& made = {}) {
+    const Json operation = {{"name", made.name},      {"group", "tables"},        {"items", 100},
+                            {"samples", 9},           {"median_ms", made.median}, {"mad_ms", made.mad},
+                            {"error_max", made.error}};
+    const Json device = {{"name", "D"},
+                         {"platform", "P"},
+                         {"copy_bytes_per_second", made.copy},
+                         {"operations_per_second", 1e11},
+                         {"operations", Json::array({operation})}};
+    const Json host = {{"pellucid", "0"}, {"date", ""}, {"cpu", ""}};
+    // As it is read from a file: NaN is null.
+    return Json::parse(Json{{"host", host}, {"devices", Json::array({device})}}.dump());
 }
 
 }  // namespace
@@ -58,8 +57,9 @@ TEST_F(BenchCommand, MeasuresTimeShareAndError) {
         EXPECT_GT(number("median_ms"), 0.0) << name;
         EXPECT_GE(number("samples"), 5) << name;
         if (e.at("group") == "device") continue;
-        // Right answers, and no faster than the device itself. Small memory may run in a cache, twice as fast and
-        // more; arithmetic is above 1 where something else took the processors while the peak was measured.
+        // Right answers, and no faster than the device itself. Small memory may run in a cache, twice as fast
+        // and more; arithmetic is above 1 where something else took the processors while the peak was
+        // measured.
         EXPECT_LT(number("error_max"), tolerance::shadeSum) << name;
         EXPECT_GE(number("error_max"), number("error_rms")) << name;
         EXPECT_GT(number("bandwidth_share"), 0.0) << name;
@@ -108,39 +108,36 @@ TEST_F(BenchCommand, ADriverThatHangsOrCrashesCostsOneOperation) {
 #endif
 
 TEST_F(BenchCommand, VerdictsSurviveNoise) {
-    struct Row {
+    const struct {
         const char* what;
-        std::string before, after;
+        Made before, after;
         const char* verdict;
         int exitCode;
+    } rows[] = {
+        {"a twentieth is nothing", {}, {.median = 10.4}, "same", 0},
+        {"a fifth over a steady clock", {}, {.median = 12}, "slower", 1},
+        {"and the other way", {.median = 12}, {}, "faster", 0},
+        {"a fifth within the scatter", {.mad = 1}, {.median = 12, .mad = 1}, "same", 0},
+        {"twice, beyond the scatter", {.mad = 1}, {.median = 21, .mad = 1}, "slower", 1},
+        {"a fifth, but copies slowed down as well", {}, {.median = 12, .copy = 0.8e10}, "same", 0},
+        {"a larger error", {}, {.median = 5, .error = 2e-6}, "less accurate", 1},
+        {"an error of rounding", {.error = 1e-8}, {.error = 5e-8}, "same", 0},
+        {"an error that became NaN", {}, {.error = NAN}, "less accurate", 1},
+        {"no time", {}, {.median = NAN}, "not compared", 0},
+        {"another operation", {}, {.name = "table-ring"}, "only new", 0},
     };
-    const Row rows[] = {
-        {"a twentieth is nothing", report(10, 0.01, 1e-6), report(10.4, 0.01, 1e-6), "same", 0},
-        {"a fifth over a steady clock", report(10, 0.01, 1e-6), report(12, 0.01, 1e-6), "slower", 1},
-        {"and the other way", report(12, 0.01, 1e-6), report(10, 0.01, 1e-6), "faster", 0},
-        {"a fifth within the scatter", report(10, 1, 1e-6), report(12, 1, 1e-6), "same", 0},
-        {"twice, beyond the scatter", report(10, 1, 1e-6), report(21, 1, 1e-6), "slower", 1},
-        {"a fifth, but copies slowed down as well", report(10, 0.01, 1e-6, 1e10),
-         report(12, 0.01, 1e-6, 0.8e10), "same", 0},
-        {"a larger error", report(10, 0.01, 1e-6), report(5, 0.01, 2e-6), "less accurate", 1},
-        {"an error of rounding", report(10, 0.01, 1e-8), report(10, 0.01, 5e-8), "same", 0},
-        {"an error that became NaN", report(10, 0.01, 1e-6), report(10, 0.01, NAN), "less accurate", 1},
-        {"no time", report(10, 0.01, 1e-6), report(NAN, 0.01, 1e-6), "not compared", 0},
-        {"another operation", report(10, 0.01, 1e-6), report(10, 0.01, 1e-6, 1e10, "table-ring"), "only new",
-         0},
-    };
-    for (const Row& row : rows) {
-        const auto result = pellucid::bench::compareReports(Json::parse(row.before), Json::parse(row.after));
+    for (const auto& row : rows) {
+        const auto result = pellucid::bench::compareReports(report(row.before), report(row.after));
         EXPECT_EQ(result.at("slower").get<int>() + result.at("less_accurate").get<int>(), row.exitCode)
             << row.what;
         EXPECT_EQ(result.at("devices")[0].at("operations")[0].at("verdict"), row.verdict) << row.what;
     }
-    Json broken = Json::parse(report(10, 0.01, 1e-6));
+    Json broken = report();
     for (auto& e : broken["devices"][0]["operations"])
         e = {{"name", e["name"]}, {"group", e["group"]}, {"failed", "out of memory"}};
     write("broken.json", broken.dump());
-    write("old.json", report(10, 0.01, 1e-6));
-    write("new.json", report(12, 0.01, 1e-6));
+    write("old.json", report().dump());
+    write("new.json", report({.median = 12}).dump());
     EXPECT_EQ(cli("bench compare @broken.json @broken.json").exitCode, 3) << "it fails as before";
     for (const auto& [name, said] : {std::pair{"broken", "1 fail,"}, {"new", "1 slower"}}) {
         const Result result = cli(std::string("bench compare @old.json @") + name + ".json");
@@ -152,7 +149,7 @@ TEST_F(BenchCommand, VerdictsSurviveNoise) {
 // Reports of another size, of another device, of several devices; folders in place of their bench.json.
 TEST_F(BenchCommand, ComparesOnlyWhatIsComparable) {
     const auto edited = [](const std::function<void(Json&)>& edit) {
-        Json json = Json::parse(report(10, 0.01, 1e-6));
+        Json json = report();
         edit(json["devices"]);
         return json;
     };
@@ -196,7 +193,7 @@ TEST_F(BenchCommand, ComparesOnlyWhatIsComparable) {
 // The page of a report: which device, how many frames a second, at what error, before all else; and no
 // mark-up from names.
 TEST_F(BenchCommand, ThePageAnswersItsQuestionFirst) {
-    Json made = Json::parse(report(20, 0.01, 3e-6, 1e10, "shade-surface"));
+    Json made = report({.median = 20, .error = 3e-6, .name = "shade-surface"});
     made["devices"][0]["name"] = "<D&'\">";
     made["devices"][0]["operations"][0]["what"] = "64x32, 100 % skin";
     const std::string page = pellucid::bench::htmlPage(made);

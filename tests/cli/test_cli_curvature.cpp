@@ -7,7 +7,7 @@
 #include "tolerances.h"
 
 using namespace pellucid;
-using shade_files::icosahedron;
+using shade_files::octahedron;
 
 namespace {
 
@@ -24,7 +24,7 @@ class CliCurvature : public CommandTest {
 
 }  // namespace
 
-// The icosahedron's normals point from its centre at radius 2: every edge turns as on the sphere.
+// The octahedron's normals point from its centre at radius 2: every edge turns as on the sphere.
 TEST_F(CliCurvature, OfASphereLikeMesh) {
     const struct {
         const char* options;
@@ -35,13 +35,13 @@ TEST_F(CliCurvature, OfASphereLikeMesh) {
                  "--picture @m.png",
                  0.25, tolerance::tensorCurvature}};
     for (const auto& row : rows) {
-        const std::vector<float> all = values(icosahedron(), row.options);
-        ASSERT_EQ(all.size(), 12u);
+        const std::vector<float> all = values(octahedron(), row.options);
+        ASSERT_EQ(all.size(), 6u);
         for (float v : all) EXPECT_NEAR(v, row.expected, row.expected * row.tolerance) << row.options;
         expectReport(report_);
-        EXPECT_EQ(report_.at("vertices"), 12);
-        EXPECT_EQ(report_.at("triangles"), 20);
-        EXPECT_EQ(report_.at("edges"), 30);
+        EXPECT_EQ(report_.at("vertices"), 6);
+        EXPECT_EQ(report_.at("triangles"), 8);
+        EXPECT_EQ(report_.at("edges"), 12);
         EXPECT_TRUE(report_.at("warnings").empty());
     }
     EXPECT_GT(std::filesystem::file_size(path("m.png")), 1000u);
@@ -51,48 +51,49 @@ TEST_F(CliCurvature, OfASphereLikeMesh) {
 
 TEST_F(CliCurvature, ColoursAndWeights) {
     // On one range, meshes of different curvature differ in colour; each on its own, they look alike.
-    write("m.off", icosahedron());
+    write("m.off", octahedron());
     const auto colored = [&](const std::string& options) {
         done("curvature @m.off -o @r.ply --scale " + options);
         const std::string bytes = read(path("r.ply"));
         const size_t vertices = bytes.find("end_header\n") + 11, stride = 31;  // bytes of a vertex
         std::string colors;
-        for (size_t v = 0; v < 12; ++v) colors += bytes.substr(vertices + v * stride + 28, 3);
+        for (size_t v = 0; v < 6; ++v) colors += bytes.substr(vertices + v * stride + 28, 3);
         return colors;
     };
     EXPECT_EQ(colored("1"), colored("2"));
     EXPECT_NE(colored("1 --range 0 2"), colored("2 --range 0 2"));
-    const std::string horned = icosahedron("9 9 9\n", "3 0 1 12\n", 13, 21);
+    const std::string horned = octahedron("9 9 9\n", "3 0 2 6\n", "7 9");
     EXPECT_NE(values(horned, "--smooth-radius 0.6 --smooth-weights cotangent"),
               values(horned, "--smooth-radius 0.6 --smooth-weights area"));
 }
 
 TEST_F(CliCurvature, WhatCanBeRepairedIsCounted) {
-    // Two unreferenced vertices, a repeated index, a third face on an edge, and a face with a zero-length edge.
+    // Two unreferenced vertices, a repeated index, a third face on an edge, and a face with a zero-length
+    // edge.
     const auto all =
-        values(icosahedron("9 9 9\n9 9 9\n0 0 5\n0 0 5\n", "3 0 0 1\n3 0 1 14\n3 14 15 3\n", 16, 23),
+        values(octahedron("9 9 9\n9 9 9\n0 0 5\n0 0 5\n", "3 0 0 2\n3 0 2 8\n3 8 9 3\n", "10 11"),
                "--estimator edge");
     EXPECT_EQ(report_.at("unreferenced_vertices"), 2);
     EXPECT_EQ(report_.at("degenerate_triangles"), 1);
     EXPECT_GE(report_.at("nonmanifold_edges"), 1);
     EXPECT_GE(report_.at("zero_length_edges"), 1);
     EXPECT_GE(report_.at("warnings").size(), 4u);
-    ASSERT_EQ(all.size(), 16u);
-    EXPECT_EQ(all[12], 0.0f);
+    ASSERT_EQ(all.size(), 10u);
+    EXPECT_EQ(all[6], 0.0f);
     for (float v : all) EXPECT_TRUE(std::isfinite(v));
 }
 
 TEST_F(CliCurvature, TrianglesThatFaceAnotherWayAreToldOrTurned) {
-    std::string turned = icosahedron();
-    turned.replace(turned.find("3 0 11 5\n"), 8, "3 0 5 11");
+    std::string turned = octahedron();
+    turned.replace(turned.find("3 0 2 4\n"), 7, "3 2 0 4");
     values(turned, "");
     EXPECT_EQ(report_.at("inconsistent_edges"), 3);
-    EXPECT_EQ(report_.at("low_degree_fits"), 12) << "two rings of five tell no cubic";
+    EXPECT_EQ(report_.at("low_degree_fits"), 6) << "two rings of four tell no cubic";
     ASSERT_EQ(report_.at("warnings").size(), 1u);
     EXPECT_EQ(report_.at("warnings")[0].get<std::string>().find("1 triangle faces another way"), 0u);
     EXPECT_EQ(cli("curvature @m.off -o @c.npy --strict").exitCode, 3);
     const auto mended = values(turned, "--orient --strict");
     EXPECT_EQ(report_.at("inconsistent_edges"), 0);
     EXPECT_EQ(report_.at("triangles_turned"), 1);
-    EXPECT_EQ(mended, values(icosahedron(), ""));
+    EXPECT_EQ(mended, values(octahedron(), ""));
 }

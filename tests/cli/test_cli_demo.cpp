@@ -1,26 +1,16 @@
-// `pellucid demo`: mesh in, pictures out, and `pellucid shade` makes the same of what it leaves; its pictures are those
-// in tests/cli/pictures. After a change that is meant to be visible, look at the new pictures at full size and keep
-// them: PELLUCID_KEEP_PICTURES=1 test_cli_demo.
+// `pellucid demo`: mesh in, pictures out, and `pellucid shade` makes the same of what it leaves; its pictures
+// are those in tests/cli/pictures. After a change that is meant to be visible, look at the new pictures at
+// full size and keep them: PELLUCID_KEEP_PICTURES=1 test_cli_demo.
 #include <cstring>
 
 #include "cli_shade.h"
-#include "sample/mesh.h"
 
 using namespace pellucid;
 
 using Demo = CommandTest;
 
-TEST_F(Demo, PicturesAreThoseThatShadeMakesOfItsGBuffer) {
-    // A bumpy ball of 1 cm: quick, and it has a terminator, shadows and rims.
-    auto ball = sample::makeSphere(10, 24, 48);
-    for (size_t i = 0; i < ball.positions.size(); i += 3) {
-        float* p = &ball.positions[i];
-        const double across = std::hypot(p[0], p[1]);
-        const double scale = across > 0 ? 1 + 0.3 * p[0] * p[1] / across / 10 : 1;
-        for (int k = 0; k < 3; ++k) p[k] = float(p[k] * scale);
-    }
-    write("ball.off", shade_files::offText(ball));
-    const auto report = reportOf("demo @ball.off -o @demo --size 160x90 --height 20");
+TEST_F(Demo, ShadeMakesTheSamePicturesAndSomebodyLookedAtThem) {
+    const auto report = reportOf("demo -o @demo --size 192x108");
     expectReport(report);
     EXPECT_GE(report.at("stages").size(), 6u);
     for (const auto& entry : report.at("pictures"))
@@ -31,7 +21,7 @@ TEST_F(Demo, PicturesAreThoseThatShadeMakesOfItsGBuffer) {
         const std::vector<float> a = io::readImage(path("demo/" + view + ".exr"))
                                          .interleaved(shade_files::colorNames),
                                  b = io::readImage(path("again.exr")).interleaved(shade_files::colorNames);
-        ASSERT_EQ(a.size(), 3 * 160u * 90u);
+        ASSERT_EQ(a.size(), 3 * 192u * 108u);
         ASSERT_EQ(a.size(), b.size());
         EXPECT_EQ(std::memcmp(a.data(), b.data(), 4 * a.size()), 0) << view;
         EXPECT_GT(*std::ranges::max_element(a), 0);
@@ -56,15 +46,12 @@ TEST_F(Demo, PicturesAreThoseThatShadeMakesOfItsGBuffer) {
         EXPECT_EQ(read.lights.size(), 1u) << scene;
         EXPECT_EQ(read.materials.at(0).material.scattering, PEL_SCATTERING_PREINTEGRATED) << scene;
     }
-}
 
-TEST_F(Demo, PicturesAreThoseThatSomebodyLookedAt) {
     namespace fs = std::filesystem;
     const fs::path kept = fs::path(PELLUCID_SOURCE_DIR) / "tests/cli/pictures";
-    done("demo -o @demo --size 192x108");
     const char* keep = std::getenv("PELLUCID_KEEP_PICTURES");
-    // 0.0003 is one bit in each 170th value, which other roundings may change; a backdrop or a sky that is a tenth off
-    // is more. Labels of the sheet are drawn by another library.
+    // 0.0003 is one bit in each 170th value, which other roundings may change; a backdrop or a sky that is a
+    // tenth off is more. Labels of the sheet are drawn by another library.
     for (const auto& [name, most] : {std::pair<std::string, std::string>{"key.png", "0.0003"},
                                      {"backlit.png", "0.0003"},
                                      {"backlit_parts.png", "0.0003"},

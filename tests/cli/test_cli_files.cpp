@@ -34,7 +34,8 @@ class Files : public CommandTest {
 
 }  // namespace
 
-// Some 250 libraries come with OpenImageIO; the command starts without them. tests/outside checks that they are found.
+// Some 250 libraries come with OpenImageIO; the command starts without them. tests/outside checks that they
+// are found.
 TEST_F(Files, PicturesAreAModuleOfTheirOwn) {
     const std::string libraries = cli("--version", "LD_TRACE_LOADED_OBJECTS=1").out;
     EXPECT_TRUE(contains(libraries, "libpellucid.so"));
@@ -196,9 +197,9 @@ TEST_F(Files, MoreJobsThanFileHandles) {
 }
 
 TEST_F(Files, WhatKilledCommandsLeftIsSwept) {
-    for (const char* line :
-         {"lut shadow --size 8x8 -o @o.exr", "curvature @m.off -o @o.ply", "demo @m.off --size 32x24 -o @",
-          "profile plot skin -o @o.png", "profile fit marble --gaussians 1 -o @o.toml"}) {
+    for (const char* line : {"lut shadow --size 8x8 -o @o.exr", "curvature @m.off -o @o.ply",
+                             "demo @m.off --size 32x24 --height 20 -o @", "profile plot skin -o @o.png",
+                             "profile fit marble --gaussians 1 -o @o.toml"}) {
         // Made by a process that is killed in its write.
         const std::string left = path(".old." + tag() + "-0123456789abcdef.tmp.exr");
         const pid_t child = ::fork();

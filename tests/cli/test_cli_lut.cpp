@@ -65,8 +65,8 @@ TEST_F(CliLut, LutFilesHoldTheLibrarysTexels) {
               Lut(device_, desc).clippedTexels());
 }
 
-// The default tables are those that a material makes of its profile, --preset faceworks makes those of FaceWorks; an
-// option of its own takes precedence.
+// The default tables are those that a material makes of its profile, --preset faceworks makes those of
+// FaceWorks; an option of its own takes precedence.
 TEST_F(CliLut, OptionsBecomeDescriptions) {
     PelCurvatureLutDesc c = info("curvature").curvature;
     EXPECT_EQ(c.form, PEL_FORM_SPHERE);

@@ -1,4 +1,5 @@
-// `pellucid reference` and `pellucid compare` as their users run them: a ball whose reference has a closed form.
+// `pellucid reference` and `pellucid compare` as their users run them: a ball whose reference has a closed
+// form.
 #include <chrono>
 #include <numbers>
 
@@ -23,7 +24,12 @@ class CliReference : public CommandTest {
     void SetUp() override {
         CommandTest::SetUp();
         const int rings = sized(120, 12);
-        write("ball.off", shade_files::offText(pellucid::sample::makeSphere(radius, rings, 2 * rings)));
+        const auto ball = pellucid::sample::makeSphere(radius, rings, 2 * rings);
+        std::ostringstream off;
+        off << "OFF\n" << ball.positions.size() / 3 << ' ' << ball.triangles.size() / 3 << " 0";
+        for (size_t i = 0; i < ball.positions.size(); ++i) off << (i % 3 ? " " : "\n") << ball.positions[i];
+        for (size_t i = 0; i < ball.triangles.size(); ++i) off << (i % 3 ? " " : "\n3 ") << ball.triangles[i];
+        write("ball.off", off.str() + "\n");
         write("burley.toml",
               "name = \"burley\"\nsource = \"test\"\nkind = \"burley\"\nunit = \"mm\"\n"
               "distance = [1, 0.5, 0.25]\n");

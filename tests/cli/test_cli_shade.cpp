@@ -166,26 +166,21 @@ class WarmUp : public Shade {
 };
 
 TEST_F(WarmUp, BuildsAheadForTheDriversCache) {
-    gbuffer_ = {};
-    gbuffer_.width = 24, gbuffer_.height = 8;
-    addChannels(gbuffer_, normalNames, [](int, int, size_t) { return 0.577; });
+    gbuffer_ = imageOf(24, 8, normalNames, [](int, int, size_t) { return 0.577; });
     addChannels(gbuffer_, albedoNames, [](int, int, size_t) { return 0.5; });
     addChannels(gbuffer_, {"View.Id.X"}, [](int, int, size_t) { return 1; });
     expectNothingLeftToCompile("POCL_CACHE_DIR=@cache PELLUCID_CACHE_DIR=@binaries", ".so");
 }
 
-// More vectors of pixels, and of texels of the shadow map, than the ranges for which PoCL compiles a kernel by itself.
+// More vectors of pixels, and of texels of the shadow map, than the ranges for which PoCL compiles a kernel
+// by itself.
 TEST_F(WarmUp, OfALargeFrameThatScatters) {
-    gbuffer_ = {};
-    gbuffer_.width = 1440, gbuffer_.height = 760;
-    addChannels(gbuffer_, positionNames, [](int x, int y, size_t c) {
+    gbuffer_ = imageOf(1440, 760, positionNames, [](int x, int y, size_t c) {
         return c == 0 ? 0.1 * (x - 720) : c == 1 ? 0.1 * (380 - y) : 0;
     });
     addChannels(gbuffer_, normalNames, [](int, int, size_t c) { return c == 2; });
     addChannels(gbuffer_, {"View.Id.X"}, [](int x, int, size_t) { return x < 300; });
-    io::Image map;
-    map.width = 1200, map.height = 900;
-    addChannels(map, {"Z"}, [](int x, int, size_t) { return x < 400 ? 0.2 : 1; });
+    const io::Image map = imageOf(1200, 900, {"Z"}, [](int x, int, size_t) { return x < 400 ? 0.2 : 1; });
     io::writeExr(path("map.exr"), map, io::ExrCompression::Rle);
     scene_.channels[PEL_SLOT_POSITION] = positionNames;
     scene_.channels[PEL_SLOT_ALBEDO] = {};

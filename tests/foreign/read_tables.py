@@ -1,5 +1,6 @@
 """Tables written by `pellucid lut`, read by NumPy, Pillow, OpenEXR, imagecodecs and pyktx2, compared with
 one another."""
+
 import subprocess
 import sys
 import tempfile
@@ -28,9 +29,8 @@ class Tables(unittest.TestCase):
     def table(self, name, encoding, size=f"{WIDTH}x{HEIGHT}"):
         path = Path(self.folder.name) / f"{size}-{name}"
         if not path.exists():
-            subprocess.run([COMMAND, "lut", "curvature", "-o", path, "--size", size, "--axis", "root",
-                            "--radius-min", "1", "--radius-max", "100", "--encoding", encoding],
-                           check=True, stdout=subprocess.DEVNULL)
+            options = f"--size {size} --axis root --radius-min 1 --radius-max 100 --encoding {encoding}"
+            subprocess.check_output([COMMAND, "lut", "curvature", "-o", path, *options.split()])
         return str(path)
 
     def npy(self, encoding):
@@ -59,9 +59,8 @@ class Tables(unittest.TestCase):
     def test_batch(self):
         openexr = reader("OpenEXR")
         folder = Path(self.folder.name)
-        (folder / "m.toml").write_text('version = 2\n[[lut]]\nsize = 13\nradius_min = 1\nradius_max = 100\n')
-        subprocess.run([COMMAND, "batch", folder / "m.toml", "-o", folder / "out"], check=True,
-                       stdout=subprocess.DEVNULL)
+        (folder / "m.toml").write_text("version = 2\n[[lut]]\nsize = 13\nradius_min = 1\nradius_max = 100\n")
+        subprocess.check_output([COMMAND, "batch", folder / "m.toml", "-o", folder / "out"])
         (path,) = (folder / "out").glob("*.exr")
         expected = np.load(self.table("square.npy", "half", "13x13"))
         with openexr.File(str(path), separate_channels=True) as file:
@@ -72,6 +71,7 @@ class Tables(unittest.TestCase):
     def test_8_bit(self):
         reader("PIL")
         from PIL import Image
+
         expected = self.npy("faceworks8")
         for kind in ("png", "bmp", "tga"):
             with Image.open(self.table("t." + kind, "faceworks8")) as image:
@@ -85,8 +85,8 @@ class Tables(unittest.TestCase):
 
     def bc6h(self, blocks):
         codecs = reader("imagecodecs")
-        padded = codecs.bcn_decode(bytes(blocks), codecs.BCN.FORMAT.BC6HU, shape=(-(-HEIGHT // 4) * 4,
-                                                                                  -(-WIDTH // 4) * 4, 3))
+        shape = (-(-HEIGHT // 4) * 4, -(-WIDTH // 4) * 4, 3)
+        padded = codecs.bcn_decode(bytes(blocks), codecs.BCN.FORMAT.BC6HU, shape=shape)
         return np.asarray(padded, np.float32)[:HEIGHT, :WIDTH, :3]
 
     def test_dds(self):
@@ -100,6 +100,7 @@ class Tables(unittest.TestCase):
         self.assertLess(np.sqrt(np.square(decoded - self.npy("float")).mean()), 0.006)
         reader("PIL")
         from PIL import Image
+
         with Image.open(path) as image:  # Pillow finds the header right, and shows 8 bits of it
             self.assertEqual(image.size, (WIDTH, HEIGHT))
             shown = np.asarray(image.convert("RGB")) / 255
@@ -108,13 +109,14 @@ class Tables(unittest.TestCase):
     def test_ktx2(self):
         reader("pyktx2")
         from pyktx2 import parser
+
         # It walks the file by itself, but knows few colour models and texel formats, and pads after pos % 8.
         parser.BytesReader.get_padding_size = lambda self, alignment: -self.pos % alignment
         parser.ColorModel = int
         parser.get_stride = {97: 8, 143: 1}.__getitem__
         parser.VkFormat = int
-        for encoding, size, vulkan, model in (("half", f"{WIDTH}x{HEIGHT}", 97, 1), ("bc6h", "24x16", 143,
-                                                                                     133)):
+        rows = (("half", f"{WIDTH}x{HEIGHT}", 97, 1), ("bc6h", "24x16", 143, 133))
+        for encoding, size, vulkan, model in rows:
             ktx = parser.parse_path(Path(self.table(encoding + ".ktx2", encoding, size)))
             self.assertEqual(f"{ktx.pixelWidth}x{ktx.pixelHeight}", size)
             self.assertEqual((ktx.vkFormat, ktx.faceCount, ktx.levelCount), (vulkan, 1, 1))

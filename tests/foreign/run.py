@@ -5,6 +5,7 @@
 PELLUCID is the command, WORK a folder that keeps a virtual environment with the readers. A reader that
 cannot be installed is skipped with a message; then this ends with 77, as CTest knows it.
 """
+
 import subprocess
 import sys
 import venv
@@ -19,9 +20,8 @@ def main(command, work):
     if not complete.exists():
         venv.create(environment, clear=True, with_pip=True)
         for reader in READERS:
-            found = subprocess.run([python, "-m", "pip", "--disable-pip-version-check", "install", "-q",
-                                    "--only-binary", ":all:", reader], stdout=subprocess.PIPE,
-                                   stderr=subprocess.STDOUT, text=True)
+            command = "-m pip --disable-pip-version-check install -q --only-binary :all:".split()
+            found = subprocess.run([python, *command, reader], capture_output=True)
             if found.returncode and reader == "numpy":
                 print("tests/foreign::packages_from_PyPI SKIPPED (pip cannot reach what the tests need)")
                 return 77

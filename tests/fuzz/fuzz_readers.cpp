@@ -1,9 +1,9 @@
 // fuzz_readers [--seconds S | --runs N] [--seed N] [--only READER] [--corpus FOLDER] [--keep FOLDER]
 //
-// Gives damaged input to every reader of files: first inputs that once exposed a fault (FOLDER/READER/*), then whole
-// files, then mutants of those, which are determined by the seed and their number. A reader may throw its documented
-// error. It must not crash, throw another error, run long or use much memory. Readers run in a child process; if it
-// dies, the input is kept and another child continues with the next one.
+// Gives damaged input to every reader of files: first inputs that once exposed a fault (FOLDER/READER/*),
+// then whole files, then mutants of those, which are determined by the seed and their number. A reader may
+// throw its documented error. It must not crash, throw another error, run long or use much memory. Readers
+// run in a child process; if it dies, the input is kept and another child continues with the next one.
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -85,8 +85,8 @@ TEST(Bc6h, TablesKeepTheirValues) {
     }
 }
 
-// Each block, on its own, is at least as near as one line through its two extreme texels, quantised as the coarsest
-// one-line mode would.
+// Each block, on its own, is at least as near as one line through its two extreme texels, quantised as the
+// coarsest one-line mode would.
 TEST(Bc6h, NoBlockIsWorseThanTheObviousOne) {
     const uint32_t side = 64;
     const Halves texels = table(side, side),

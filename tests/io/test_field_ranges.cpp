@@ -1,5 +1,5 @@
-// The library and the scene file accept and refuse the same values of each field (pellucid_fields.h), at both ends of
-// its range and beyond.
+// The library and the scene file accept and refuse the same values of each field (pellucid_fields.h), at both
+// ends of its range and beyond.
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -80,6 +80,11 @@ class FieldRanges : public ::testing::Test {
             EXPECT_EQ(accepts([&] { io::parseScene("scene.toml", scene); }), right) << scene;
         }
     }
+    // By the table; other types are checked where they are read.
+    static bool isChecked(std::string_view type) {
+        return type == "FLOAT" || type == "UINT" || type == "COLOR";
+    }
+
     const Device device_{""};
     int fields_ = 0;
 };
@@ -115,32 +120,27 @@ TEST_F(FieldRanges, TheLibraryChecksLightsAndOptions) {
     PelLight spot = pelLightDefaults();
     spot.type = PEL_LIGHT_SPOT;
     spot.spotCosInner = 1, spot.spotCosOuter = -1;
-#define CHECK_OF(type, name, ...) CHECK_##type(name)
-#define CHECK_UINT(name) CHECK_FLOAT(name)
-#define CHECK_COLOR(name) CHECK_FLOAT(name)
-#define CHECK_FREE(name)
-#define CHECK_FREE_UINT(name)
-#define CHECK_VECTOR(name)
-#define CHECK_MATRIX(name)
-#define CHECK_FLOAT(name)                                                           \
-    expectSame<std::remove_all_extents_t<decltype(PelLight::name)>>(                \
-        #name, pel::range::light::name, [&](float value) {                          \
-            PelLight l = spot;                                                      \
-            fill(l.name, value);                                                    \
-            return accepts([&] { Shader(device_).set(std::vector<PelLight>{l}); }); \
+#define CHECK(type, name, ...)                                                          \
+    if (isChecked(#type))                                                               \
+        expectSame<std::remove_all_extents_t<decltype(PelLight::name)>>(                \
+            #name, pel::range::light::name, [&](float value) {                          \
+                PelLight l = spot;                                                      \
+                fill(l.name, value);                                                    \
+                return accepts([&] { Shader(device_).set(std::vector<PelLight>{l}); }); \
+            });
+    PEL_EACH_LIGHT_FIELD(CHECK)
+    PEL_EACH_POSITIONAL_LIGHT_FIELD(CHECK)
+    PEL_EACH_SPOT_LIGHT_FIELD(CHECK)
+    PEL_EACH_SHADOW_MAP_FIELD(CHECK)
+#undef CHECK
+#define CHECK(type, name, ...)                                                                            \
+    if (isChecked(#type))                                                                                 \
+        expectSame<decltype(PelShaderOptions::name)>(#name, pel::range::options::name, [&](float value) { \
+            PelShaderOptions o = pelShaderOptionsDefaults();                                              \
+            fill(o.name, value);                                                                          \
+            return accepts([&] { Shader(device_).set(o); });                                              \
         });
-    PEL_EACH_LIGHT_FIELD(CHECK_OF)
-    PEL_EACH_POSITIONAL_LIGHT_FIELD(CHECK_OF)
-    PEL_EACH_SPOT_LIGHT_FIELD(CHECK_OF)
-    PEL_EACH_SHADOW_MAP_FIELD(CHECK_OF)
-#undef CHECK_FLOAT
-#define CHECK_FLOAT(name)                                                                             \
-    expectSame<decltype(PelShaderOptions::name)>(#name, pel::range::options::name, [&](float value) { \
-        PelShaderOptions o = pelShaderOptionsDefaults();                                              \
-        fill(o.name, value);                                                                          \
-        return accepts([&] { Shader(device_).set(o); });                                              \
-    });
-    PEL_EACH_OPTION_FIELD(CHECK_OF)
+    PEL_EACH_OPTION_FIELD(CHECK)
     EXPECT_GE(fields_, 13);
 }
 

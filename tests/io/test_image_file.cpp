@@ -1,6 +1,6 @@
-// host/io/image/image_file.h: EXR round trips to the bit, parts and data windows, look-up by name, 8-bit files, NPY. The
-// two ways of reading OpenEXR files give the same values: scan lines without compression, with RLE and with ZIP by the
-// C library, all others by the C++ one.
+// host/io/image/image_file.h: EXR round trips to the bit, parts and data windows, look-up by name, 8-bit
+// files, NPY. The two ways of reading OpenEXR files give the same values: scan lines without compression,
+// with RLE and with ZIP by the C library, all others by the C++ one.
 #include <OpenImageIO/imageio.h>
 
 #include <bit>
@@ -70,45 +70,34 @@ class ExrLines : public ImageFile {
 
 }  // namespace
 
-TEST_F(ImageFile, ExrFloatsKeepTheirBits) {
+TEST_F(ImageFile, ExrKeepsBitsTypesAndAttributes) {
     Image image = makeImage(4, 3);
     const float nan = std::bit_cast<float>(0x7fc12345u), inf = std::numeric_limits<float>::infinity();
     const std::vector<float> awkward = {0.0f, -0.0f, 1e-45f, 1.17549435e-38f, 3.4028235e38f, inf,
                                         -inf, nan,   0.1f,   -7.0f / 3.0f,    65504.0f,      1e10f};
     image.channels = {{"View.Z", ChannelType::Float, awkward},
-                      {"View.A", ChannelType::Float, std::vector<float>(12, 0.5f)}};
+                      {"View.A", ChannelType::Half, std::vector<float>(12, 6.1035156e-05f)},
+                      {"View.H", ChannelType::Half, awkward}};
+    image.attributes = {{"pellucid:form", std::string("arc")},
+                        {"pellucid:radiusMin", 1.25f},
+                        {"pellucid:version", 3},
+                        {"pellucid:axes", std::vector<float>{1, 2, 3}},
+                        {"pellucid:matrix", std::vector<float>(16, 0.5f)}};
     writeExr(path("a.exr"), image);
+    EXPECT_EQ(filesInFolder(), 1u);
     const Image again = readImage(path("a.exr"));
     ASSERT_EQ(again.width, 4);
     ASSERT_EQ(again.height, 3);
-    ASSERT_EQ(again.channels.size(), 2u);
+    ASSERT_EQ(again.channels.size(), 3u);
     EXPECT_TRUE(sameBits(again.channel("View.Z").pixels, awkward));
     EXPECT_TRUE(sameBits(again.channel("A").pixels, image.channels[1].pixels));
-    EXPECT_EQ(filesInFolder(), 1u);
-}
-
-TEST_F(ImageFile, ExrHalvesAndFloatsSideBySide) {
-    Image image = makeImage(2, 2);
-    image.channels = {{"N.X", ChannelType::Half, {0.5f, -1.0f, 65504.0f, 6.1035156e-05f}},
-                      {"N.Y", ChannelType::Half, {0.1f, 0.2f, 1e9f, std::nanf("")}},
-                      {"P.X", ChannelType::Float, {0.1f, 0.2f, 0.3f, 0.4f}}};
-    image.attributes = {
-        {"pellucid:form", std::string("arc")},
-        {"pellucid:radiusMin", 1.25f},
-        {"pellucid:version", 3},
-        {"pellucid:axes", std::vector<float>{1, 2, 3}},
-        {"pellucid:matrix", std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}}};
-    writeExr(path("h.exr"), image);
-    const Image again = readImage(path("h.exr"));
-    EXPECT_TRUE(sameBits(again.channel("P.X").pixels, image.channels[2].pixels));
-    EXPECT_TRUE(sameBits(again.channel("N.X").pixels, image.channels[0].pixels));
-    EXPECT_EQ(again.channel("N.X").type, ChannelType::Half);
-    EXPECT_EQ(again.channel("P.X").type, ChannelType::Float);
-    const std::vector<float>& y = again.channel("N.Y").pixels;
-    EXPECT_EQ(y[0], 0.0999755859375f);  // the half nearest to 0.1
-    EXPECT_TRUE(std::isinf(y[2]));
-    EXPECT_TRUE(std::isnan(y[3]));
-    ASSERT_NE(again.attribute("pellucid:form"), nullptr);
+    EXPECT_EQ(again.channel("Z").type, ChannelType::Float);
+    EXPECT_EQ(again.channel("A").type, ChannelType::Half);
+    const std::vector<float>& halves = again.channel("H").pixels;
+    EXPECT_EQ(halves[8], 0.0999755859375f);  // the half nearest to 0.1
+    EXPECT_EQ(halves[10], 65504.0f);
+    EXPECT_TRUE(std::isinf(halves[11]));
+    EXPECT_TRUE(std::isnan(halves[7]));
     for (const auto& [name, value] : image.attributes) {
         ASSERT_NE(again.attribute(name), nullptr) << name;
         EXPECT_EQ(*again.attribute(name), value) << name;
@@ -295,10 +284,8 @@ TEST_F(ImageFile, BadFilesAndBadTargets) {
     Image image = makeImage(1, 1);
     image.channels = {{"Z", ChannelType::Float, {1}}};
     EXPECT_TRUE(contains(messageOf<FileError>([&] { writeExr(path("w.jpg"), image); }), "known here: .exr"));
-    const size_t before = filesInFolder();
     EXPECT_THROW(writeExr(path("no/w.exr"), image), FileError);
     EXPECT_THROW(writeImage8(path("no/w.png"), 1, 1, 1, std::vector<uint8_t>(1)), FileError);
-    EXPECT_EQ(filesInFolder(), before);
 }
 
 TEST_F(ImageFile, FilesOfARealHost) {

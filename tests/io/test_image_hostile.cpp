@@ -126,7 +126,7 @@ TEST_F(HostileImage, HeadersThatLie) {
         return [count](Exr& e) { e.more = Exr::attribute("chunkCount", "int", Exr::word(count)); };
     };
     const struct {
-        std::function<void(Exr&)> bend;
+        std::function<void(Exr&)> edit;
         const char* message;
     } rows[] = {
         {chunks(0), "a.exr: is damaged or cut off: its attribute chunkCount"},
@@ -167,7 +167,7 @@ TEST_F(HostileImage, HeadersThatLie) {
     };
     for (const auto& row : rows) {
         Exr exr;
-        row.bend(exr);
+        row.edit(exr);
         EXPECT_TRUE(contains(refusal("a.exr", exr.bytes()), row.message));
     }
     // A limit can be set.

@@ -1,4 +1,5 @@
-// host/io/mesh/mesh_file.h: what is loaded of each format, what is told, what is refused and with which message.
+// host/io/mesh/mesh_file.h: what is loaded of each format, warnings, what is refused and with which
+// message.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -138,8 +139,8 @@ TEST_F(MeshFile, ObjWithNegativeIndicesAndSeams) {
 }
 
 TEST_F(MeshFile, StlBothWays) {
-    const MeshData binary = load("b.stl", binaryStl(facetsOfTetrahedron())),
-                   ascii = load("a.stl", textStl(facetsOfTetrahedron()));
+    const Floats facets = facetsOfTetrahedron();
+    const MeshData binary = load("b.stl", binaryStl(facets)), ascii = load("a.stl", textStl(facets));
     EXPECT_EQ(binary.vertexCount(), 4u);
     EXPECT_EQ(binary.triangleCount(), 4u);
     EXPECT_EQ(ascii.positions, binary.positions);
@@ -328,7 +329,8 @@ TEST_F(MeshFile, GoodFilesOfEveryFormatHaveNoWarning) {
 }
 
 TEST_F(MeshFile, TrianglesThatFaceAnotherWayThanTheirNeighboursAreToldOrTurned) {
-    // A tetrahedron, outwards; its second triangle turned round; and that in vertices of their own, as STL has them.
+    // A tetrahedron, outwards; its second triangle turned round; and that in vertices of their own, as STL
+    // has them.
     const auto off = [](const std::string& second) {
         return "OFF\n4 4 0\n" + four + "3 0 2 1\n3 " + second + "\n3 1 2 3\n3 0 3 2\n";
     };
@@ -398,8 +400,8 @@ TEST_F(MeshFile, LoopKeepsIndicesAndClosedness) {
         EXPECT_EQ(count, 1);
         EXPECT_TRUE(edges.count({edge.second, edge.first}));
     }
-    // Loop's rule for 3 neighbours: alpha = (40 - (3 + 2 cos 120 degrees)^2) / 64 = 9/16 of their mean, which is -1/3
-    // of the corner; the corners' first level is therefore 1/4 of the corner.
+    // Loop's rule for 3 neighbours: alpha = (40 - (3 + 2 cos 120 degrees)^2) / 64 = 9/16 of their mean, which
+    // is -1/3 of the corner; the corners' first level is therefore 1/4 of the corner.
     loopSubdivide(once, 1);
     EXPECT_FLOAT_EQ(once.positions[0], 0.25f);
     // The UV of a new vertex is half-way along its edge.

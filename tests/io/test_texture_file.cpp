@@ -53,8 +53,8 @@ TEST_F(TextureFile, Ktx2) {
     io::writeLut(path("t.ktx2"), lut);
     const std::string bytes = read(path("t.ktx2"));
     EXPECT_EQ(bytes.substr(0, 12), std::string("\xABKTX 20\xBB\r\n\x1A\n", 12));
-    // VK_FORMAT_R16G16B16A16_SFLOAT, bytes of a component, width, height, faces, levels, the descriptor's place and its
-    // own length, the pairs behind it, bytes of texels.
+    // VK_FORMAT_R16G16B16A16_SFLOAT, bytes of a component, width, height, faces, levels, the descriptor's
+    // place and its own length, the pairs behind it, bytes of texels.
     const uint32_t length = word(bytes, 52), pairs = 104 + length;
     expectWords(bytes, {{12, 97},
                         {16, 2},
