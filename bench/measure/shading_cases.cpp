@@ -4,7 +4,7 @@
 
 #include "frames.h"
 #include "measure.h"
-#include "reference/shade_pixel.h"
+#include "reference/shade.h"
 
 namespace pellucid::bench {
 namespace {

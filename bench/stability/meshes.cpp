@@ -1,6 +1,5 @@
 // Curvature of meshes by each estimator and in each quantity, smoothing, normals, UV scale.
 #include "reference/curvature.h"
-#include "reference/curvature_quadric.h"
 #include "reference/surfaces.h"
 
 #include "stability.h"

@@ -1,5 +1,5 @@
 // Passes over neighbouring pixels: curvature from a G-buffer, blurred normals.
-#include "reference/screen.h"
+#include "reference/curvature.h"
 
 #include "stability.h"
 

@@ -5,7 +5,7 @@
 #include "lut/lut_cases.h"
 #include "mesh/mesh_fixture.h"
 #include "mesh/reference_meshes.h"
-#include "reference/screen.h"
+#include "reference/curvature.h"
 #include "shading/pass_scene.h"
 
 using namespace pellucid;

@@ -1,7 +1,7 @@
 // Bodies for scenes of scattering: a ball, a relief, heads and parts of them.
 #pragma once
-#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
@@ -27,59 +27,59 @@ inline Body ball(double radius, int rings) {
     return {"ball", sample::makeSphere(radius, rings, 2 * rings), {}};
 }
 
-// Walls and a floor for a square of (cells + 1)^2 vertices: without them light from below would come
-// through a body that has no thickness.
-inline void closeBelow(sample::Mesh& mesh, int cells, float floor) {
-    const auto top = [&](int k) {  // counter-clockwise round the square, seen from above
-        const int side = k / cells % 4, i = k % cells, n = cells + 1;
-        return uint32_t(side == 0   ? i
-                        : side == 1 ? i * n + cells
-                        : side == 2 ? cells * n + cells - i
-                                    : (cells - i) * n);
-    };
-    const Vec3 outward[] = {{0, -1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}};
-    const auto add = [&](uint32_t from, bool low, Vec3 normal) {
-        for (int c = 0; c < 3; ++c)
-            mesh.positions.push_back(low && c == 2 ? floor : mesh.positions[3 * size_t(from) + size_t(c)]);
-        for (double n : {normal.x, normal.y, normal.z}) mesh.normals.push_back(float(n));
-        return uint32_t(mesh.positions.size() / 3 - 1);
-    };
-    for (int k = 0; k < 4 * cells; ++k) {
-        const uint32_t a = top(k), b = top(k + 1);
-        const Vec3 n = outward[k / cells];
-        const uint32_t corners[] = {add(a, true, n), add(b, true, n), add(b, false, n), add(a, false, n)};
-        for (int i : {0, 1, 2, 0, 2, 3}) mesh.triangles.push_back(corners[i]);
-    }
-    const uint32_t a = add(top(0), true, {0, 0, -1}), b = add(top(cells), true, {0, 0, -1}),
-                   c = add(top(2 * cells), true, {0, 0, -1}), d = add(top(3 * cells), true, {0, 0, -1});
-    for (uint32_t v : {a, c, b, a, d, c}) mesh.triangles.push_back(v);
-}
-
-// A square of relief: a monkey saddle with a ridge and a pit in it, curved both ways at every scale down to 1
-// mm.
+// A square of relief with walls and a floor, without which light from below would come through it: a monkey
+// saddle with a ridge and a pit in it, curved both ways at every scale down to 1 mm.
 inline Body relief(int cells) {
     Body body{"relief", {}, {{0, 1, 0}, {0, 0, 1}}};
+    sample::Mesh& mesh = body.mesh;
     const double half = 15;
+    const float floor = -12;
     const auto height = [](double x, double y) {
         const double u = x / 12, v = y / 12;
         return 3 * (u * u * u - 3 * u * v * v) + 2.5 * std::exp(-(x - 4) * (x - 4) / 2.5) -
                3 * std::exp(-((x + 5) * (x + 5) + (y - 3) * (y - 3)) / 5);
     };
-    for (int j = 0; j <= cells; ++j)
-        for (int i = 0; i <= cells; ++i) {
-            const double x = half * (2.0 * i / cells - 1), y = half * (2.0 * j / cells - 1), e = 1e-4;
-            const Vec3 n = normalize(Vec3{-(height(x + e, y) - height(x - e, y)) / (2 * e),
-                                          -(height(x, y + e) - height(x, y - e)) / (2 * e), 1});
-            for (double p : {x, y, height(x, y)}) body.mesh.positions.push_back(float(p));
-            for (double p : {n.x, n.y, n.z}) body.mesh.normals.push_back(float(p));
-        }
+    const auto add = [&](Vec3 p, Vec3 n) {
+        for (double v : {p.x, p.y, p.z}) mesh.positions.push_back(float(v));
+        for (double v : {n.x, n.y, n.z}) mesh.normals.push_back(float(v));
+        return uint32_t(mesh.positions.size() / 3 - 1);
+    };
+    const auto quad = [&](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+        for (uint32_t v : {a, b, c, a, c, d}) mesh.triangles.push_back(v);
+    };
+    const int n = cells + 1;
+    for (int k = 0; k < n * n; ++k) {
+        const double x = half * (2.0 * (k % n) / cells - 1), y = half * (2.0 * (k / n) / cells - 1), e = 1e-4;
+        add({x, y, height(x, y)}, normalize(Vec3{-(height(x + e, y) - height(x - e, y)) / (2 * e),
+                                                 -(height(x, y + e) - height(x, y - e)) / (2 * e), 1}));
+    }
     for (int j = 0; j < cells; ++j)
         for (int i = 0; i < cells; ++i) {
-            const uint32_t a = uint32_t(j * (cells + 1) + i), b = a + uint32_t(cells) + 1;
-            for (uint32_t v : {a, a + 1, b, b, a + 1, b + 1}) body.mesh.triangles.push_back(v);
+            const auto a = uint32_t(j * n + i), b = a + uint32_t(n);
+            quad(b, a, a + 1, b + 1);
         }
-    closeBelow(body.mesh, cells, -12);
+    const auto rim = [&](int k, bool low, Vec3 normal) {  // counter-clockwise round the square, from above
+        const int side = k / cells % 4, i = k % cells;
+        const int v = side == 0 ? i : side == 1 ? i * n + cells : side == 2 ? n * n - 1 - i : (cells - i) * n;
+        const float* p = &mesh.positions[3 * size_t(v)];
+        return add({p[0], p[1], low ? floor : p[2]}, normal);
+    };
+    const Vec3 outward[] = {{0, -1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}}, down{0, 0, -1};
+    for (int k = 0; k < 4 * cells; ++k) {
+        const Vec3 out = outward[k / cells];
+        const uint32_t a = rim(k, true, out), b = rim(k + 1, true, out), c = rim(k + 1, false, out);
+        quad(a, b, c, rim(k, false, out));
+    }
+    const uint32_t a = rim(0, true, down), b = rim(cells, true, down), c = rim(2 * cells, true, down);
+    quad(a, rim(3 * cells, true, down), c, b);
     return body;
+}
+
+// Where the files of heads are.
+inline std::string headFile(const std::string& name) {
+    const char* folder = std::getenv("PELLUCID_HEADS_DIR");
+    return (folder ? std::string(folder) : std::string(PELLUCID_SOURCE_DIR) + "/data/heads") + "/" + name +
+           ".obj";
 }
 
 // One of data/heads, subdivided: skin is material 1, all else only throws shadows (2).

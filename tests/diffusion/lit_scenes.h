@@ -1,16 +1,11 @@
 // Bodies under one hard light, with what light does on them: the scenes by which methods of scattering are
 // measured.
 #pragma once
-#include <algorithm>
-#include <cmath>
-#include <functional>
 #include <memory>
 #include <numbers>
-#include <pellucid/pellucid.hpp>
-#include <string>
-#include <vector>
 
 #include "diffusion/lit_bodies.h"
+#include "diffusion/scatter_scene.h"
 #include "io/image/image_compare.h"
 #include "sample/gbuffer.h"
 #include "sample/lit_mesh.h"
@@ -96,13 +91,14 @@ class Stage {
         std::vector<size_t> where;
         s.covered.resize(pixels);
         std::vector<float> toLight(3 * pixels), visible(pixels);
+        const float direction[] = {float(s.toLight.x), float(s.toLight.y), float(s.toLight.z)};
         s.positions.resize(3 * pixels), s.normals.resize(3 * pixels), s.irradiance.resize(3 * pixels);
         for (size_t i = 0; i < pixels; ++i) {
             s.covered[i] = s.gbuffer.material[i] == 1;
             for (int c = 0; c < 3; ++c) {
                 s.positions[3 * i + c] = s.gbuffer.position.plane(c)[i];
                 s.normals[3 * i + c] = s.gbuffer.geometricNormal.plane(c)[i];
-                toLight[3 * i + c] = float(c == 0 ? s.toLight.x : c == 1 ? s.toLight.y : s.toLight.z);
+                toLight[3 * i + c] = direction[c];
             }
             if (!s.covered[i]) continue;
             const float* p = &s.positions[3 * i];
@@ -198,11 +194,6 @@ inline LitScene inUnit(LitScene s, double unit) {
     return s;
 }
 
-// A way to shade a scene: RGB per pixel, for an albedo of 1. `seconds`, if not NULL, is what it takes beyond
-// plain lighting.
-using Method = std::function<std::vector<float>(const Device&, const LitScene&, const Profile&,
-                                                double profileScale, double* seconds)>;
-
 struct ShadeRequest {
     PelScattering scattering = PEL_SCATTERING_AUTO;
     uint32_t scatterTaps = 0;
@@ -214,19 +205,41 @@ struct ShadeRequest {
     int repeats = 7;         // of what is timed
 };
 
-// By the shader, all else at its default, shadows from the map.
+inline scatter_scene::Picture pictureOf(const LitScene& s) {
+    scatter_scene::Picture p(uint32_t(s.width), uint32_t(s.height));
+    p.positions = s.positions, p.irradiance = s.irradiance;
+    p.ids.assign(s.gbuffer.material.begin(), s.gbuffer.material.end());
+    return p;
+}
+
+inline scatter_scene::Lamp lampOf(const LitScene& s) {
+    scatter_scene::Lamp lamp;
+    const double direction[] = {s.toLight.x, s.toLight.y, s.toLight.z};
+    std::copy_n(direction, 3, lamp.light.toLight);
+    std::ranges::copy(s.map.worldToUvz.toFloats(), lamp.light.worldToShadow);
+    lamp.light.shadowDepthRange = float(s.map.depthRange);
+    lamp.maps = {s.map.depth};
+    lamp.width = lamp.height = uint32_t(s.map.size);
+    return lamp;
+}
+
+// By the shader for an albedo of 1, all else at its default, shadows from the map. No gain of curved bodies:
+// the surface integral has no volume. `seconds`, if not NULL: the median time of `repeats` frames.
 inline std::vector<float> shade(const Device& device, const LitScene& s, const Profile& profile,
                                 double profileScale, double* seconds, const ShadeRequest& request) {
     const uint32_t tableSize = request.tableSize;
     const auto radius = float(profile.info().radius * profileScale / s.unit);
-    PelMaterial material = pelMaterialDefaults();
-    std::fill(material.albedo, material.albedo + 3, 1.0f);
-    material.profile = profile.get();
-    material.scattering = request.scattering;
-    material.scatterTaps = request.scatterTaps;
-    material.curvatureGain = 0;  // held to the surface integral, which has no volume
-    if (profileScale != 1) material.diffusionRadius = radius;
-    pellucid::Lut curvatureLut, shadowLut;
+    scatter_scene::Frame f(pictureOf(s), request.scattering);
+    f.profile = profile;
+    f.giveIrradiance = request.traced;
+    f.images[PEL_SLOT_NORMAL_SHADING] = f.images[PEL_SLOT_NORMAL_GEOMETRIC] = s.normals;
+    if (request.curvature) f.images[PEL_SLOT_CURVATURE] = s.gbuffer.curvature.data;
+    f.options.millimetresPerUnit = float(s.unit);
+    f.options.targetError = request.targetError;
+    f.lamps = {lampOf(s)};
+    f.lamps[0].light.shadowFilterTexels = 64;
+    f.material.scatterTaps = request.scatterTaps;
+    if (profileScale != 1) f.material.diffusionRadius = radius;
     if (tableSize) {
         PelCurvatureLutDesc curvatureDesc = pelCurvatureLutDescFaceWorks();
         PelShadowLutDesc shadowDesc = pelShadowLutDescFaceWorks();
@@ -234,70 +247,27 @@ inline std::vector<float> shade(const Device& device, const LitScene& s, const P
         curvatureDesc.width = curvatureDesc.height = shadowDesc.width = shadowDesc.height = tableSize;
         curvatureDesc.form = request.faceworks ? PEL_FORM_ARC : PEL_FORM_SPHERE;
         shadowDesc.closedEnds = !request.faceworks;
-        if (request.faceworks) material.shadowFilterWidth = float(8 / s.unit);
+        if (request.faceworks) f.material.shadowFilterWidth = float(8 / s.unit);
         curvatureDesc.diffusionRadius = shadowDesc.diffusionRadius = radius;
         for (float* v :
              {&curvatureDesc.radiusMin, &curvatureDesc.radiusMax, &shadowDesc.widthMin, &shadowDesc.widthMax})
             *v /= float(s.unit);
-        curvatureLut = pellucid::Lut(device, curvatureDesc);
-        shadowLut = pellucid::Lut(device, shadowDesc);
+        f.curvatureLut = pellucid::Lut(device, curvatureDesc);
+        f.shadowLut = pellucid::Lut(device, shadowDesc);
     }
-    PelShaderOptions options = pelShaderOptionsDefaults();
-    options.millimetresPerUnit = float(s.unit);
-    options.targetError = request.targetError;
-    PelLight light = pelLightDefaults();
-    const double direction[3] = {s.toLight.x, s.toLight.y, s.toLight.z};
-    for (int c = 0; c < 3; ++c) light.toLight[c] = float(direction[c]);
-    std::ranges::copy(s.map.worldToUvz.toFloats(), light.worldToShadow);
-    light.shadowDepthRange = float(s.map.depthRange);
-    light.shadowFilterTexels = 64;
-    pellucid::Shader shader(device);
-    shader.set(options);
-    const auto w = uint32_t(s.width), h = uint32_t(s.height);
-    const Buffer positions(device, s.positions), normals(device, s.normals),
-        curvature(device, s.gbuffer.curvature.data), ids(device, s.gbuffer.material),
-        map(device, s.map.depth), irradiance(device, s.irradiance),
-        radiance(device, s.positions.size() * sizeof(float));
-    shader.set(PEL_SLOT_POSITION, imageDesc(positions, PEL_FORMAT_RGB32F, w, h));
-    shader.set(PEL_SLOT_NORMAL_SHADING, imageDesc(normals, PEL_FORMAT_RGB32F, w, h));
-    shader.set(PEL_SLOT_NORMAL_GEOMETRIC, imageDesc(normals, PEL_FORMAT_RGB32F, w, h));
-    if (request.curvature) shader.set(PEL_SLOT_CURVATURE, imageDesc(curvature, PEL_FORMAT_R32F, w, h));
-    if (request.traced) shader.set(PEL_SLOT_IRRADIANCE, imageDesc(irradiance, PEL_FORMAT_RGB32F, w, h));
-    shader.set(PEL_SLOT_MATERIAL, imageDesc(ids, PEL_FORMAT_R32_UINT, w, h));
-    shader.set(PEL_SLOT_RADIANCE, imageDesc(radiance, PEL_FORMAT_RGB32F, w, h));
-    shader.setMaterial(1, material, curvatureLut, shadowLut);
-    shader.set(std::vector<PelLight>{light});
-    shader.set(0, PEL_LIGHT_SHADOW_MAP,
-               imageDesc(map, PEL_FORMAT_R32F, uint32_t(s.map.size), uint32_t(s.map.size)));
-    shader.commit();
-    shader.execute();
+    scatter_scene::ShownImages shown(device, uint32_t(s.width), uint32_t(s.height));
+    std::vector<float> picture = f.shade(shown).light;
     if (seconds) {
         std::vector<double> times;
         for (int i = 0; i < request.repeats; ++i) {
-            shader.execute();
-            times.push_back(shader.stats().deviceMilliseconds * 1e-3);
+            shown.shader.execute();
+            times.push_back(shown.shader.stats().deviceMilliseconds * 1e-3);
         }
         const auto middle = times.begin() + request.repeats / 2;
         std::nth_element(times.begin(), middle, times.end());
         *seconds = *middle;
     }
-    return radiance.readAll<float>();
-}
-
-// The pre-integrated method, its wide shadow filtered from the map.
-inline std::vector<float> shadePreintegrated(const Device& device, const LitScene& s, const Profile& profile,
-                                             double profileScale, double* seconds, uint32_t tableSize = 0) {
-    ShadeRequest request;
-    request.scattering = PEL_SCATTERING_PREINTEGRATED;
-    request.tableSize = tableSize;
-    return shade(device, s, profile, profileScale, seconds, request);
-}
-
-// Irradiance as it is: no scattering, and shadows traced by ray.
-inline std::vector<float> shadeLambert(const Device&, const LitScene& s, const Profile&, double,
-                                       double* seconds) {
-    if (seconds) *seconds = 0;
-    return s.irradiance;
+    return picture;
 }
 
 }  // namespace lit_scenes

@@ -1,23 +1,19 @@
 // Pictures with the shadow map of their light and the surface integral over them: computed by brute force
 // elsewhere (a head), or in closed form (a ball).
 #pragma once
-#include <algorithm>
-#include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <pellucid/pellucid.hpp>
 
-#include "diffusion/shown_images.h"
+#include "diffusion/scatter_scene.h"
+#include "half_bits.h"
 #include "io/image/image_file.h"
-#include "reference/lut.h"
-#include "reference/profile.h"
 
 namespace reference_scenes {
 
 using pellucid::Buffer;
 using pellucid::Device;
 using pellucid::Profile;
+using scatter_scene::Shown;
 
 constexpr double albedo = 0.8;  // of the pictures that errors are in
 
@@ -43,14 +39,10 @@ inline Profile profile() {
     return Profile::burley(meanFreePath, white);
 }
 
-inline nlohmann::json readJson(const std::string& path) {
-    std::ifstream file(path);
-    return nlohmann::json::parse(file);
-}
-
 // Depths are lengths along the light.
 inline void addMap(ReferenceScene& r, const std::string& base) {
-    const nlohmann::json json = readJson(base + ".json");
+    std::ifstream file(base + ".json");
+    const nlohmann::json json = nlohmann::json::parse(file);
     const pellucid::io::Image image = pellucid::io::readImage(base + "_shadowmap.exr");
     r.mapSide = uint32_t(image.width);
     r.map = image.channel("ViewLayer.Depth.Z").pixels;
@@ -66,19 +58,14 @@ inline void addMap(ReferenceScene& r, const std::string& base) {
     for (int k = 0; k < 3; ++k) r.light.toLight[k] = float(json["light"]["direction_towards_light_world"][k]);
 }
 
+// The last so many of a file.
 inline std::vector<float> readHalves(const std::string& path, size_t count) {
     std::ifstream file(path, std::ios::binary);
-    std::vector<char> bytes((std::istreambuf_iterator<char>(file)), {});
-    std::vector<float> values(count);
-    const char* from = bytes.data() + bytes.size() - 2 * count;
-    for (size_t i = 0; i < count; ++i) {
-        uint16_t h;
-        std::memcpy(&h, from + 2 * i, 2);
-        const int exponent = h >> 10 & 31, mantissa = h & 1023;
-        const double v =
-            exponent ? std::ldexp(1 + mantissa / 1024.0, exponent - 15) : std::ldexp(mantissa, -24);
-        values[i] = float(h >> 15 ? -v : v);
-    }
+    std::vector<uint16_t> halves(count);
+    file.seekg(-std::streamoff(2 * count), std::ios::end);
+    file.read(reinterpret_cast<char*>(halves.data()), std::streamsize(2 * count));
+    std::vector<float> values;
+    for (uint16_t h : halves) values.push_back(fromHalf(h));
     return values;
 }
 
@@ -127,52 +114,37 @@ inline ReferenceScene ball(const std::string& gbuffers) {
     r.camera = 10;
     r.curvature = 1;
     addMap(r, gbuffers + "/sphere10_side");
-    const auto exact =
-        reference::burleyProfile({meanFreePath[0], meanFreePath[1], meanFreePath[2]}, {0.8, 0.8, 0.8});
-    std::vector<reference::Rgb> curve;  // over N.L from -1 to 1
-    const int steps = 200;
-    for (int k = 0; k <= steps; ++k)
-        curve.push_back(reference::curvatureD(reference::Form::sphere, *exact, -1 + 2.0 * k / steps, 10));
+    const auto light = scatter_scene::lightOnBall(
+        *reference::burleyProfile({meanFreePath[0], meanFreePath[1], meanFreePath[2]}, {0.8, 0.8, 0.8}));
     for (size_t i = 0; i < r.ids.size(); ++i) {
         double cosine = 0;
         for (int c = 0; c < 3; ++c) cosine += double(r.positions[3 * i + c]) * r.light.toLight[c];
-        const double u = std::clamp((cosine + 1) / 2 * steps, 0.0, steps - 1e-9);
-        const reference::Rgb s = mix(curve[size_t(u)], curve[size_t(u) + 1], u - std::floor(u));
         for (int c = 0; c < 3; ++c) {
             r.irradiance.push_back(r.ids[i] ? float(std::max(0.0, cosine)) : 0.0f);
-            r.truth.push_back(r.ids[i] ? float(s[c]) : 0.0f);
+            r.truth.push_back(r.ids[i] ? float(light(cosine)[c]) : 0.0f);
         }
     }
     return r;
 }
 
-struct Shown {
-    std::vector<float> light;  // scattered irradiance
-    PelShaderStats stats;
-    double milliseconds;
-};
-
 // By the shader, at an albedo of 1. `given`: with the irradiance of the scene, else with shadows from the
 // map. `taps`: PelMaterial.scatterTaps.
 inline Shown shade(const Device& device, const ReferenceScene& r, PelScattering scattering, bool given,
                    bool withMap = true, uint32_t taps = 0) {
-    scatter_scene::ShownImages shown(device, r.side, r.side);
-    PelShaderOptions options = pelShaderOptionsDefaults();
-    options.millimetresPerUnit = 10;
-    options.countPixels = 1;
-    shown.shader.set(options);
-    shown.set(PEL_SLOT_POSITION, r.positions);
-    shown.set(PEL_SLOT_NORMAL_SHADING, r.normals);
-    if (r.curvature > 0) shown.set(PEL_SLOT_CURVATURE, std::vector<float>(r.ids.size(), r.curvature));
-    if (given) shown.set(PEL_SLOT_IRRADIANCE, r.irradiance);
-    shown.set(PEL_SLOT_MATERIAL, r.ids);
-    const Profile skin = profile();
-    PelMaterial material = scatter_scene::whiteMaterial(skin, scattering);
-    material.specular = 0;
-    material.curvatureGain = r.gain;
-    material.scatterTaps = taps;
-    if (r.profileScale != 1) material.diffusionRadius = float(skin.info().radius) * r.profileScale / 10;
-    shown.shader.setMaterial(1, material);
+    scatter_scene::ShownImages shown(device, 1, 1);
+    scatter_scene::Picture p(r.side, r.side);
+    p.positions = r.positions, p.irradiance = r.irradiance, p.ids = r.ids;
+    scatter_scene::Frame f(p, scattering);
+    f.options.millimetresPerUnit = 10;
+    f.options.countPixels = 1;
+    f.images[PEL_SLOT_NORMAL_SHADING] = r.normals;
+    if (r.curvature > 0) f.images[PEL_SLOT_CURVATURE].assign(r.ids.size(), r.curvature);
+    f.giveIrradiance = given;
+    f.profile = profile();
+    f.material.curvatureGain = r.gain;
+    f.material.scatterTaps = taps;
+    if (r.profileScale != 1)
+        f.material.diffusionRadius = float(f.profile.info().radius) * r.profileScale / 10;
     // Of clip = (x, z, y + camera - 1, y + camera): only where the camera stands matters.
     PelCamera camera = pelCameraDefaults();
     std::fill_n(camera.inverseViewProjection, 16, 0.0f);
@@ -180,20 +152,14 @@ inline Shown shade(const Device& device, const ReferenceScene& r, PelScattering 
     camera.inverseViewProjection[0] = camera.inverseViewProjection[9] = camera.inverseViewProjection[14] = 1;
     camera.inverseViewProjection[6] = -r.camera;
     shown.shader.set(camera);
-    PelLight light = r.light;
-    std::fill_n(light.color, 3, 1.0f);
-    shown.shader.set(std::vector<PelLight>{light});
-    if (withMap) shown.setMap(PEL_LIGHT_SHADOW_MAP, r.map, r.mapSide, r.mapSide);
-    shown.execute();
-    std::vector<float> result = shown.execute();
-    const PelShaderStats stats = shown.shader.stats();
-    return {std::move(result), stats, stats.deviceMilliseconds};
+    f.lamps = {{r.light, {}, r.mapSide, r.mapSide}};
+    std::fill_n(f.lamps[0].light.color, 3, 1.0f);
+    if (withMap) f.lamps[0].maps = {r.map};
+    return f.shade(shown);
 }
 
 // Root mean square per channel over pixels of the reference that are wholly covered, in 1e-4 of radiance.
-// `unlit`: of those without light.
-inline std::array<double, 3> error(const ReferenceScene& r, const std::vector<float>& result,
-                                   bool unlit = false) {
+inline std::array<double, 3> error(const ReferenceScene& r, const std::vector<float>& result) {
     std::array<double, 3> sum{};
     size_t count = 0;
     const size_t k = r.samples, coarse = r.side / k;
@@ -203,7 +169,7 @@ inline std::array<double, 3> error(const ReferenceScene& r, const std::vector<fl
             bool covered = true;
             for (size_t j = 0; j < k * k; ++j) {
                 const size_t i = (k * y + j / k) * r.side + k * x + j % k;
-                covered &= r.ids[i] != 0 && !(unlit && r.irradiance[3 * i] > 0);
+                covered &= r.ids[i] != 0;
                 for (int c = 0; c < 3; ++c)
                     mean[c] += (result[3 * i + c] - r.truth[3 * i + c]) / double(k * k);
             }

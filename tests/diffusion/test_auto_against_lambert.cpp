@@ -18,36 +18,16 @@ using namespace lit_scenes;
 
 struct Contender {
     const char* name;
-    Method shade;
     bool tested;
+    ShadeRequest how;
 };
 
 const Contender contenders[] = {
-    {"lambert", shadeLambert, true},
-    {"preintegrated",
-     [](const Device& d, const LitScene& s, const Profile& p, double k, double* t) {
-         return shadePreintegrated(d, s, p, k, t);
-     },
-     false},
-    {"none",
-     [](const Device& d, const LitScene& s, const Profile& p, double k, double* t) {
-         ShadeRequest request;
-         request.scattering = PEL_SCATTERING_NONE;
-         return shade(d, s, p, k, t, request);
-     },
-     false},
-    {"auto, traced",
-     [](const Device& d, const LitScene& s, const Profile& p, double k, double* t) {
-         ShadeRequest request;
-         request.traced = true;
-         return shade(d, s, p, k, t, request);
-     },
-     true},
-    {"auto",
-     [](const Device& d, const LitScene& s, const Profile& p, double k, double* t) {
-         return shade(d, s, p, k, t, {});
-     },
-     true},
+    {"lambert", true, {}},  // irradiance as it is: no scattering, and shadows traced by ray
+    {"preintegrated", false, {.scattering = PEL_SCATTERING_PREINTEGRATED}},
+    {"none", false, {.scattering = PEL_SCATTERING_NONE}},
+    {"auto, traced", true, {.traced = true}},
+    {"auto", true, {}},
 };
 
 // Where a method is further from light than Lambert, measured, in 1e-4 of white: red, green, blue; 0: it is
@@ -79,7 +59,8 @@ io::ImageDifference within(const LitScene& s, const std::vector<float>& picture,
 void compare(const LitScene& s, const Profile& profile, const std::string& where) {
     const Device device("");
     for (const Contender& c : contenders) {
-        const std::vector<float> picture = c.shade(device, s, profile, 1, nullptr);
+        const std::vector<float> picture =
+            &c == contenders ? s.irradiance : shade(device, s, profile, 1, nullptr, c.how);
         for (const auto& [name, part] : parts) {
             const io::ImageDifference lambert = within(s, s.irradiance, part), own = within(s, picture, part);
             if (lambert.pixels == 0) continue;
@@ -101,12 +82,6 @@ struct Light {
     double azimuth, elevation;
 };
 constexpr Light lights[] = {{"side", 80, 20}, {"behind", 150, 15}};
-
-std::string headFile(const char* name) {
-    const char* folder = std::getenv("PELLUCID_HEADS_DIR");
-    return (folder ? std::string(folder) : std::string(PELLUCID_SOURCE_DIR) + "/data/heads") + "/" + name +
-           ".obj";
-}
 
 void compareBody(const Body& body, int size, double fill = 0.94) {
     const Device device("");
@@ -131,7 +106,7 @@ void compareBody(const Body& body, int size, double fill = 0.94) {
 const Body& wholeHead(const char* name) {
     static std::map<std::string, Body> known;
     Body& body = known[name];
-    if (body.name.empty()) body = head(headFile((std::string("head_") + name).c_str()), name, sized(2, 0));
+    if (body.name.empty()) body = head(headFile(std::string("head_") + name), name, sized(2, 0));
     return body;
 }
 

@@ -1,11 +1,8 @@
 // Methods against the surface integral of reference scenes (docs/mathematics.md, section 9).
 #include <gtest/gtest.h>
 
-#include <array>
-
 #include "diffusion/lit_scenes.h"
 #include "diffusion/reference_scenes.h"
-#include "test_size.h"
 #include "tolerances.h"
 
 using namespace reference_scenes;
@@ -16,10 +13,6 @@ using Errors = std::array<double, 3>;
 
 void print(const char* what, const Errors& e, double milliseconds = 0) {
     std::printf("%-28s 1e-4: %6.1f %6.1f %6.1f   %.1f ms\n", what, e[0], e[1], e[2], milliseconds);
-}
-
-const char* folder(const char* name) {
-    return std::getenv(name);
 }
 
 // A method on a scene, and its largest error.
@@ -44,7 +37,7 @@ std::vector<Errors> compare(const char* scene, const ReferenceScene& r, const st
     for (const Case& c : cases) {
         const Shown shown = shade(device, r, c.method, c.given, c.map, c.taps);
         all.push_back(error(r, shown.light));
-        print(c.name, all.back(), shown.milliseconds);
+        print(c.name, all.back(), shown.stats.deviceMilliseconds);
         for (size_t k = 0; k < 3; ++k) EXPECT_LT(all.back()[k], c.most[k]) << scene << ", " << c.name;
         if (!c.taps && c.given && c.method == PEL_SCATTERING_AUTO) {
             for (size_t k = 0; k < 3; ++k) EXPECT_LT(all.back()[k], lambert[k]) << scene << ", " << c.name;
@@ -61,7 +54,8 @@ constexpr PelScattering byAuto = PEL_SCATTERING_AUTO, byLight = PEL_SCATTERING_L
 // Taps are as near as those of other people's prototypes. Where shadows come from the map alone, blue,
 // which scatters less far than a texel is wide, is wrong at the map's edges.
 TEST(ReferenceScenes, Head) {
-    const char *references = folder("PELLUCID_RULER_DIR"), *gbuffers = folder("PELLUCID_GBUFFER_DIR");
+    const char *references = std::getenv("PELLUCID_RULER_DIR"),
+               *gbuffers = std::getenv("PELLUCID_GBUFFER_DIR");
     if (!references || !gbuffers)
         GTEST_SKIP() << "PELLUCID_RULER_DIR or PELLUCID_GBUFFER_DIR is not set: no data";
     const ReferenceScene usual = head1536(references, gbuffers), wide = headTimesFour(references, gbuffers);
@@ -96,7 +90,7 @@ TEST(ReferenceScenes, Head) {
 }
 
 TEST(ReferenceScenes, Ball) {
-    const char* gbuffers = folder("PELLUCID_GBUFFER_DIR");
+    const char* gbuffers = std::getenv("PELLUCID_GBUFFER_DIR");
     if (!gbuffers) GTEST_SKIP() << "PELLUCID_GBUFFER_DIR is not set: no G-buffer";
     compare("ball", ball(gbuffers),
             {{"auto and map", byAuto, 0, true, true, valuesOf(tolerance::lightBall)},
@@ -107,9 +101,7 @@ TEST(ReferenceScenes, Ball) {
 TEST(ReferenceScenes, EarFromBehind) {
     namespace lit = lit_scenes;
     const Device device("");
-    const char* data = folder("PELLUCID_HEADS_DIR");
-    const std::string heads = data ? data : std::string(PELLUCID_SOURCE_DIR) + "/data/heads";
-    const lit::Body whole = lit::head(heads + "/head_male.obj", "male", sized(2, 0));
+    const lit::Body whole = lit::head(lit::headFile("head_male"), "male", sized(2, 0));
     const lit::Body ear = lit::closeUp(
         whole, "ear", [](lit::Vec3 p) { return p.x; }, 80);
     lit::SceneRequest request;
@@ -118,33 +110,30 @@ TEST(ReferenceScenes, EarFromBehind) {
     request.size = sized(192, 16);
     request.mapSize = sized(2048, 64);
     const lit::LitScene s = lit::make(device, ear, request, profile());
+    std::vector<uint8_t> unlit(s.covered.size());
+    for (size_t i = 0; i < unlit.size(); ++i)
+        unlit[i] = s.covered[i] && (s.subsets[i] & lit::io::SUBSET_UNLIT);
     const auto rms = [&](const std::vector<float>& picture) {
-        Errors sum{};
-        size_t count = 0;
-        for (size_t i = 0; i < s.covered.size(); ++i) {
-            if (!s.covered[i] || !(s.subsets[i] & lit::io::SUBSET_UNLIT)) continue;
-            ++count;
-            for (int c = 0; c < 3; ++c) sum[c] += std::pow(picture[3 * i + c] - s.truth[3 * i + c], 2);
-        }
-        for (double& v : sum) v = 1e4 * albedo * std::sqrt(v / double(std::max<size_t>(count, 1)));
-        return sum;
+        Errors e = lit::io::compareImages(picture, s.truth, unlit).rmse;
+        for (double& v : e) v *= 1e4 * albedo;
+        return e;
     };
-    const Errors lambert = rms(s.irradiance);
-    print("Lambert", lambert);
-    for (PelScattering scattering : {PEL_SCATTERING_AUTO, PEL_SCATTERING_LIGHT}) {
+    print("Lambert", rms(s.irradiance));
+    Errors byTraced{};
+    for (const auto& [name, scattering, traced] : {std::tuple{"auto and map", byAuto, true},
+                                                   {"light", byLight, true},
+                                                   {"auto, irradiance of the map", byAuto, false}}) {
         lit::ShadeRequest way;
         way.scattering = scattering;
-        way.traced = true;
+        way.traced = traced;
         const Errors e = rms(lit::shade(device, s, profile(), 1, nullptr, way));
-        print(scattering == PEL_SCATTERING_AUTO ? "auto and map" : "light", e);
+        print(name, e);
         if (testsAreSmall()) continue;
-        for (int c = 0; c < 3; ++c)
-            EXPECT_LT(e[c], scattering == PEL_SCATTERING_LIGHT ? tolerance::lightEarOfLight[c]
-                                                               : tolerance::lightEar[c]);
-        if (scattering != PEL_SCATTERING_AUTO) continue;
-        way.traced = false;
-        const Errors byMap = rms(lit::shade(device, s, profile(), 1, nullptr, way));
-        print("auto, irradiance of the map", byMap);
-        for (int c = 0; c < 3; ++c) EXPECT_LT(byMap[c], 1.25 * e[c] + 2);
+        if (traced && scattering == byAuto) byTraced = e;
+        for (size_t c = 0; c < 3; ++c)
+            EXPECT_LT(e[c], !traced                 ? 1.25 * byTraced[c] + 2
+                            : scattering == byLight ? double(tolerance::lightEarOfLight[c])
+                                                    : double(tolerance::lightEar[c]))
+                << name;
     }
 }

@@ -1,18 +1,15 @@
 // Bad and extreme input, through the shader, for every method: a finite result that is documented, or an
-// error that says what is wrong.
+// error that says what is wrong. And what the controls of scattering accept.
 #include <gtest/gtest.h>
-
-#include <functional>
 
 #include "diffusion/lit_ball.h"
 #include "tolerances.h"
 
 using namespace lit_ball;
+using pellucid::Shader;
+using pellucid::TextureScatter;
 
 namespace {
-
-constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 struct Way {
     const char* name;
@@ -30,67 +27,50 @@ constexpr Way ways[] = {{"pre-integrated", PEL_SCATTERING_PREINTEGRATED, 0, fals
 
 constexpr uint32_t texels = 8;  // along a side of the scattered texture
 
-struct Frame {
-    Picture picture;
-    LitBall ball;
-    std::vector<float> normals, texture;
-    float radius = 0.4f;  // of the profile; the ball has 2
-    uint32_t materials = 1;
+// A ball of 2 mm under a light with its map, by a narrow skin.
+Frame frame(uint32_t side, uint32_t mapSide = 64) {
+    Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{1, 0.2, 0.3}), mapSide)}, side,
+                      PEL_SCATTERING_AUTO, 0.4f);
+    f.options.targetError = 1e-4f;
+    return f;
+}
 
-    explicit Frame(uint32_t side, uint32_t mapSide = 64)
-        : picture(side, side), ball(makeBall(Form::parallel, normalized(Vec3{1, 0.2, 0.3}), mapSide)) {
-        picture = pictureOf(ball, side);
-        normals = picture.positions;
-        for (float& n : normals) n /= float(lit_ball::radius);
-        texture.assign(3 * texels * texels, 0.5f);
-    }
-    Frame(Picture p, uint32_t mapSide) : Frame(4, mapSide) {
-        picture = std::move(p);
-        normals.assign(picture.positions.size(), 0.0f);
-        for (size_t i = 0; i < picture.pixels(); ++i) normals[3 * i + 2] = 1;
-    }
+// Another picture under the same light.
+Frame frame(const Picture& p, uint32_t mapSide) {
+    Frame f(p, PEL_SCATTERING_AUTO), like = frame(4, mapSide);
+    f.lamps = like.lamps, f.options = like.options;
+    f.material.diffusionRadius = 0.4f;
+    return f;
+}
 
-    Lit shade(const Way& way) const {
-        const Picture& p = picture;
-        ShownImages images(device(), p.width, p.height);
-        PelShaderOptions options = pelShaderOptionsDefaults();
-        options.targetError = 1e-4f;
-        images.shader.set(options);
-        images.set(PEL_SLOT_POSITION, p.positions);
-        images.set(PEL_SLOT_NORMAL_SHADING, normals);
-        if (way.gathers) images.set(PEL_SLOT_IRRADIANCE, p.irradiance);
-        images.set(PEL_SLOT_MATERIAL, p.ids);
-        std::vector<float> uvs, curvature(p.pixels(), 0.5f);
-        for (size_t i = 0; i < p.pixels(); ++i) uvs.insert(uvs.end(), {float(i % 7) / 7, float(i % 5) / 5});
-        images.set(PEL_SLOT_CURVATURE, curvature);
-        if (way.scattering == PEL_SCATTERING_TEXTURE) images.set(PEL_SLOT_UV, uvs);
-        const Profile skin = Profile::skin();
-        PelMaterial material = whiteMaterial(skin, way.scattering);
-        material.scatterTaps = way.taps;
-        material.diffusionRadius = radius;
-        material.specular = 0;
-        const Buffer light(device(), texture);
-        for (uint32_t id = 1; id <= materials; ++id) {
-            images.shader.setMaterial(id, material);
-            if (way.scattering == PEL_SCATTERING_TEXTURE)
-                images.shader.setScatteredTexture(
-                    id, pellucid::imageDesc(light, PEL_FORMAT_RGB32F, texels, texels));
-        }
-        images.shader.set(std::vector<PelLight>{ball.light});
-        if (!ball.maps.empty()) images.setMap(PEL_LIGHT_SHADOW_MAP, ball.maps[0], ball.width, ball.height);
-        std::vector<float> result = images.execute();
-        return {std::move(result), images.shader.stats(), images.shader.warnings()};
+Shown shade(Frame f, const Way& way) {
+    f.material.scattering = way.scattering;
+    f.material.scatterTaps = way.taps;
+    f.giveIrradiance = way.gathers;
+    const size_t pixels = f.picture.pixels();
+    f.images[PEL_SLOT_CURVATURE].assign(pixels, 0.5f);
+    if (way.scattering == PEL_SCATTERING_TEXTURE) {
+        std::vector<float>& uvs = f.images[PEL_SLOT_UV];
+        for (size_t i = 0; i < pixels; ++i) uvs.insert(uvs.end(), {float(i % 7) / 7, float(i % 5) / 5});
+        if (f.texture.empty()) f.texture.assign(3 * texels * texels, 0.5f);
     }
-};
+    return f.shade();
+}
 
-std::string errorOf(const std::function<void()>& call) {
+// The message of what `call` throws; "" if it throws nothing.
+std::string errorOf(const std::function<void()>& call, PelError code = PEL_ERROR_INVALID_ARGUMENT) {
     try {
         call();
     } catch (const pellucid::Error& e) {
-        EXPECT_EQ(e.code(), PEL_ERROR_INVALID_ARGUMENT) << e.what();
+        EXPECT_EQ(e.code(), code) << e.what();
         return e.what();
     }
     return "";
+}
+void expectError(const std::string& part, const std::function<void()>& call,
+                 PelError code = PEL_ERROR_INVALID_ARGUMENT) {
+    const std::string error = errorOf(call, code);
+    EXPECT_TRUE(!error.empty() && error.find(part) != std::string::npos) << part << ": " << error;
 }
 
 void expectLight(const std::vector<float>& light, float most, const std::string& where) {
@@ -103,39 +83,36 @@ void expectLight(const std::vector<float>& light, float most, const std::string&
 // A pixel without a number in its light or normal is counted and black; its neighbours miss its light, and
 // beyond the profile's reach nothing changes.
 TEST(ScatterBadInput, NoNumberSpreadsNoFurtherThanTheProfile) {
-    const Frame clean(sized(64u, 24u));
+    const Frame clean = frame(sized(64u, 24u));
     const Picture& p = clean.picture;
     const double reach = reference::scatterReach(*reference::skinProfile()) * 0.4 / 2.7;
-    const uint32_t side = p.width;
-    const size_t bad = p.at(side * 5 / 8, side / 2);
-    for (const Way& way : ways)
-        for (const char* what : {"irradiance", "position", "normal"}) {
-            if (what[0] == 'i' && !way.gathers) continue;
+    const size_t bad = p.at(p.width * 5 / 8, p.width / 2);
+    for (const Way& way : ways) {
+        const Shown before = shade(clean, way);
+        for (const std::string what : {"irradiance", "position", "normal"}) {
+            const bool position = what == "position";
+            if (what == "irradiance" && !way.gathers) continue;
             Frame f = clean;
-            (what[0] == 'i'   ? f.picture.irradiance
-             : what[0] == 'p' ? f.picture.positions
-                              : f.normals)[3 * bad + 1] = what[0] == 'p' ? infinity : notANumber;
-            const Lit before = clean.shade(way), after = f.shade(way);
+            (what == "irradiance" ? f.picture.irradiance
+             : position           ? f.picture.positions
+                        : f.images[PEL_SLOT_NORMAL_SHADING])[3 * bad + 1] = position ? infinity : notANumber;
+            const Shown after = shade(f, way);
             const std::string where = std::string(way.name) + ", " + what;
             // If only scattering reads the position, the pixel keeps its irradiance.
-            const bool keeps = what[0] == 'p' && way.scattering != PEL_SCATTERING_PREINTEGRATED;
+            const bool keeps = position && way.scattering != PEL_SCATTERING_PREINTEGRATED;
             EXPECT_EQ(after.stats.pixelsInvalid, keeps ? 0u : 1u) << where;
             if (keeps && way.gathers) {
                 EXPECT_EQ(after.light[3 * bad], f.picture.irradiance[3 * bad]) << where;
             }
             size_t far = 0;
             for (size_t i = 0; i < p.pixels(); ++i) {
-                if (!p.ids[i]) continue;
-                double distance2 = 0;
-                for (size_t c = 0; c < 3; ++c)
-                    distance2 += std::pow(double(p.positions[3 * i + c]) - p.positions[3 * bad + c], 2);
                 // a block reaches further than its middle
-                const bool beyond = std::sqrt(distance2) > 2.2 * reach;
-                far += beyond;
-                for (size_t c = 0; c < 3; ++c) {
-                    ASSERT_TRUE(std::isfinite(after.light[3 * i + c])) << where << " " << i;
+                const bool beyond = length(p.place(i) - p.place(bad)) > 2.2 * reach;
+                far += p.ids[i] && beyond;
+                for (size_t k = 3 * i; p.ids[i] && k < 3 * i + 3; ++k) {
+                    ASSERT_TRUE(std::isfinite(after.light[k])) << where << " " << i;
                     if (i != bad) {
-                        ASSERT_NEAR(after.light[3 * i + c], before.light[3 * i + c],
+                        ASSERT_NEAR(after.light[k], before.light[k],
                                     beyond ? 2e-6 : double(tolerance::scatterOneMissing))
                             << where << " " << i;
                     }
@@ -143,15 +120,17 @@ TEST(ScatterBadInput, NoNumberSpreadsNoFurtherThanTheProfile) {
             }
             EXPECT_GT(far, p.pixels() / 10);
         }
+    }
 }
 
 // A texel of a scattered texture without a number: its four neighbours' pixels and no others.
 TEST(ScatterBadInput, NoNumberInATextureIsThatTexelsOwn) {
-    const Frame clean(32);
-    Frame f = clean;
-    f.texture[3 * (texels * 3 + 3)] = notANumber;
+    Frame f = frame(32);
     const Way& texture = ways[5];
-    const Lit before = clean.shade(texture), after = f.shade(texture);
+    const Shown before = shade(f, texture);
+    f.texture.assign(3 * texels * texels, 0.5f);
+    f.texture[3 * (texels * 3 + 3)] = notANumber;
+    const Shown after = shade(f, texture);
     EXPECT_GT(after.stats.pixelsInvalid, 0u);
     EXPECT_LT(after.stats.pixelsInvalid, after.stats.pixelsShaded / 4);
     size_t changed = 0;
@@ -164,85 +143,201 @@ TEST(ScatterBadInput, NoNumberInATextureIsThatTexelsOwn) {
 
 TEST(ScatterBadInput, RadiiFromAMillionthToAMillionPixels) {
     const uint32_t side = sized(48u, 16u);
-    const Frame clean(side);
     const double pixel = 2.2 * lit_ball::radius / side;
     for (const Way& way : ways) {
+        Frame f = frame(side);
         for (float pixels : {1e-6f, 1e-3f, 1e3f, 1e6f}) {
-            Frame f = clean;
-            f.radius = std::max(float(pixels * pixel), 1e-6f);
-            const Lit lit = f.shade(way);
+            f.material.diffusionRadius = std::max(float(pixels * pixel), 1e-6f);
+            const Shown lit = shade(f, way);
             const std::string where = std::string(way.name) + ", " + std::to_string(pixels) + " pixels";
             expectLight(lit.light, 1.001f, where);
             EXPECT_EQ(lit.stats.pixelsInvalid, 0u) << where;
-            if (pixels > 1e-2f || !way.gathers) continue;
-            for (size_t i = 0; i < lit.light.size(); ++i)  // narrower than a pixel: nothing is scattered
-                ASSERT_NEAR(lit.light[i], f.picture.ids[i / 3] ? f.picture.irradiance[i] : 0, 1e-4) << where;
+            if (pixels < 1e-2f && way.gathers) {  // nothing is scattered
+                EXPECT_LE(difference(f.picture, lit.light, f.picture.irradiance).most, 1e-4) << where;
+            }
         }
-        Frame own = clean, same = clean;  // 0: the profile's own
-        own.radius = 0, same.radius = float(Profile::skin().info().radius);
-        EXPECT_EQ(own.shade(way).light, same.shade(way).light) << way.name;
+        Frame same = f;  // 0: the profile's own
+        f.material.diffusionRadius = 0, same.material.diffusionRadius = float(f.profile.info().radius);
+        EXPECT_EQ(shade(f, way).light, shade(same, way).light) << way.name;
         for (float bad : {-1.0f, 1e-8f, infinity, notANumber}) {
-            Frame f = clean;
-            f.radius = bad;
-            const std::string error = errorOf([&] { f.shade(way); });
-            EXPECT_NE(error.find("diffusionRadius"), std::string::npos) << way.name << ": " << error;
+            f.material.diffusionRadius = bad;
+            expectError("diffusionRadius", [&] { shade(f, way); });
         }
     }
 }
 
 TEST(ScatterBadInput, PicturesOfOnePixel) {
+    const auto light = [](double x, double) { return Vec3{1, 0.5, x}; };
     for (const Way& way : ways)
         for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 9u}, {9u, 1u}, {2u, 2u}})
-            for (uint32_t mapSide : {1u, 16u}) {
-                const Frame f(plane(width, height, 0.2,
-                                    [](double x, double) {
-                                        return Vec3{1, 0.5, x};
-                                    }),
-                              mapSide);
-                const Lit lit = f.shade(way);
+            for (const auto& [mapSide, radius] : {std::pair{1u, 0.4f}, {16u, 1e-6f}, {16u, 1e6f}}) {
+                Frame f = frame(plane(width, height, 0.2, light), mapSide);
+                f.material.diffusionRadius = radius;
+                const Shown lit = shade(f, way);
                 const std::string where = std::string(way.name) + ", " + std::to_string(width) + " x " +
                                           std::to_string(height) + ", map of " + std::to_string(mapSide);
                 expectLight(lit.light, 2, where);
                 EXPECT_EQ(lit.stats.pixelsInvalid, 0u) << where;
                 EXPECT_EQ(lit.stats.pixelsShaded, width * height) << where;
-                if (width * height == 1 && way.gathers && way.scattering != PEL_SCATTERING_LIGHT) {
+                if (width * height == 1 && radius < 1 && way.gathers &&
+                    way.scattering != PEL_SCATTERING_LIGHT) {
                     EXPECT_NEAR(lit.light[0], 1, 1e-5) << where;
                 }
             }
 }
 
 TEST(ScatterBadInput, EveryPixelOfItsOwnId) {
-    Frame f(plane(16, 15, 0.2, [](double x, double) { return Vec3{x / 4, 1, 0}; }), 16);
-    f.ball.maps.clear();
+    Frame f = frame(plane(16, 15, 0.2, [](double x, double) { return Vec3{x / 4, 1, 0}; }), 16);
+    f.lamps[0].maps.clear();
     f.materials = 255;
     for (size_t i = 0; i < f.picture.pixels(); ++i) f.picture.ids[i] = uint8_t(1 + i % 255);
     for (const Way& way : ways) {
-        const Lit lit = f.shade(way);
+        const Shown lit = shade(f, way);
         expectLight(lit.light, 1.001f, way.name);
         EXPECT_EQ(lit.stats.pixelsInvalid, 0u) << way.name;
-        for (size_t i = 0; way.gathers && i < lit.light.size(); ++i)
-            ASSERT_NEAR(lit.light[i], f.picture.irradiance[i], 1e-6) << way.name << " " << i;
+        if (way.gathers) {
+            EXPECT_LE(difference(f.picture, lit.light, f.picture.irradiance).most, 1e-6) << way.name;
+        }
     }
 }
 
 // Empty maps, maps of NaN, and maps that look elsewhere: as if there were none; `light`, which takes all
 // that is further than some pixels from its maps, only loses light.
 TEST(ScatterBadInput, MapsWithoutTheObject) {
-    const Frame clean(sized(40u, 20u));
+    const Frame clean = frame(sized(40u, 20u));
     Frame without = clean;
-    without.ball.maps.clear();
-    for (const Way& way : ways)
+    without.lamps[0].maps.clear();
+    for (const Way& way : ways) {
+        const Shown none = shade(without, way);
         for (int kind = 0; kind < 4; ++kind) {
             Frame f = clean;
-            std::vector<float>& map = f.ball.maps[0];
+            std::vector<float>& map = f.lamps[0].maps[0];
             if (kind < 3) map.assign(map.size(), kind == 0 ? 1.0f : kind == 1 ? 0.0f : notANumber);
-            if (kind == 3) f.ball.light.worldToShadow[3] += 40;  // the ball is beside it
-            const Lit lit = f.shade(way), none = without.shade(way);
+            if (kind == 3) f.lamps[0].light.worldToShadow[3] += 40;  // the ball is beside it
+            const Shown lit = shade(f, way);
             const std::string where = std::string(way.name) + ", map " + std::to_string(kind);
             expectLight(lit.light, 1.1f, where);
             EXPECT_EQ(lit.stats.pixelsInvalid, 0u) << where;
-            if (way.gathers && way.scattering != PEL_SCATTERING_LIGHT && kind < 3) {
+            const bool byLight = way.scattering == PEL_SCATTERING_LIGHT;
+            if (way.gathers && !byLight && kind < 3) {
                 EXPECT_EQ(lit.light, none.light) << where;
             }
+            if (kind < 3 || !(byLight || way.scattering == PEL_SCATTERING_AUTO)) continue;
+            for (size_t i = 0; i < f.picture.pixels(); ++i)  // light of maps falls on nobody else
+                if (f.picture.ids[i] &&
+                    dot(f.picture.place(i), normalized(Vec3{1, 0.2, 0.3})) < -0.5 * radius) {
+                    ASSERT_NEAR(lit.light[3 * i], 0, 0.02) << where << " " << i;
+                }
         }
+    }
+}
+
+TEST(ScatterControls, OfMaterialsAreChecked) {
+    const auto expect = [](const std::string& part, const std::function<void(PelMaterial&)>& change) {
+        PelMaterial material = pelMaterialDefaults();
+        change(material);
+        if (part.empty())
+            EXPECT_EQ(errorOf([&] { Shader(device()).setMaterial(1, material); }), "");
+        else
+            expectError(part, [&] { Shader(device()).setMaterial(1, material); });
+    };
+    expect("", [](PelMaterial& m) { m.scatterTaps = 8; });
+    expect("", [](PelMaterial& m) { m.scatterTaps = 256; });
+    expect("scatterTaps is 7", [](PelMaterial& m) { m.scatterTaps = 7; });
+    expect("scatterTaps is 257", [](PelMaterial& m) { m.scatterTaps = 257; });
+    for (float bad : {-0.1f, 1.5f, notANumber, infinity}) {
+        expect("albedoBefore", [&](PelMaterial& m) { m.albedoBefore = bad; });
+        expect("borderColor", [&](PelMaterial& m) { m.borderColor[2] = bad; });
+        if (bad != 1.5f) expect("thinThickness", [&](PelMaterial& m) { m.thinThickness = bad; });
+    }
+    // Of frames: what the method cannot do.
+    Frame f(plane(8, 8, 1, [](double, double) { return Vec3{}; }), PEL_SCATTERING_SCREEN);
+    f.material.borderColor[0] = 1;
+    expectError(
+        "scatterTaps of 8 to 256", [&] { f.shade(); }, PEL_ERROR_UNSUPPORTED);
+    f.material.scatterTaps = 16;
+    EXPECT_EQ(errorOf([&] { f.shade(); }), "");
+    f.material = whiteMaterial(Profile(), PEL_SCATTERING_SCREEN);
+    f.material.thinThickness = 1;  // nothing comes from behind
+    for (PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_PREINTEGRATED}) {
+        f.material.scattering = method;
+        expectError(
+            "thinThickness", [&] { f.shade(); }, PEL_ERROR_UNSUPPORTED);
+    }
+}
+
+TEST(ScatterControls, OfAPelScatterAreChecked) {
+    const Picture p = plane(8, 8, 1, [](double, double) { return Vec3{}; });
+    Scatter scatter(device());
+    const auto setControls = [&](auto field, auto value) {
+        PelScatterControls controls = pelScatterControlsDefaults();
+        controls.*field = value;
+        scatter.setControls(1, controls);
+    };
+    expectError("material 1 is not set", [&] { scatter.setControls(1, pelScatterControlsDefaults()); });
+    scatter.setMaterial(1, Profile::skin());
+    using Controls = PelScatterControls;
+    expectError("PEL_SCATTERING_SEPARABLE",
+                [&] { setControls(&Controls::scattering, PEL_SCATTERING_LIGHT); });
+    expectError("scatterTaps is 300", [&] { setControls(&Controls::scatterTaps, 300u); });
+    expectError("thinThickness", [&] { setControls(&Controls::thinThickness, notANumber); });
+    for (float scale : {-1.0f, infinity, notANumber, 1e20f})
+        expectError("profile", [&] { scatter.setMaterial(1, Profile::skin(), scale); });
+    expectError("1 to 255", [&] { scatter.setMaterial(256, Profile::skin()); });
+    const auto rgb = [](const Buffer& b, uint32_t side = 8) {
+        return pellucid::imageDesc(b, PEL_FORMAT_RGB32F, side, side);
+    };
+    const auto grey = imageOf(device(), std::vector<float>(16), 4, 4);
+    expectError("none that a PelScatter keeps", [&] { scatter.set(PEL_SLOT_CURVATURE, grey); });
+    expectError("albedo", [&] { scatter.set(PEL_SLOT_ALBEDO, grey); });
+    scatter.clear(PEL_SLOT_ALBEDO);
+    const Buffer light(device(), p.irradiance), places(device(), p.positions);
+    const PelImageDesc image = rgb(light), at = rgb(places), other = rgb(places, 4);
+    const auto execute = [&](const PelImageDesc* positions, const PelImageDesc& out) {
+        scatter.execute(p.params, image, positions, nullptr, nullptr, out);
+    };
+    expectError("either `positions` or `depth`", [&] { execute(nullptr, image); });
+    expectError("4 x 4", [&] { execute(&other, image); });
+    expectError("overlaps", [&] { execute(&image, image); });
+    EXPECT_EQ(errorOf([&] { execute(&at, image); }), "");
+    // Over the positions' own memory by another name.
+    std::vector<float> host(3 * 64);
+    const Buffer first = Buffer::fromHost(device(), host.data(), host.size() * 4),
+                 second = Buffer::fromHost(device(), host.data(), host.size() * 4);
+    const PelImageDesc from = rgb(first);
+    expectError("overlaps", [&] { execute(&from, rgb(second)); });
+    PelScatterParams params = pelScatterParamsDefaults();
+    params.targetError = notANumber;
+    expectError("targetError", [&] { scatter.execute(params, image, at, nullptr, nullptr, image); });
+}
+
+TEST(ScatterControls, OfTexturesAreChecked) {
+    Shader shader(device());
+    const auto color = imageOf(device(), std::vector<float>(48), 4, 4),
+               grey = imageOf(device(), std::vector<float>(16), 4, 4);
+    expectError("material 3 is not set", [&] { shader.setScatteredTexture(3, color); });
+    shader.setMaterial(3, pelMaterialDefaults());
+    shader.setScatteredTexture(3, color).clearScatteredTexture(3);
+    expectError("scattered texture", [&] { shader.setScatteredTexture(3, grey); });
+    const float uvs[] = {0, 0, 1, 0, 0, 1}, far[] = {0, 0, 1, 0, 0, notANumber};
+    const uint32_t triangle[] = {0, 1, 2}, beyond[] = {0, 1, 3};
+    PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
+    const auto make = [&] { TextureScatter(device(), desc); };
+    expectError("0 x 0 texels", make);
+    desc.width = 8, desc.height = 4;
+    make();
+    desc.numVertices = 3, desc.numIndices = 3;
+    expectError("indices is NULL", make);
+    desc.indices = triangle;
+    expectError("uvs is NULL", make);
+    desc.uvs = uvs;
+    EXPECT_EQ(TextureScatter(device(), desc).stats().texelsTotal, 32u);
+    desc.uvStride = 4;
+    expectError("uvStride is 4", make);
+    desc.uvStride = 0, desc.numIndices = 2;
+    expectError("no multiple of 3", make);
+    desc.numIndices = 3, desc.indices = beyond;
+    expectError("triangle 0 has the vertex 3 of 3", make);
+    desc.indices = triangle, desc.uvs = far;
+    expectError("vertex 2 has the texture coordinates", make);
 }

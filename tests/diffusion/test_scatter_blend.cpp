@@ -2,109 +2,76 @@
 // sheets, weights, and adding.
 #include <gtest/gtest.h>
 
-#include <functional>
-
 #include "diffusion/scatter_scene.h"
-#include "diffusion/shown_images.h"
 #include "tolerances.h"
 
 using namespace scatter_scene;
 
 namespace {
 
-// A picture through a shader, and what a test changes of it.
-struct Frame {
-    Picture picture;
-    std::vector<float> normals, albedo, weight, back;
-    PelMaterial material = pelMaterialDefaults();
-    Profile profile = Profile::skin();
-    std::vector<PelLight> lights;
-    bool giveIrradiance = true, both = false;  // the material is that of id 2 too
+constexpr PelScattering separable = PEL_SCATTERING_SEPARABLE, screen = PEL_SCATTERING_SCREEN,
+                        byAuto = PEL_SCATTERING_AUTO;
 
-    explicit Frame(Picture p) : picture(std::move(p)), normals(picture.positions.size()) {
-        for (size_t i = 0; i < picture.pixels(); ++i) normals[3 * i + 2] = 1;
-        material.profile = profile.get();
-        std::fill_n(material.albedo, 3, 1.0f);
-    }
-    std::vector<float> shade(PelShaderStats* stats = nullptr, std::string* said = nullptr) const {
-        const Picture& p = picture;
-        ShownImages shown(device(), p.width, p.height);
-        PelShaderOptions options = pelShaderOptionsDefaults();
-        options.countPixels = stats != nullptr;
-        shown.shader.set(options);
-        shown.set(PEL_SLOT_POSITION, p.positions);
-        shown.set(PEL_SLOT_NORMAL_SHADING, normals);
-        shown.set(PEL_SLOT_MATERIAL, p.ids);
-        if (giveIrradiance) shown.set(PEL_SLOT_IRRADIANCE, p.irradiance);
-        if (!albedo.empty()) shown.set(PEL_SLOT_ALBEDO, albedo);
-        if (!weight.empty()) shown.set(PEL_SLOT_SCATTER_WEIGHT, weight);
-        if (!back.empty()) shown.set(PEL_SLOT_IRRADIANCE_BACK, back);
-        shown.shader.setMaterial(1, material);
-        if (both) shown.shader.setMaterial(2, material);
-        shown.shader.set(lights);
-        shown.shader.set(pelCameraDefaults());
-        std::vector<float> radiance = shown.execute();
-        if (stats) *stats = shown.shader.stats();
-        if (said) *said = shown.shader.warnings();
-        return radiance;
-    }
-};
-
-Picture stripes() {
-    return plane(96, 48, 0.3, [](double x, double) { return Vec3{x > 14 ? 1.0 : 0.1, 0.5, x / 30}; });
+Picture stripes(bool two = false) {
+    Picture p = plane(96, 48, 0.3, [](double x, double) { return Vec3{x > 14 ? 1.0 : 0.1, 0.5, x / 30}; });
+    for (size_t i = 0; two && i < p.pixels(); ++i) p.ids[i] = uint8_t(1 + (i % 96 > 48));
+    return p;
 }
 
-const PelScattering methods[] = {PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_SCREEN, PEL_SCATTERING_AUTO};
+void expectNear(const std::vector<float>& result, const std::function<double(size_t)>& expected,
+                double within, const std::string& where = "") {
+    for (size_t i = 0; i < result.size(); ++i)
+        ASSERT_NEAR(result[i], expected(i), within) << where << " " << i;
+}
 
 }  // namespace
 
-TEST(ScatterBlend, AlbedoBeforeAndAfter) {
-    for (PelScattering method : methods) {
-        Frame f(stripes());
-        f.material.scattering = method;
-        std::vector<float> albedo;
-        for (size_t i = 0; i < f.picture.positions.size(); ++i)
-            albedo.push_back(0.25f + 0.5f * float(i / 30 % 2));
-        const auto plain = f.shade();
+TEST(ScatterBlend, IsScatteringAloneTimesAlbedo) {
+    const Picture p = ball(100, 10, 0.21, normalized(Vec3{1, 0.3, 0.2}));
+    const std::vector<float> alone = run(p, Profile::skin()).scattered;
+    for (PelScattering method : {screen, byAuto, PEL_SCATTERING_NONE}) {
+        Frame f(p, method, 10);
+        if (method != byAuto) f.profile = Profile();  // skin's without one
+        std::fill_n(f.material.albedo, 3, 0.5f);
+        const std::vector<float>& whole = method == PEL_SCATTERING_NONE ? p.irradiance : alone;
+        expectNear(
+            f.shade().light, [&](size_t i) { return p.ids[i / 3] ? 0.5 * whole[i] : 0; }, 1e-6);
+    }
+}
+
+TEST(ScatterBlend, AlbedoBeforeAndAfterAndWeights) {
+    for (PelScattering method : {separable, screen, byAuto}) {
+        Frame f(stripes(), method);
+        const std::vector<float> E = f.picture.irradiance, plain = f.shade().light;
+        std::vector<float> albedo, &weights = f.images[PEL_SLOT_SCATTER_WEIGHT];
+        for (size_t i = 0; i < f.picture.pixels(); ++i) weights.push_back(float(i % 5) / 4);
+        expectNear(
+            f.shade().light, [&](size_t i) { return E[i] + weights[i / 3] * (plain[i] - E[i]); }, 1e-6);
+        f.images.erase(PEL_SLOT_SCATTER_WEIGHT);
         // One colour: however it is split, the same.
         std::fill_n(f.material.albedo, 3, 0.36f);
         for (float m : {0.0f, 0.5f, 1.0f}) {
             f.material.albedoBefore = m;
-            const auto result = f.shade();
-            for (size_t i = 0; i < result.size(); ++i) ASSERT_NEAR(result[i], 0.36f * plain[i], 1e-3) << m;
+            expectNear(
+                f.shade().light, [&](size_t i) { return 0.36 * plain[i]; }, 1e-3, std::to_string(m));
         }
         // All of it before: what scattering alone gives of irradiance times albedo.
-        Frame product = f;
-        for (size_t i = 0; i < albedo.size(); ++i) product.picture.irradiance[i] *= albedo[i];
-        product.material.albedoBefore = 0;
-        std::fill_n(product.material.albedo, 3, 1.0f);
-        f.albedo = albedo;
-        f.material.albedoBefore = 1;
-        const auto before = f.shade(), expected = product.shade();
-        for (size_t i = 0; i < before.size(); ++i) ASSERT_NEAR(before[i], expected[i], 1e-6) << i;
+        for (size_t i = 0; i < E.size(); ++i) albedo.push_back(0.25f + 0.5f * float(i / 30 % 2));
+        Frame product(stripes(), method);
+        for (size_t i = 0; i < E.size(); ++i) product.picture.irradiance[i] *= albedo[i];
+        f.images[PEL_SLOT_ALBEDO] = albedo;
+        const auto expected = product.shade().light;
+        expectNear(
+            f.shade().light, [&](size_t i) { return expected[i]; }, 1e-6, "before");
         // None of it: as ever.
         f.material.albedoBefore = 0;
-        const auto after = f.shade();
-        for (size_t i = 0; i < after.size(); ++i) ASSERT_NEAR(after[i], albedo[i] * plain[i], 1e-6) << i;
+        expectNear(
+            f.shade().light, [&](size_t i) { return albedo[i] * plain[i]; }, 1e-6, "after");
         // Black stays black but for what flows in before.
-        std::fill(f.albedo.begin() + 3 * 96 * 20, f.albedo.begin() + 3 * 96 * 24, 0.0f);
-        EXPECT_EQ(f.shade()[3 * (96 * 21 + 80)], 0.0f);
+        std::fill_n(f.images[PEL_SLOT_ALBEDO].begin() + 3 * 96 * 20, 3 * 96 * 4, 0.0f);
+        EXPECT_EQ(f.shade().light[3 * (96 * 21 + 80)], 0.0f);
         f.material.albedoBefore = 1;
-        EXPECT_GT(f.shade()[3 * (96 * 21 + 80)], 0.0f);
-    }
-}
-
-TEST(ScatterBlend, WeightsMix) {
-    for (PelScattering method : methods) {
-        Frame f(stripes());
-        f.material.scattering = method;
-        const auto whole = f.shade();
-        for (size_t i = 0; i < f.picture.pixels(); ++i) f.weight.push_back(float(i % 5) / 4);
-        const auto some = f.shade();
-        for (size_t i = 0; i < some.size(); ++i) {
-            const float w = f.weight[i / 3], e = f.picture.irradiance[i];
-            ASSERT_NEAR(some[i], e + w * (whole[i] - e), 1e-6) << i;
-        }
+        EXPECT_GT(f.shade().light[3 * (96 * 21 + 80)], 0.0f);
     }
 }
 
@@ -112,188 +79,130 @@ TEST(ScatterBlend, WeightsMix) {
 TEST(ScatterBlend, ThinSheetsLetLightThrough) {
     const double thickness = 0.4;
     const auto through = Profile::skin().transmission({thickness});
-    for (PelScattering method : {PEL_SCATTERING_NONE, PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_SCREEN}) {
-        Frame f(stripes());
+    for (PelScattering method : {PEL_SCATTERING_NONE, separable, screen}) {
+        Frame f(stripes(), method);
         f.giveIrradiance = false;
-        f.material.scattering = method;
         f.material.thinThickness = float(thickness);
-        PelLight light = pelLightDefaults();
+        f.lamps.resize(1);
+        PelLight& light = f.lamps[0].light;
         light.toLight[1] = 0.6f, light.toLight[2] = -0.8f;
         light.color[1] = 2;
-        f.lights = {light};
-        const auto result = f.shade();
-        for (size_t i = 0; i < result.size(); ++i)
-            ASSERT_NEAR(result[i], 0.8 * light.color[i % 3] * through[i % 3], 1e-5) << i;
+        expectNear(
+            f.shade().light, [&](size_t i) { return 0.8 * light.color[i % 3] * through[i % 3]; }, 1e-5);
         f.material.transmission = 0.5f;
-        EXPECT_NEAR(f.shade()[0], 0.4 * through[0], 1e-5);
+        EXPECT_NEAR(f.shade().light[0], 0.4 * through[0], 1e-5);
         f.material.thinThickness = 0;
-        EXPECT_EQ(f.shade()[0], 0.0f);
+        EXPECT_EQ(f.shade().light[0], 0.0f);
         // The host's own light of the other side.
         f.giveIrradiance = true;
         f.material.transmission = 1;
         f.material.thinThickness = float(thickness);
-        for (float& e : f.picture.irradiance) e = 0.1f;
-        f.back.assign(f.picture.irradiance.size(), 0.7f);
-        EXPECT_NEAR(f.shade()[0], 0.1 + 0.7 * through[0], 1e-5);
+        std::ranges::fill(f.picture.irradiance, 0.1f);
+        f.images[PEL_SLOT_IRRADIANCE_BACK].assign(f.picture.irradiance.size(), 0.7f);
+        EXPECT_NEAR(f.shade().light[0], 0.1 + 0.7 * through[0], 1e-5);
     }
-    Frame wrong(stripes());
-    wrong.material.thinThickness = 1;
-    EXPECT_THROW(wrong.shade(), pellucid::Error);  // by tables
 }
 
 TEST(ScatterBlend, AloneAddsAndMultiplies) {
     const Picture p = stripes();
     const auto plain = run(p, Profile::skin()).scattered;
-    for (PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE}) {
-        Scatter scatter(device());
-        scatter.setMaterial(1, Profile::skin());
-        PelScatterControls c = pelScatterControlsDefaults();
-        c.scattering = method;
+    for (PelScattering method : {screen, separable}) {
+        std::vector<Material> materials{{1, Profile::skin(), 1, controlsOf(method, 0)}};
+        PelScatterControls& c = materials[0].controls;
         c.thinThickness = 0.4f;
-        scatter.setControls(1, c);
-        std::vector<float> albedo(p.irradiance.size(), 0.5f), back(p.irradiance.size(), 0.3f);
-        const Buffer e(device(), p.irradiance), x(device(), p.positions), a(device(), albedo),
-            b(device(), back), out(device(), std::vector<float>(p.irradiance.size(), 2.0f));
-        const auto rgb = [&](const Buffer& buffer) {
-            return pellucid::imageDesc(buffer, PEL_FORMAT_RGB32F, p.width, p.height);
-        };
-        const PelImageDesc positions = rgb(x);
-        PelScatterParams params = pelScatterParamsDefaults();
-        params.accumulate = 1;
-        EXPECT_THROW(scatter.execute(params, rgb(e), &positions, nullptr, nullptr, rgb(out)),
-                     pellucid::Error);
-        scatter.set(PEL_SLOT_ALBEDO, rgb(a));
-        scatter.set(PEL_SLOT_IRRADIANCE_BACK, rgb(b));
-        scatter.execute(params, rgb(e), &positions, nullptr, nullptr, rgb(out));
+        const size_t values = p.irradiance.size();
+        Extra extra;
+        extra.ids = false;
+        extra.out.assign(values, 2.0f);
+        Picture adding = p;
+        adding.params.accumulate = 1;
+        EXPECT_THROW(run(adding, materials, extra), pellucid::Error);  // no light from behind
+        extra.albedo.assign(values, 0.5f);
+        extra.back.assign(values, 0.3f);
         const auto through = Profile::skin().transmission({double(c.thinThickness)});
-        const auto result = out.readAll<float>();
-        for (size_t i = 0; i < result.size(); ++i)
-            ASSERT_NEAR(result[i], 2 + 0.5 * (plain[i] + 0.3 * through[i % 3]), 5e-2) << i;
+        const auto result = run(adding, materials, extra).scattered;
+        expectNear(
+            result, [&](size_t i) { return 2 + 0.5 * (plain[i] + 0.3 * through[i % 3]); }, 5e-2);
         EXPECT_NEAR(result[3 * (96 * 24 + 90)], 2 + 0.5 * (1 + 0.3 * through[0]), 1e-3);
-        EXPECT_THROW(scatter.execute(params, rgb(e), &positions, nullptr, nullptr, rgb(e)), pellucid::Error);
         // All of the albedo before is the same where it is one colour.
         c.albedoBefore = 1;
-        scatter.setControls(1, c);
-        const std::vector<float> two(p.irradiance.size(), 2.0f);
-        out.write(two.data(), two.size() * sizeof(float));
-        scatter.execute(params, rgb(e), &positions, nullptr, nullptr, rgb(out));
-        const auto again = out.readAll<float>();
-        for (size_t i = 0; i < again.size(); ++i) ASSERT_NEAR(again[i], result[i], 1e-3) << i;
+        expectNear(
+            run(adding, materials, extra).scattered, [&](size_t i) { return result[i]; }, 1e-3);
+        extra.inPlace = true;
+        EXPECT_THROW(run(adding, materials, extra), pellucid::Error);
     }
 }
 
-// Alone too: what blocks cannot do is done by a disk.
-TEST(ScatterBlend, AloneTakesADiskWhereItHasTo) {
-    Picture p = stripes();
-    for (size_t i = 0; i < p.pixels(); ++i) p.ids[i] = uint8_t(1 + (i % 96 > 48));
+// What blocks of pixels cannot do is done by a disk of taps, alone too, and the shader says so.
+TEST(ScatterBlend, BlocksBecomeADiskWhereTheyHaveTo) {
+    const Picture p = stripes(true);
     std::vector<float> radii;
     for (size_t i = 0; i < p.pixels(); ++i) radii.insert(radii.end(), {1, float(i % 96) / 96});
-    const Buffer e(device(), p.irradiance), x(device(), p.positions), ids(device(), p.ids),
-        r(device(), radii), out(device(), p.irradiance);
-    const auto image = [&](const Buffer& buffer, PelFormat format) {
-        return pellucid::imageDesc(buffer, format, p.width, p.height);
+    const auto alone = [&](uint32_t taps, bool border, bool withRadii) {
+        const PelScatterControls c = controlsOf(screen, taps, border ? 0.7f : 0);
+        Extra extra;
+        if (withRadii) extra.weights = radii;
+        return run(p, {{1, Profile::skin(), 1, c}, {2, Profile::skin(), 1, c}}, extra).scattered;
     };
-    const auto scattered = [&](uint32_t taps, bool border, bool withRadii) {
-        Scatter scatter(device());
-        for (uint32_t id : {1u, 2u}) {
-            PelScatterControls c = pelScatterControlsDefaults();
-            c.scatterTaps = taps;
-            if (border) std::fill_n(c.borderColor, 3, 0.7f);
-            scatter.setMaterial(id, Profile::skin());
-            scatter.setControls(id, c);
-        }
-        if (withRadii) scatter.set(PEL_SLOT_SCATTER_WEIGHT, image(r, PEL_FORMAT_RG32F));
-        const PelImageDesc positions = image(x, PEL_FORMAT_RGB32F), id = image(ids, PEL_FORMAT_R8_UINT);
-        scatter.execute(p.params, image(e, PEL_FORMAT_RGB32F), &positions, nullptr, &id,
-                        image(out, PEL_FORMAT_RGB32F));
-        return out.readAll<float>();
-    };
-    for (const auto& [border, withRadii] : {std::pair{true, false}, {false, true}, {true, true}}) {
-        EXPECT_EQ(scattered(0, border, withRadii), scattered(64, border, withRadii));
-        EXPECT_NE(scattered(0, border, withRadii), scattered(0, false, false));
-    }
-}
-
-// What blocks of pixels cannot do auto does by a disk of taps, and says so.
-TEST(ScatterBlend, AutoTakesADiskWhereItHasTo) {
-    const auto shade = [](PelScattering method, uint32_t taps, bool border, bool radii, PelShaderStats* stats,
-                          std::string* said) {
-        Frame f(stripes());
-        for (size_t i = 0; i < f.picture.pixels(); ++i) f.picture.ids[i] = uint8_t(1 + (i % 96 > 48));
-        f.material.scattering = method;
+    const auto shaded = [&](PelScattering method, uint32_t taps, bool border, bool withRadii) {
+        Frame f(p, method);
+        f.options.countPixels = 1;
+        f.materials = 2;
         f.material.scatterTaps = taps;
-        f.material.specular = 0;
         if (border) std::fill_n(f.material.borderColor, 3, 0.7f);
-        if (radii)
-            for (size_t i = 0; i < f.picture.pixels(); ++i)
-                f.weight.insert(f.weight.end(), {1, float(i % 96) / 96});
-        f.both = true;
-        const auto result = f.shade(stats, said);
-        return result;
+        if (withRadii) f.images[PEL_SLOT_SCATTER_WEIGHT] = radii;
+        return f.shade();
     };
-    for (const auto& [border, radii] : {std::pair{true, false}, {false, true}, {true, true}}) {
-        PelShaderStats stats, disk;
-        std::string said, nothing;
-        const auto automatic = shade(PEL_SCATTERING_AUTO, 0, border, radii, &stats, &said);
-        EXPECT_EQ(automatic, shade(PEL_SCATTERING_SCREEN, 64, border, radii, &disk, &nothing));
-        EXPECT_NE(automatic, shade(PEL_SCATTERING_AUTO, 0, false, false, nullptr, nullptr));
-        EXPECT_NE(said.find(border ? "64 taps on a disk, for it has a borderColor"
-                                   : "64 taps on a disk, for the scatter weight image has radii"),
-                  std::string::npos)
-            << said;
-        EXPECT_EQ(nothing, "");
-        EXPECT_EQ(stats.scatterTaps, disk.scatterTaps);
-        EXPECT_GT(stats.pixelsByChoice[PEL_SCATTERING_SCREEN], 0u);
-        EXPECT_EQ(stats.pixelsByChoice[PEL_SCATTERING_SCREEN], stats.pixelsScattered);
+    const Shown usual = shaded(byAuto, 0, false, false);
+    for (const auto& [border, withRadii] : {std::pair{true, false}, {false, true}, {true, true}}) {
+        EXPECT_EQ(alone(0, border, withRadii), alone(64, border, withRadii));
+        EXPECT_NE(alone(0, border, withRadii), alone(0, false, false));
+        const Shown automatic = shaded(byAuto, 0, border, withRadii),
+                    disk = shaded(screen, 64, border, withRadii);
+        EXPECT_EQ(automatic.light, disk.light);
+        EXPECT_NE(automatic.light, usual.light);
+        EXPECT_NE(
+            automatic.warnings.find(border ? "64 taps on a disk, for it has a borderColor"
+                                           : "64 taps on a disk, for the scatter weight image has radii"),
+            std::string::npos)
+            << automatic.warnings;
+        EXPECT_EQ(disk.warnings, "");
+        const PelShaderStats& stats = automatic.stats;
+        EXPECT_EQ(stats.scatterTaps, disk.stats.scatterTaps);
+        EXPECT_GT(stats.pixelsByChoice[screen], 0u);
+        EXPECT_EQ(stats.pixelsByChoice[screen], stats.pixelsScattered);
         EXPECT_EQ(stats.pixelsByChoice[PEL_SCATTERING_NONE], stats.pixelsKept);
     }
     // scatterTaps alone is not auto's.
-    EXPECT_EQ(shade(PEL_SCATTERING_AUTO, 16, false, false, nullptr, nullptr),
-              shade(PEL_SCATTERING_AUTO, 0, false, false, nullptr, nullptr));
+    EXPECT_EQ(shaded(byAuto, 16, false, false).light, usual.light);
 }
 
 TEST(ScatterBlend, SaysWhatHasNoEffect) {
-    const auto said = [](PelScattering method, const std::function<void(PelMaterial&)>& change) {
-        Frame f(stripes());
-        f.material.scattering = method;
-        change(f.material);
-        std::string said;
-        f.shade(nullptr, &said);
-        return said.find("without effect") == std::string::npos ? std::string() : said;
+    struct Field {
+        const char* name;
+        void (*change)(PelMaterial&);
+        std::vector<PelScattering> without, with;
     };
-    const auto taps = [](PelMaterial& m) { m.scatterTaps = 16; };
-    const auto border = [](PelMaterial& m) { m.borderColor[1] = 0.5f; };
-    const auto before = [](PelMaterial& m) { m.albedoBefore = 0.5f; };
-    for (PelScattering method : {PEL_SCATTERING_PREINTEGRATED, PEL_SCATTERING_NONE}) {
-        EXPECT_NE(said(method, taps).find("scatterTaps"), std::string::npos);
-        EXPECT_NE(said(method, border).find("borderColor"), std::string::npos);
-        EXPECT_NE(said(method, before).find("albedoBefore"), std::string::npos);
+    constexpr PelScattering tables = PEL_SCATTERING_PREINTEGRATED, none = PEL_SCATTERING_NONE;
+    const Field fields[] = {
+        {"scatterTaps",
+         [](PelMaterial& m) { m.scatterTaps = 16; },
+         {tables, none, byAuto},
+         {screen, separable}},
+        {"borderColor", [](PelMaterial& m) { m.borderColor[1] = 0.5f; }, {tables, none}, {byAuto, separable}},
+        {"albedoBefore",
+         [](PelMaterial& m) { m.albedoBefore = 0.5f; },
+         {tables, none},
+         {byAuto, screen, separable}}};
+    for (const Field& field : fields) {
+        const auto warned = [&](PelScattering method) {
+            Frame f(stripes(), method);
+            field.change(f.material);
+            const std::string said = f.shade().warnings;
+            return said.find("without effect") != std::string::npos &&
+                   said.find(field.name) != std::string::npos;
+        };
+        for (PelScattering method : field.without) EXPECT_TRUE(warned(method)) << field.name << int(method);
+        for (PelScattering method : field.with) EXPECT_FALSE(warned(method)) << field.name << int(method);
     }
-    EXPECT_NE(said(PEL_SCATTERING_AUTO, taps).find("scatterTaps"), std::string::npos);
-    EXPECT_EQ(said(PEL_SCATTERING_AUTO, border), "");
-    EXPECT_EQ(said(PEL_SCATTERING_AUTO, before), "");
-    for (PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE}) {
-        EXPECT_EQ(said(method, taps), "");
-        EXPECT_EQ(said(method, before), "");
-    }
-    EXPECT_EQ(said(PEL_SCATTERING_SEPARABLE, border), "");
-}
-
-TEST(ScatterBlend, SaysWhatItCannot) {
-    const auto error = [](const std::function<void(PelMaterial&)>& change, bool radius = false) {
-        Frame f(stripes());
-        f.material.scattering = PEL_SCATTERING_SCREEN;
-        change(f.material);
-        if (radius) f.weight.assign(1, 0);
-        try {
-            f.shade();
-        } catch (const pellucid::Error& e) {
-            return std::string(e.what());
-        }
-        return std::string();
-    };
-    EXPECT_EQ(error([](PelMaterial& m) { m.scatterTaps = 16, m.borderColor[0] = 1; }), "");
-    EXPECT_NE(error([](PelMaterial& m) { m.borderColor[0] = 1; }).find("scatterTaps of 8 to 256"),
-              std::string::npos);
-    EXPECT_NE(error([](PelMaterial& m) { m.thinThickness = 1; }).find("thinThickness"), std::string::npos);
 }

@@ -1,19 +1,18 @@
 // Objects keep memory, tables and levels from one picture to the next. Each picture of a sequence must
-// equal, to the bit, what a new object makes of it. And the smallest pictures: single pixels, lines, two
-// tiles.
+// equal, to the bit, what a new object makes of it.
 #include <gtest/gtest.h>
-
-#include <algorithm>
 
 #include "device_lanes.h"
 #include "diffusion/lit_ball.h"
 #include "tolerances.h"
 
 using namespace lit_ball;
+using pellucid::TextureScatter;
 
 namespace {
 
-constexpr PelScattering screen = PEL_SCATTERING_SCREEN, separable = PEL_SCATTERING_SEPARABLE;
+constexpr PelScattering screen = PEL_SCATTERING_SCREEN, separable = PEL_SCATTERING_SEPARABLE,
+                        byLight = PEL_SCATTERING_LIGHT, byAuto = PEL_SCATTERING_AUTO;
 
 Profile gaussian(float sigma) {
     return Profile::gaussians({{sigma * sigma, {1, 0.6f, 0.3f}}, {0.04f * sigma * sigma, {0, 0.4f, 0.7f}}});
@@ -41,14 +40,13 @@ struct Step {
 std::vector<Step> steps() {
     Picture everywhere = stripes(60, 44, 3, 2);
     everywhere.params.everywhere = 1;
-    Picture small = plane(48, 32, 0.2, [](double x, double) { return x < 4.8 ? Vec3{1, 1, 1} : Vec3{}; });
+    const auto half = [](double edge, Vec3 lit, Vec3 dark) {
+        return [=](double x, double) { return x < edge ? lit : dark; };
+    };
+    const Picture small = plane(48, 32, 0.2, half(4.8, {1, 1, 1}, {})),
+                  edge = plane(160, 96, 0.2, half(15.9, {1, 0.5, 0.25}, {0.3, 0.3, 0.3}));
     return {{"stripes by a wide profile", stripes(160, 96, 9, 1), gaussian(3), 1},
-            {"an edge by a narrow one",
-             plane(160, 96, 0.2,
-                   [](double x, double) {
-                       return x < 15.9 ? Vec3{1, 0.5, 0.25} : Vec3{0.3, 0.3, 0.3};
-                   }),
-             gaussian(0.1f), 1},
+            {"an edge by a narrow one", edge, gaussian(0.1f), 1},
             {"other ids", stripes(160, 96, 5, 4), gaussian(1), 1},
             {"a smaller picture", small, gaussian(1), 1},
             // As many bytes in every level, but other widths.
@@ -62,24 +60,13 @@ std::vector<Step> steps() {
 }
 
 std::vector<float> scatter(Scatter& object, const Step& step, const PelScatterControls& controls) {
-    const Picture& p = step.picture;
-    for (uint32_t id : {1u, 2u, 3u}) {
-        object.setMaterial(id, id < 3 ? step.profile : Profile(), step.scale);
-        if (id < 3) object.setControls(id, controls);
-    }
-    std::vector<float> weights(p.pixels());
-    for (size_t i = 0; i < weights.size(); ++i) weights[i] = float(i % 5) / 4;
-    const Buffer e(device(), p.irradiance), x(device(), p.positions), i(device(), p.ids),
-        w(device(), weights), out(device(), std::vector<float>(p.irradiance.size(), -7.0f));
-    const auto image = [&](const Buffer& b, PelFormat format) {
-        return pellucid::imageDesc(b, format, p.width, p.height);
-    };
-    const PelImageDesc positions = image(x, PEL_FORMAT_RGB32F), ids = image(i, PEL_FORMAT_R8_UINT);
-    object.clear(PEL_SLOT_SCATTER_WEIGHT);
-    if (step.weights) object.set(PEL_SLOT_SCATTER_WEIGHT, image(w, PEL_FORMAT_R32F));
-    object.execute(p.params, image(e, PEL_FORMAT_RGB32F), &positions, nullptr, &ids,
-                   image(out, PEL_FORMAT_RGB32F));
-    return out.readAll<float>();
+    Extra extra;
+    for (size_t i = 0; step.weights && i < step.picture.pixels(); ++i)
+        extra.weights.push_back(float(i % 5) / 4);
+    return run(object, step.picture,
+               {{1, step.profile, step.scale, controls}, {2, step.profile, step.scale, controls}, {3, {}}},
+               extra)
+        .scattered;
 }
 
 // How many values differ, and by how much.
@@ -99,9 +86,7 @@ void expectSame(const std::vector<float>& now, const std::vector<float>& expecte
 
 TEST(ScatterSequences, EachPictureEqualsThatOfANewObject) {
     for (const auto& [method, taps] : {std::pair{screen, 0u}, {screen, 16u}, {separable, 9u}}) {
-        PelScatterControls controls = pelScatterControlsDefaults();
-        controls.scattering = method;
-        controls.scatterTaps = taps;
+        const PelScatterControls controls = controlsOf(method, taps);
         Scatter kept(device());
         for (const Step& step : steps()) {
             Scatter fresh(device());
@@ -114,135 +99,124 @@ TEST(ScatterSequences, EachPictureEqualsThatOfANewObject) {
     }
 }
 
-// The shader, with methods, lights, maps and materials that follow one another.
+// The shader, with methods, sizes, ids, lights, maps, textures and materials that follow one another.
 TEST(ScatterSequences, EachFrameEqualsThatOfANewShader) {
-    constexpr PelScattering methods[] = {PEL_SCATTERING_AUTO, PEL_SCATTERING_LIGHT, screen,
-                                         separable,           PEL_SCATTERING_LIGHT, PEL_SCATTERING_AUTO};
     const Vec3 side = normalized(Vec3{0.8, 0.2, 0.1}), behind = normalized(Vec3{-0.5, 0.1, -0.8});
     const LitBall one = makeBall(Form::parallel, side, 128), two = makeBall(Form::parallel, behind, 128);
-    LitBall wide = two;  // 48 x 32 texels and 33 x 32 take the same memory
+    LitBall wide = two, narrow = one;  // 48 x 32 texels and 33 x 32 take the same memory
     wide.width = 48, wide.height = 32, wide.maps[0].resize(48 * 32);
-    LitBall narrow = one;
     narrow.width = 33, narrow.height = 32, narrow.maps[0].resize(33 * 32);
+    LitBall nothing = two;  // parts of a light's pyramid that hold nothing are not written
+    std::ranges::fill(nothing.maps[0], 1.0f);
     const std::vector<std::vector<LitBall>> lights{
-        {one}, {two}, {one, two}, {wide}, {narrow}, {makeBall(Form::cascades, side, 64)}, {two}};
-    ShownImages kept(device(), 40, 40);
+        {one}, {two},     {one, two}, {wide}, {narrow}, {makeBall(Form::cascades, side, 64)},
+        {two}, {nothing}, {nothing},  {one}};
+    ShownImages kept(device(), 1, 1);
     size_t frame = 0;
-    for (PelScattering method : methods)
+    for (PelScattering method : {byAuto, byLight, PEL_SCATTERING_TEXTURE, screen, separable, byLight,
+                                 PEL_SCATTERING_TEXTURE, byAuto})
         for (const std::vector<LitBall>& lit : lights) {
-            const Profile profile = frame % 3 ? Profile::skin() : gaussian(0.5f);
-            const Request request{method, frame % 2 ? 0.0f : 0.6f};
-            Picture p = pictureOf(lit, 40);
-            if (frame % 4 == 3)
-                for (size_t i = 0; i < p.pixels(); ++i) p.ids[i] = i % 40 < 20 ? p.ids[i] : 0;
-            ShownImages fresh(device(), 40, 40);
-            std::vector<float> now = show(kept, p, lit, profile, request).light;
-            for (size_t i = 0; i < p.pixels(); ++i)  // a shader leaves what has no material as it is
-                if (!p.ids[i]) std::fill_n(&now[3 * i], 3, 0.0f);
-            expectSame(now, show(fresh, p, lit, profile, request).light,
+            Frame f = frameOf(lit, frame % 5 == 2 ? 24 : 40, method, frame % 2 ? 0.0f : 0.6f,
+                              frame % 3 ? Profile::skin() : gaussian(0.5f));
+            Picture& p = f.picture;
+            f.materials = 2;
+            for (size_t i = 0; i < p.pixels(); ++i) {
+                const bool left = i % p.width < p.width / 2;
+                if (p.ids[i] && !left) p.ids[i] = frame % 4 == 3 ? 0 : frame % 3 == 1 ? 2 : 1;
+            }
+            if (method == PEL_SCATTERING_TEXTURE) {
+                std::vector<float>& uvs = f.images[PEL_SLOT_UV];
+                for (size_t i = 0; i < 2 * p.pixels(); ++i) uvs.push_back(float((i * 37 + frame) % 101) / 50);
+                const size_t texels = frame % 2 ? 64 : 256;
+                for (size_t i = 0; i < 3 * texels; ++i) f.texture.push_back(float((7 * i + frame) % 11) / 10);
+            }
+            expectSame(f.shade(kept).light, f.shade().light,
                        "frame " + std::to_string(frame) + ", method " + std::to_string(int(method)));
             ++frame;
         }
 }
 
+// A texture with two islands, whose mesh moves: lights, profiles, scales, Gaussians and albedo that follow
+// one another, in textures of several sizes.
+TEST(ScatterSequences, EachTextureEqualsThatOfANewObject) {
+    const std::vector<float> uvs{.05f, .1f, .4f,  .1f, .4f,  .9f, .05f, .9f,
+                                 .5f,  .2f, .95f, .2f, .95f, .8f, .5f,  .8f};
+    const std::vector<uint32_t> triangles{0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7};
+    const struct {
+        const char* name;
+        float size;  // mm
+        uint32_t light;
+        Profile profile;
+        float scale = 1;
+        uint32_t gaussians = 6, albedo = 0;  // 1: before, 2: after
+    } frames[] = {{"skin", 10, 5, Profile::skin()},
+                  {"a narrow profile", 10, 5, gaussian(0.1f)},
+                  {"a wide one", 10, 9, gaussian(4)},
+                  {"another light", 10, 3, gaussian(4)},
+                  {"a larger mesh", 40, 3, gaussian(1)},
+                  {"another scale", 40, 3, gaussian(1), 3},
+                  {"many Gaussians", 40, 3, Profile::burleyDistance({1, 0.4f, 0.2f}), 1, 12},
+                  {"few of them", 40, 3, Profile::burleyDistance({1, 0.4f, 0.2f}), 1, 3},
+                  {"albedo before", 10, 5, Profile::skin(), 1, 6, 1},
+                  {"albedo after", 10, 7, Profile::skin(), 1, 6, 2},
+                  {"no texel is covered", 0, 7, Profile::skin()},
+                  {"skin again", 10, 5, Profile::skin()}};
+    for (const auto& [width, height] : {std::pair{64u, 48u}, {33u, 17u}, {16u, 128u}}) {
+        PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
+        desc.width = width, desc.height = height;
+        desc.numVertices = 8, desc.uvs = uvs.data();
+        desc.numIndices = triangles.size(), desc.indices = triangles.data();
+        TextureScatter kept(device(), desc);
+        for (const auto& frame : frames) {
+            const auto texture = [&](TextureScatter& object) {
+                std::vector<float> corners, irradiance, albedo;
+                for (size_t v = 0; v < 8; ++v)
+                    for (float x : {uvs[2 * v], uvs[2 * v + 1], float(v % 3) / 5})
+                        corners.push_back(frame.size * x);
+                for (size_t i = 0; i < size_t(3) * width * height; ++i) {
+                    irradiance.push_back(float(i / 3 / frame.light % 3) / 2);
+                    albedo.push_back(i % 7 ? 0.6f : 0.1f);
+                }
+                object.setPositions(vertexView(Buffer(device(), corners), 8));
+                PelTextureScatterParams params = pelTextureScatterParamsDefaults();
+                params.profile = frame.profile.get();
+                params.scale = frame.scale;
+                params.gaussians = frame.gaussians;
+                params.albedoBefore = frame.albedo == 1 ? 1 : 0;
+                params.albedoAfter = frame.albedo == 2;
+                const auto colors = imageOf(device(), albedo, width, height);
+                const Buffer out(device(), std::vector<float>(irradiance.size(), -1.0f));
+                object.execute(params, imageOf(device(), irradiance, width, height),
+                               frame.albedo ? &colors : nullptr,
+                               pellucid::imageDesc(out, PEL_FORMAT_RGB32F, width, height));
+                const std::vector<float> result = out.readAll<float>();
+                EXPECT_NE(result, irradiance) << frame.name;
+                return result;
+            };
+            TextureScatter fresh(device(), desc);
+            expectSame(texture(kept), texture(fresh), std::to_string(width) + " wide: " + frame.name);
+        }
+    }
+}
+
 // What a device computes does not depend on how many lanes it computes at a time.
 TEST(ScatterSequences, WidthsAgree) {
-    const Vec3 toLight = normalized(Vec3{0.9, 0.2, -0.1});
     for (Form form : {Form::parallel, Form::perspective})
-        for (PelScattering method : {PEL_SCATTERING_LIGHT, PEL_SCATTERING_AUTO}) {
-            const LitBall lit = makeBall(form, toLight, sized(512u, 64u));
-            const Picture p = pictureOf(lit, sized(96u, 24u));
+        for (PelScattering method : {byLight, byAuto}) {
+            const Frame f = frameOf({makeBall(form, normalized(Vec3{0.9, 0.2, -0.1}), sized(512u, 64u))},
+                                    sized(96u, 24u), method, 0.3f);
             std::vector<float> before;
             for (int lanes : {1, 8, 16}) {
-                ShownImages shown(lanes::deviceOf(lanes), p.width, p.height);
-                const std::vector<float> now = show(shown, p, {lit}, Profile::skin(), {method, 0.3f}).light;
+                ShownImages shown(lanes::deviceOf(lanes), 1, 1);
+                const std::vector<float> now = f.shade(shown).light;
                 // By auto, pixels of one vector are left out together.
-                const double most =
-                    method == PEL_SCATTERING_LIGHT
-                        ? double(tolerance::widthsAgree)
-                        : tolerance::scatterLeftOut * double(pelShaderOptionsDefaults().targetError);
+                const double most = method == byLight
+                                        ? double(tolerance::widthsAgree)
+                                        : tolerance::scatterLeftOut * double(f.options.targetError);
                 for (size_t i = 0; i < before.size(); ++i)
                     ASSERT_NEAR(now[i], before[i], most)
                         << lanes << " lanes, method " << int(method) << ", value " << i;
                 before = now;
             }
         }
-}
-
-TEST(SmallPictures, LinesScatterAlongThemselves) {
-    const auto light = [](double x, double y) { return x + y < 6 ? Vec3{1, 1, 1} : Vec3{}; };
-    for (const auto& [method, taps] : {std::pair{screen, 0u}, {screen, 64u}, {separable, 25u}}) {
-        PelScatterControls controls = pelScatterControlsDefaults();
-        controls.scattering = method;
-        controls.scatterTaps = taps;
-        std::vector<float> lines[2];
-        for (int k = 0; k < 2; ++k) {
-            Scatter object(device());
-            Picture p = k ? plane(1, 64, 0.2, light) : plane(64, 1, 0.2, light);
-            p.params.everywhere = 1;
-            lines[k] = scatter(object, {"", p, gaussian(1), 1}, controls);
-            const size_t edge = 3 * 29;
-            EXPECT_GT(lines[k][edge + 3], 0.02f) << int(method) << " " << k;
-            EXPECT_LT(lines[k][edge - 3], 0.98f) << int(method) << " " << k;
-        }
-        if (taps == 64) continue;  // a disk is turned from pixel to pixel
-        for (size_t i = 0; i < lines[0].size(); ++i)
-            EXPECT_NEAR(lines[0][i], lines[1][i], 1e-5) << int(method) << ", " << i;
-    }
-}
-
-TEST(SmallPictures, ASinglePixelKeepsItsLight) {
-    for (const auto& [method, taps] : {std::pair{screen, 0u}, {screen, 16u}, {separable, 9u}}) {
-        PelScatterControls controls = pelScatterControlsDefaults();
-        controls.scattering = method;
-        controls.scatterTaps = taps;
-        Picture p(20, 20);
-        p.set(p.at(7, 9), {1, 2, 3}, {0.5, 0.25, 0.125});
-        Scatter object(device());
-        EXPECT_EQ(scatter(object, {"", p, gaussian(1), 1}, controls), p.irradiance) << int(method);
-    }
-}
-
-// Tiles are chosen alike from all sides: pixels lie close together in one tile of two and far apart in the
-// other, and the picture is mirrored and transposed. Contrasts pass the bound, so that tiles begin to
-// scatter on the way.
-TEST(SmallPictures, TwoTilesAreChosenAlikeFromEverySide) {
-    uint64_t tapped[3] = {};
-    const int contrasts = 60;
-    for (int k = 0; k < contrasts; ++k)
-        for (int way = 0; way < 3; ++way) {
-            Picture p = way < 2 ? Picture(32, 16) : Picture(16, 32);
-            for (uint32_t i = 0; i < 32; ++i)
-                for (uint32_t j = 0; j < 16; ++j) {
-                    const double size = i < 16 ? 2 : 0.25, x = i < 16 ? 2.0 * i : 30 + 0.25 * (i - 15);
-                    const double e = 0.5 + 1e-4 * std::pow(1.1, k) * (i % 8 < 4 ? 1 : -1);
-                    const uint32_t column = way == 0 ? i : way == 1 ? 31 - i : j, row = way < 2 ? j : i;
-                    p.set(p.at(column, row), {x, size * j, 0}, {e, e, e});
-                }
-            const Result result = run(p, gaussian(1.5f));
-            tapped[way] += result.stats.tilesTapped;
-        }
-    EXPECT_GT(tapped[0], 0u);
-    EXPECT_LT(tapped[0], 2u * contrasts);
-    EXPECT_EQ(tapped[1], tapped[0]) << "mirrored";
-    EXPECT_EQ(tapped[2], tapped[0]) << "transposed";
-}
-
-// Finite values whose sums overflow are treated as NaN and Inf are: the pixel keeps its value, and is
-// counted.
-TEST(SmallPictures, LightTooLargeToSumStaysWhereItIs) {
-    for (const auto& [method, taps] : {std::pair{screen, 0u}, {screen, 16u}, {separable, 9u}}) {
-        PelScatterControls controls = pelScatterControlsDefaults();
-        controls.scattering = method;
-        controls.scatterTaps = taps;
-        Picture p = plane(40, 40, 0.2, [](double x, double) { return x < 4 ? Vec3{1, 1, 1} : Vec3{}; });
-        const size_t bright = p.at(19, 21);
-        p.irradiance[3 * bright + 1] = 3e38f;
-        Scatter object(device());
-        const std::vector<float> result = scatter(object, {"", p, gaussian(1), 1}, controls);
-        EXPECT_EQ(object.stats().pixelsInvalid, 1u) << int(method);
-        for (size_t i = 0; i < result.size(); ++i)
-            ASSERT_TRUE(i == 3 * bright + 1 ? result[i] == 3e38f : result[i] >= 0 && result[i] < 1.001f)
-                << int(method) << ", value " << i << ": " << result[i];
-    }
 }

@@ -2,27 +2,21 @@
 // should hold.
 #include <gtest/gtest.h>
 
-#include <pellucid/pellucid.hpp>
-
-#include <cmath>
-#include <limits>
 #include <numbers>
-#include <random>
 
+#include "diffusion/scatter_scene.h"
 #include "reference/surface_integral.h"
-#include "test_size.h"
+#include "sample/mesh.h"
 #include "tolerances.h"
 
 namespace {
 
 using namespace pellucid;
 using reference::LitTriangle;
-using reference::Vec3;
-
-const Device& device() {
-    static const Device made("");
-    return made;
-}
+using scatter_scene::device;
+using scatter_scene::infinity;
+using scatter_scene::notANumber;
+using scatter_scene::Vec3;
 
 struct Mesh {
     std::vector<float> positions, irradiance;
@@ -198,28 +192,15 @@ TEST(SurfaceIntegral, AnyUnit) {
 TEST(SurfaceIntegral, SphereHasTheClosedForm) {
     const int rings = sized(320, 16);
     const double radius = 10;
-    Mesh mesh;
-    for (int i = 0; i <= rings; ++i)
-        for (int j = 0; j < 2 * rings; ++j) {
-            const double theta = std::numbers::pi * i / rings, phi = std::numbers::pi * j / rings;
-            for (double v :
-                 {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)})
-                mesh.positions.push_back(float(radius * v));
-            for (int c = 0; c < 3; ++c) mesh.irradiance.push_back(float(std::max(0.0, std::cos(theta))));
-        }
-    for (int i = 0; i < rings; ++i)
-        for (int j = 0; j < 2 * rings; ++j) {
-            const uint32_t a = uint32_t(i * 2 * rings + j),
-                           b = uint32_t(i * 2 * rings + (j + 1) % (2 * rings));
-            for (uint32_t v : {a, a + 2 * rings, b, b, a + 2 * rings, b + 2 * rings})
-                mesh.indices.push_back(v);
-        }
+    const sample::Mesh sphere = sample::makeSphere(radius, rings, 2 * rings);
+    Mesh mesh{sphere.positions, {}, sphere.triangles};
+    for (size_t i = 2; i < mesh.positions.size(); i += 3)
+        mesh.irradiance.insert(mesh.irradiance.end(), 3, std::max(0.0f, mesh.positions[i] / float(radius)));
     std::vector<float> points;
     std::vector<double> angles;
     for (int i = 0; i <= rings; i += rings / 16) {
-        points.insert(points.end(),
-                      {mesh.positions[size_t(i) * 6 * rings], mesh.positions[size_t(i) * 6 * rings + 1],
-                       mesh.positions[size_t(i) * 6 * rings + 2]});
+        const float* p = &mesh.positions[size_t(i) * 3 * size_t(2 * rings + 1)];
+        points.insert(points.end(), p, p + 3);
         angles.push_back(std::numbers::pi * i / rings);
     }
     for (float scale : {1.0f, 4.0f}) {
@@ -264,18 +245,11 @@ TEST(SurfaceIntegral, HierarchyKeepsItsBound) {
     }
 }
 
-TEST(SurfaceIntegral, SameInputSameBits) {
-    const Mesh mesh = sheet(20, 0.5f);
-    const std::vector<float> points = pointsOn(mesh, 100);
-    EXPECT_EQ(integrate(mesh.desc(), points), integrate(mesh.desc(), points));
-}
-
 TEST(SurfaceIntegral, NothingLitNoPointsAndPointsThatAreNoNumbers) {
     Mesh mesh = sheet(3, 1);
     const PelSurfaceIntegralDesc pointless = mesh.desc();
     EXPECT_EQ(pelSurfaceIntegral(device().get(), &pointless, nullptr), PEL_SUCCESS);
-    const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-    const std::vector<float> found = integrate(mesh.desc(), {nan, 0, 0, 1, 1, 0, 0, inf, 0});
+    const std::vector<float> found = integrate(mesh.desc(), {notANumber, 0, 0, 1, 1, 0, 0, infinity, 0});
     for (int i : {0, 1, 2, 6, 7, 8}) EXPECT_EQ(found[i], 0) << i;
     EXPECT_GT(found[3], 0);
     std::fill(mesh.irradiance.begin(), mesh.irradiance.end(), 0.0f);
@@ -301,7 +275,7 @@ TEST(SurfaceIntegral, BadInputIsRefusedByName) {
             EXPECT_NE(std::string(e.what()).find(message), std::string::npos) << e.what();
         }
     };
-    const float nan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float nan = notANumber;
     refused("triangle 1 has vertex 9; the mesh has 9", [](Mesh& m, auto&) { m.indices[4] = 9; });
     refused("position of vertex 4", [&](Mesh& m, auto&) { m.positions[13] = nan; });
     refused("irradiance 2 holds -1", [](Mesh& m, auto&) { m.irradiance[6] = -1; });
@@ -354,21 +328,4 @@ TEST(SurfaceIntegral, TellsHowFarItIsAndCanBeCancelled) {
         EXPECT_EQ(e.code(), PEL_ERROR_CANCELLED);
     }
     device().setProgress(nullptr, nullptr);
-}
-
-TEST(SurfaceIntegral, QueuedAfterItsWaits) {
-    const Mesh mesh = sheet(4, 1);
-    const std::vector<float> points = pointsOn(mesh, 30), blocking = integrate(mesh.desc(), points);
-    const Buffer in(device(), points.size() * sizeof(float)), out(device(), points.size() * sizeof(float));
-    PelEvent written = nullptr, done = nullptr;
-    const PelSubmit first{nullptr, 0, &written};
-    in.write(points.data(), points.size() * sizeof(float), 0, &first);
-    const PelSubmit second{&written, 1, &done};
-    PelSurfaceIntegralDesc desc = mesh.desc();
-    desc.points = vertexView(in, 30);
-    desc.result = vertexView(out, 30);
-    surfaceIntegral(device(), desc, &second);
-    Event(done).wait();
-    pelEventRelease(written);
-    EXPECT_EQ(out.readAll<float>(), blocking);
 }

@@ -1,55 +1,31 @@
 // Scattering in texture space, against sums over the surface.
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <numbers>
-
 #include "diffusion/scatter_scene.h"
-#include "diffusion/shown_images.h"
-#include "reference/diffusion_texture.h"
+#include "reference/shade_passes.h"
+#include "sample/mesh.h"
 #include "tolerances.h"
 
 using namespace scatter_scene;
 using pellucid::TextureScatter;
+using pellucid::sample::Mesh;
 
 namespace {
 
-struct Mesh {
-    std::vector<float> positions, normals, uvs;
-    std::vector<uint32_t> indices;
-    uint32_t vertices() const { return uint32_t(uvs.size() / 2); }
+uint32_t verticesOf(const Mesh& m) {
+    return uint32_t(m.positions.size() / 3);
+}
 
-    void vertex(Vec3 p, double u, double v, Vec3 n = {0, 0, 1}) {
-        for (int c = 0; c < 3; ++c) positions.push_back(float(p[c])), normals.push_back(float(n[c]));
-        uvs.push_back(float(u)), uvs.push_back(float(v));
-    }
-    void quad(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
-        indices.insert(indices.end(), {a, b, c, a, c, d});
-    }
-    // A rectangle of the plane, in a rectangle of the texture.
-    void plate(double x0, double y0, double x1, double y1, double u0, double v0, double u1, double v1) {
-        const uint32_t first = vertices();
-        vertex({x0, y0, 0}, u0, v0), vertex({x1, y0, 0}, u1, v0);
-        vertex({x1, y1, 0}, u1, v1), vertex({x0, y1, 0}, u0, v1);
-        quad(first, first + 1, first + 2, first + 3);
-    }
-};
-
-// Longitude along u, latitude along v, poles left out.
-Mesh sphere(double radius, uint32_t around, uint32_t up) {
+// Adds a rectangle of the plane, in a rectangle of the texture.
+void addPlate(Mesh& m, float x0, float y0, float x1, float y1, float u0, float v0, float u1, float v1) {
+    const uint32_t first = verticesOf(m);
+    m.positions.insert(m.positions.end(), {x0, y0, 0, x1, y0, 0, x1, y1, 0, x0, y1, 0});
+    m.uvs.insert(m.uvs.end(), {u0, v0, u1, v0, u1, v1, u0, v1});
+    for (uint32_t v : {0, 1, 2, 0, 2, 3}) m.triangles.push_back(first + v);
+}
+Mesh plate(float width, float height, float u = 1, float v = 1) {
     Mesh m;
-    for (uint32_t j = 0; j <= up; ++j)
-        for (uint32_t i = 0; i <= around; ++i) {
-            const double u = double(i) / around, v = double(j) / up, a = 2 * std::numbers::pi * u,
-                         b = std::numbers::pi * (0.02 + 0.96 * v);
-            const Vec3 n{std::sin(b) * std::cos(a), std::sin(b) * std::sin(a), std::cos(b)};
-            m.vertex(radius * n, u, v, n);
-        }
-    for (uint32_t j = 0; j < up; ++j)
-        for (uint32_t i = 0; i < around; ++i) {
-            const uint32_t a = j * (around + 1) + i;
-            m.quad(a, a + around + 1, a + around + 2, a + 1);
-        }
+    addPlate(m, 0, 0, width, height, 0, 0, u, v);
     return m;
 }
 
@@ -59,19 +35,18 @@ struct Texture {
     Texture(const Mesh& m, uint32_t w, uint32_t h) : width(w), height(h) {
         PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
         desc.width = w, desc.height = h;
-        desc.numVertices = m.vertices(), desc.numIndices = m.indices.size();
-        desc.indices = m.indices.data(), desc.uvs = m.uvs.data();
+        desc.numVertices = verticesOf(m), desc.numIndices = m.triangles.size();
+        desc.indices = m.triangles.data(), desc.uvs = m.uvs.data();
         scatter = TextureScatter(device(), desc);
-        const Buffer p(device(), m.positions);
-        scatter.setPositions(pellucid::vertexView(p, m.vertices()));
+        scatter.setPositions(vertexView(Buffer(device(), m.positions), verticesOf(m)));
     }
     size_t texels() const { return size_t(width) * height; }
     PelImageDesc image(const Buffer& b) const {
         return pellucid::imageDesc(b, PEL_FORMAT_RGB32F, width, height);
     }
-    std::vector<float> draw(const std::vector<float>& values, bool unit = false) {
-        const Buffer v(device(), values), out(device(), std::vector<float>(3 * texels(), -1.0f));
-        scatter.draw(pellucid::vertexView(v, uint32_t(values.size() / 3)), unit, image(out));
+    std::vector<float> draw(const std::vector<float>& values) {
+        const Buffer out(device(), std::vector<float>(3 * texels(), -1.0f));
+        scatter.draw(vertexView(Buffer(device(), values), uint32_t(values.size() / 3)), false, image(out));
         return out.readAll<float>();
     }
     std::vector<float> run(const std::vector<float>& irradiance, const Profile& profile,
@@ -94,8 +69,7 @@ Profile oneGaussian(double sigma) {
 
 // A step on a plane whose texture is stretched three times as far along u: an error function of true lengths.
 TEST(TextureScatter, WidthsAreLengthsOnTheSurface) {
-    Mesh m;
-    m.plate(0, 0, 36, 12, 0, 0, 1, 1);
+    const Mesh m = plate(36, 12);
     Texture t(m, 120, 120);
     const auto positions = t.draw(m.positions);
     for (int axis : {0, 1})
@@ -120,81 +94,64 @@ TEST(TextureScatter, WidthsAreLengthsOnTheSurface) {
 }
 
 TEST(TextureScatter, VariancesAddToTheProfile) {
-    Mesh m;
-    m.plate(0, 0, 16, 16, 0, 0, 1, 1);
-    Texture t(m, 48, 48);
-    const auto positions = t.draw(m.positions);
-    std::vector<float> e;
-    std::vector<reference::Texel> texels;
-    std::mt19937 random(5);
-    for (size_t i = 0; i < t.texels(); ++i) {
-        const double x = positions[3 * i], y = positions[3 * i + 1];
-        const float v = float(0.5 + 0.3 * std::sin(x) * std::cos(0.7 * y) + 0.2 * (x > 8));
-        e.insert(e.end(), {v, 1 - v, 0.5f * v});
-        texels.push_back({{x, y, 0}, 1.0 / 9, {v, 1.0 - v, 0.5 * v}, 1});
+    Texture t(plate(16, 16), 48, 48);
+    Picture p(48, 48);
+    p.positions = t.draw(plate(16, 16).positions);
+    for (size_t i = 0; i < p.pixels(); ++i) {
+        const Vec3 at = p.place(i);
+        const double v = 0.5 + 0.3 * std::sin(at.x) * std::cos(0.7 * at.y) + 0.2 * (at.x > 8);
+        p.set(i, at, {v, 1 - v, 0.5 * v});
     }
-    const auto s = t.run(e, Profile::skin());
-    const auto exact = reference::scatterTexels(texels, *reference::skinProfile());
-    double sum = 0;
-    for (size_t i = 0; i < exact.size(); ++i)
-        for (int c = 0; c < 3; ++c) sum += std::pow(s[3 * i + c] - exact[i][c], 2);
-    const double rms = std::sqrt(sum / double(3 * exact.size()));
-    RecordProperty("rms", std::to_string(rms));
-    std::printf("plane: rms %.1e\n", rms);
-    EXPECT_LT(rms, tolerance::texturePlane);
+    const Difference d = difference(p, t.run(p.irradiance, Profile::skin()),
+                                    reference::scatterOnScreen(p.exact(), *reference::skinProfile()));
+    std::printf("plane: rms %.1e\n", d.rms);
+    EXPECT_LT(d.rms, tolerance::texturePlane);
     EXPECT_EQ(t.scatter.stats().gaussians, 6u);
 }
 
 // Against the surface integral over the mesh, a sphere lit from the side.
 TEST(TextureScatter, ASphereIsNearItsSurfaceIntegral) {
-    const double radius = 10;
-    const Mesh m = sphere(radius, 192, 96);
+    const Mesh m = pellucid::sample::makeSphere(10, 96, 192);
     Texture t(m, 512, 256);
     const Vec3 toLight = normalized(Vec3{0.3, 1, 0.2});
     std::vector<float> lit;
-    for (uint32_t i = 0; i < m.vertices(); ++i) {
-        const double e = reference::max0(m.normals[3 * i] * toLight.x + m.normals[3 * i + 1] * toLight.y +
-                                         m.normals[3 * i + 2] * toLight.z);
-        lit.insert(lit.end(), 3, float(e));
+    for (uint32_t i = 0; i < verticesOf(m); ++i) {
+        const Vec3 n{m.normals[3 * i], m.normals[3 * i + 1], m.normals[3 * i + 2]};
+        lit.insert(lit.end(), 3, float(reference::max0(dot(n, toLight))));
     }
     const Profile profile = Profile::skin();
-    const auto drawn = t.draw(lit), positions = t.draw(m.positions);
-    const auto s = t.run(drawn, profile);
+    const auto drawn = t.draw(lit), positions = t.draw(m.positions), s = t.run(drawn, profile);
     // At texels away from poles and from the seam at u = 0.
-    std::vector<float> points;
-    std::vector<size_t> which;
+    std::vector<float> points, scattered, lambert;
     for (uint32_t y = 50; y < 206; y += 7)
-        for (uint32_t x = 90; x < 430; x += 7) {
-            which.push_back(y * 512 + x);
-            for (int c = 0; c < 3; ++c) points.push_back(positions[3 * which.back() + c]);
-        }
+        for (uint32_t x = 90; x < 430; x += 7)
+            for (size_t k = 3 * (y * 512 + x), c = 0; c < 3; ++c) {
+                points.push_back(positions[k + c]);
+                scattered.push_back(s[k + c]), lambert.push_back(drawn[k + c]);
+            }
+    const auto count = uint32_t(points.size() / 3);
     PelSurfaceIntegralDesc desc = pelSurfaceIntegralDescDefaults();
-    desc.numVertices = m.vertices(), desc.numIndices = m.indices.size();
-    desc.positions = m.positions.data(), desc.indices = m.indices.data(), desc.irradiance = lit.data();
+    desc.numVertices = verticesOf(m), desc.numIndices = m.triangles.size();
+    desc.positions = m.positions.data(), desc.indices = m.triangles.data(), desc.irradiance = lit.data();
     desc.profile = profile.get();
     const Buffer at(device(), points), integral(device(), points.size() * sizeof(float));
-    desc.points = pellucid::vertexView(at, uint32_t(which.size()));
-    desc.result = pellucid::vertexView(integral, uint32_t(which.size()));
+    desc.points = vertexView(at, count);
+    desc.result = vertexView(integral, count);
     pellucid::surfaceIntegral(device(), desc);
+    Picture all(count, 1);  // only to compare
+    std::ranges::fill(all.ids, 1);
     const auto truth = integral.readAll<float>();
-    double sum = 0, lambert = 0;
-    for (size_t i = 0; i < which.size(); ++i)
-        for (int c = 0; c < 3; ++c) {
-            sum += std::pow(s[3 * which[i] + c] - truth[3 * i + c], 2);
-            lambert += std::pow(drawn[3 * which[i] + c] - truth[3 * i + c], 2);
-        }
-    const double rms = std::sqrt(sum / double(truth.size())),
-                 without = std::sqrt(lambert / double(truth.size()));
+    const double rms = difference(all, scattered, truth).rms, without = difference(all, lambert, truth).rms;
     std::printf("sphere: rms %.4f, Lambert %.4f\n", rms, without);
-    RecordProperty("rms", std::to_string(rms) + ", Lambert " + std::to_string(without));
     EXPECT_LT(rms, tolerance::textureSphere);
     EXPECT_LT(rms, 0.35 * without);
 }
 
 TEST(TextureScatter, SeamsNeitherDarkenNorLeak) {
     Mesh m;
-    m.plate(0, 0, 10, 10, 0.05, 0.05, 0.45, 0.95);
-    m.plate(50, 0, 60, 10, 0.46, 0.05, 0.95, 0.95);  // one texel away in the texture, far away on the surface
+    addPlate(m, 0, 0, 10, 10, 0.05f, 0.05f, 0.45f, 0.95f);
+    addPlate(m, 50, 0, 60, 10, 0.46f, 0.05f, 0.95f,
+             0.95f);  // one texel away in the texture, far away on the surface
     Texture t(m, 100, 100);
     std::vector<float> e;
     for (size_t i = 0; i < t.texels(); ++i) e.insert(e.end(), 3, i % 100 < 45 ? 1.0f : 0.25f);
@@ -203,26 +160,27 @@ TEST(TextureScatter, SeamsNeitherDarkenNorLeak) {
     for (size_t y = 5; y < 95; ++y)
         for (size_t x = 0; x < 100; ++x) {
             const float v = s[3 * (100 * y + x)];
-            if (x >= 5 && x < 45) ASSERT_NEAR(v, 1, 1e-5) << x << " " << y;
-            if (x >= 46 && x < 95) ASSERT_NEAR(v, 0.25, 1e-5) << x << " " << y;
             padded += x == 95 && v > 0;
-            if (x > 97 || x < 3) ASSERT_EQ(v, 0) << x;
+            if (x == 45 || (x >= 3 && x < 5) || (x >= 95 && x < 98)) continue;
+            ASSERT_NEAR(v,
+                        x < 3 || x > 97 ? 0
+                        : x < 45        ? 1
+                                        : 0.25,
+                        x < 3 || x > 97 ? 0 : 1e-5)
+                << x << " " << y;
         }
     EXPECT_EQ(padded, 90u);  // what samples bilinearly finds light there
     const PelTextureScatterStats stats = t.scatter.stats();
     EXPECT_EQ(stats.texelsCovered, 40u * 90 + 49 * 90);
     EXPECT_EQ(stats.tilesBlurred, 6u * 36);  // of 49
     // A corner of the texture costs a corner.
-    Mesh corner;
-    corner.plate(0, 0, 4, 4, 0, 0, 0.125, 0.125);
-    Texture small(corner, 256, 256);
+    Texture small(plate(4, 4, 0.125f, 0.125f), 256, 256);
     small.run(std::vector<float>(3 * small.texels(), 0.5f), Profile::skin());
     EXPECT_EQ(small.scatter.stats().tilesBlurred, 6u * 4);
 }
 
 TEST(TextureScatter, AlbedoBeforeAndAfter) {
-    Mesh m;
-    m.plate(0, 0, 10, 10, 0, 0, 1, 1);
+    const Mesh m = plate(10, 10);
     Texture t(m, 40, 40);
     std::vector<float> e, albedo;
     for (size_t i = 0; i < t.texels(); ++i)
@@ -242,8 +200,7 @@ TEST(TextureScatter, AlbedoBeforeAndAfter) {
 }
 
 TEST(TextureScatter, OtherProfilesAreAFewGaussians) {
-    Mesh m;
-    m.plate(0, 0, 10, 10, 0, 0, 1, 1);
+    const Mesh m = plate(10, 10);
     Texture t(m, 16, 16);
     const std::vector<float> e(3 * t.texels(), 1.0f);
     const Profile burley = Profile::burleyDistance({1.0f, 0.4f, 0.2f}),
@@ -256,7 +213,6 @@ TEST(TextureScatter, OtherProfilesAreAFewGaussians) {
         for (float v : t.run(e, burley, params)) ASSERT_NEAR(v, 1, 1e-4);
         EXPECT_EQ(t.scatter.stats().gaussians, count);
         const double error = t.scatter.stats().profileError;
-        RecordProperty("burley" + std::to_string(count), std::to_string(error));
         std::printf("burley by %u Gaussians: %.4f of the light\n", count, error);
         EXPECT_LT(error, before);
         EXPECT_NEAR(error, measured, 1e-4);
@@ -268,17 +224,17 @@ TEST(TextureScatter, OtherProfilesAreAFewGaussians) {
 
 TEST(TextureScatter, BadInput) {
     Mesh m;
-    m.plate(0, 0, 10, 10, 0.2, 0.2, 0.8, 0.8);
+    addPlate(m, 0, 0, 10, 10, 0.2f, 0.2f, 0.8f, 0.8f);
     PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
     desc.width = desc.height = 16;
     TextureScatter unplaced(device(), desc);
+    Texture t(m, 16, 16);
     const Buffer e(device(), std::vector<float>(3 * 256, 1.0f)), out(device(), 3 * 256 * sizeof(float));
     const auto rgb = [&](const Buffer& b, uint32_t side = 16) {
         return pellucid::imageDesc(b, PEL_FORMAT_RGB32F, side, side);
     };
     const PelTextureScatterParams defaults = pelTextureScatterParamsDefaults();
     EXPECT_THROW(unplaced.execute(defaults, rgb(e), nullptr, rgb(out)), pellucid::Error);
-    Texture t(m, 16, 16);
     EXPECT_THROW(t.scatter.execute(defaults, rgb(e, 8), nullptr, rgb(out)), pellucid::Error);
     EXPECT_THROW(t.scatter.execute(defaults, rgb(e), nullptr, rgb(out, 8)), pellucid::Error);
     for (auto change : {+[](PelTextureScatterParams& p) { p.scale = 0; },
@@ -297,26 +253,21 @@ TEST(TextureScatter, BadInput) {
     corrupted[3 * (16 * 8 + 8)] = NAN;
     for (float v : t.run(corrupted, Profile::skin())) ASSERT_TRUE(std::isfinite(v));
     EXPECT_EQ(t.scatter.stats().texelsInvalid, 1u);
-    for (float& p : m.positions) p = INFINITY;
-    const Buffer nowhere(device(), m.positions);
-    t.scatter.setPositions(pellucid::vertexView(nowhere, m.vertices()));
+    std::ranges::fill(m.positions, infinity);
+    t.scatter.setPositions(vertexView(Buffer(device(), m.positions), verticesOf(m)));
     for (float v : t.run(std::vector<float>(3 * 256, 0.5f), Profile::skin()))
         ASSERT_TRUE(v == 0.5f || v == 0);
     // Texels too long along one axis alone.
-    for (double x : {1e38, 0.0})
-        for (double y : {1e38, 0.0}) {
-            Mesh stretched;
-            stretched.plate(0, 0, x ? x : 8, y ? y : 8, 0, 0, 1, 1);
-            Texture far(stretched, 16, 16);
-            std::vector<float> step(3 * 256, 0.5f);
-            std::fill_n(step.begin(), 3 * 100, 0.25f);
-            for (float v : far.run(step, Profile::skin())) ASSERT_TRUE(v >= 0.25f && v <= 0.5f) << v;
-        }
-    // Same input, same bits; over the irradiance too.
-    Texture again(sphere(5, 24, 12), 64, 32);
+    std::vector<float> step(3 * 256, 0.5f);
+    std::fill_n(step.begin(), 3 * 100, 0.25f);
+    for (float x : {1e38f, 8.0f})
+        for (float y : {1e38f, 8.0f})
+            for (float v : Texture(plate(x, y), 16, 16).run(step, Profile::skin()))
+                ASSERT_TRUE(v >= 0.25f && v <= 0.5f) << v;
+    // Over the irradiance itself.
+    Texture again(plate(5, 5), 64, 32);
     std::vector<float> light;
     for (size_t i = 0; i < 3 * again.texels(); ++i) light.push_back(float(i % 11) / 10);
-    EXPECT_EQ(again.run(light, Profile::skin()), again.run(light, Profile::skin()));
     const Buffer place(device(), light);
     again.scatter.execute(defaults, again.image(place), nullptr, again.image(place));
     EXPECT_EQ(place.readAll<float>(), again.run(light, Profile::skin()));
@@ -326,8 +277,12 @@ TEST(TextureScatter, BadInput) {
 TEST(TextureScatter, ShadersSampleIt) {
     const uint32_t side = 24;
     std::vector<float> texture, uvs, normals, irradiance(3 * side * side, 9.0f);
+    reference::NormalLevel exact{8, 8, {}};
     for (int y = 0; y < 8; ++y)
-        for (int x = 0; x < 8; ++x) texture.insert(texture.end(), {float(x), float(y), 1});
+        for (int x = 0; x < 8; ++x) {
+            exact.texels.push_back({double(x), double(y), 1});
+            texture.insert(texture.end(), {float(x), float(y), 1});
+        }
     std::vector<uint8_t> ids;
     for (uint32_t y = 0; y < side; ++y)
         for (uint32_t x = 0; x < side; ++x) {
@@ -335,35 +290,26 @@ TEST(TextureScatter, ShadersSampleIt) {
             normals.insert(normals.end(), {0, 0, 1});
             ids.push_back(x < 16 ? 1 : 2);
         }
-    scatter_scene::ShownImages shown(device(), side, side);
+    ShownImages shown(device(), side, side);
     pellucid::Shader& shader = shown.shader;
     shown.set(PEL_SLOT_NORMAL_SHADING, normals);
     shown.set(PEL_SLOT_IRRADIANCE, irradiance);
     shown.set(PEL_SLOT_MATERIAL, ids);
-    PelMaterial material = pelMaterialDefaults();
-    material.scattering = PEL_SCATTERING_NONE;
-    shader.setMaterial(2, material);
-    material.scattering = PEL_SCATTERING_TEXTURE;
-    shader.setMaterial(1, material);
+    for (uint32_t id : {1u, 2u}) {
+        PelMaterial m = whiteMaterial(Profile(), id == 1 ? PEL_SCATTERING_TEXTURE : PEL_SCATTERING_NONE);
+        std::fill_n(m.albedo, 3, 0.5f);
+        shader.setMaterial(id, m);
+    }
     EXPECT_THROW(shader.commit(), pellucid::Error);  // no texture
     shader.setScatteredTexture(1, pellucid::imageDesc(Buffer(device(), texture), PEL_FORMAT_RGB32F, 8, 8));
     EXPECT_THROW(shader.commit(), pellucid::Error);  // no coordinates
     shown.set(PEL_SLOT_UV, uvs);
     const auto result = shown.execute();
-    const auto bilinear = [&](double u, double v, int c) {
-        const auto at = [&](int x, int y) {
-            return double(texture[3 * size_t((y & 7) * 8 + (x & 7)) + size_t(c)]);
-        };
-        const double x = u * 8 - 0.5, y = v * 8 - 0.5, fx = x - std::floor(x), fy = y - std::floor(y);
-        const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
-        return (1 - fy) * ((1 - fx) * at(x0, y0) + fx * at(x0 + 1, y0)) +
-               fy * ((1 - fx) * at(x0, y0 + 1) + fx * at(x0 + 1, y0 + 1));
-    };
-    for (size_t k = 0; k < ids.size(); ++k)
+    for (size_t k = 0; k < ids.size(); ++k) {
+        const Vec3 sampled = reference::sampleRepeated(exact, uvs[2 * k], uvs[2 * k + 1]);
         for (int c = 0; c < 3; ++c)
-            ASSERT_NEAR(result[3 * k + c], 0.5 * (ids[k] == 1 ? bilinear(uvs[2 * k], uvs[2 * k + 1], c) : 9),
-                        1e-4)
-                << k;
+            ASSERT_NEAR(result[3 * k + c], 0.5 * (ids[k] == 1 ? sampled[c] : 9), 1e-4) << k;
+    }
     const PelShaderStats stats = shader.stats();
     EXPECT_EQ(stats.tilesByScattering[PEL_SCATTERING_TEXTURE], 2u);
     EXPECT_EQ(stats.pixelsScattered, 16u * 24);

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
-#include <numbers>
 #include <random>
 
 #include "reference/lut.h"
@@ -13,7 +12,6 @@
 using namespace reference;
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr Form allForms[] = {Form::arc, Form::ring, Form::halfRing, Form::sphere, Form::pennerRing};
 const double someU[] = {-1, -0.9, -0.5, -0.1, -1e-3, 0, 1e-3, 0.1, 0.3, 0.7, 0.99, 1};
 

@@ -4,7 +4,6 @@
 
 #include <boost/math/quadrature/tanh_sinh.hpp>
 #include <boost/math/special_functions/bessel.hpp>
-#include <numbers>
 
 #include "reference/profile.h"
 #include "reference/quadrature.h"
@@ -12,8 +11,6 @@
 
 using namespace reference;
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 ProfilePtr testDipole() {
     // Skin1 of Jensen et al. 2001, table 1, per mm.

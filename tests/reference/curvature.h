@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "reference/vec.h"
@@ -16,6 +17,13 @@ struct Mesh {
     std::vector<Vec2> uvs;        // as many as positions, or none
     std::vector<Triangle> triangles;
 };
+
+// corner(a, b, c) for each corner a of every triangle, b and c after it.
+template <class Corner>
+void forCorners(const Mesh& mesh, const Corner& corner) {
+    for (const Triangle& t : mesh.triangles)
+        for (int i = 0; i < 3; ++i) corner(t[i], t[(i + 1) % 3], t[(i + 2) % 3]);
+}
 
 // (least + largest)/2 of |dn|/|dp| over the edges that meet in a vertex, 1/length. Edges of no length are
 // skipped; a vertex without any other edge has 0.
@@ -65,5 +73,37 @@ double uvScale(const Mesh& mesh);
 // Unit normals per vertex from the triangles around it, weighted by their angle there (Thuermer & Wuethrich
 // 1998).
 std::vector<Vec3> estimatedNormals(const Mesh& mesh);
+
+// The two-ring fit of docs/guide/curvature.md ("The fit, exactly").
+struct QuadricCurvature : PrincipalCurvatures {
+    Vec3 firstDirection, secondDirection;  // unit, signs arbitrary
+    Vec3 normal;                           // unit, of the fitted surface
+    bool measured = false;                 // false: no neighbour at another place
+    bool replaced = false;                 // the given normal was not believed
+    bool low = false;                      // the points do not tell all terms apart even so
+    bool border = false;
+    int points = 0;  // distinct vertices that tell about this one
+    // How near the nearest yes-or-no decision (replace the normal, leave a point out, fit once more) came to
+    // its threshold, relative: where it is as small as float rounding, single precision may decide the other
+    // way.
+    double margin = 1, lowMargin = 1;  // the latter of `low`, on which nothing else depends
+};
+
+// Positions and normals must be finite and the triangles consistently ordered, each with three corners of its
+// own.
+std::vector<QuadricCurvature> quadricCurvature(const Mesh& mesh);
+
+// --- from a G-buffer (section 5 of the mathematics): |fwidth N| / |fwidth P|, where fwidth never crosses an edge ---
+
+struct ScreenImage {
+    int width = 0, height = 0;
+    std::vector<Vec3> normals, positions;  // row by row
+    std::vector<uint32_t> ids;             // or none
+};
+
+// 1/length per pixel; 0 for what has id 0, a normal or position that is not finite, or no neighbour to
+// compare with. A neighbour lies beyond an edge if its id differs or the step to it leans by more than
+// asin(edge) out of the surface at either end.
+std::vector<double> screenCurvature(const ScreenImage& image, double edge);
 
 }  // namespace reference

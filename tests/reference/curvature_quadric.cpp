@@ -1,7 +1,7 @@
-#include "reference/curvature_quadric.h"
-
 #include <map>
 #include <set>
+
+#include "reference/curvature.h"
 
 namespace reference {
 namespace {
@@ -16,14 +16,11 @@ struct Neighbourhood {
 // Made only from the triangles that have the vertex as a corner.
 std::vector<Neighbourhood> neighbourhoods(const Mesh& mesh) {
     std::vector<Neighbourhood> all(mesh.positions.size());
-    for (const Triangle& t : mesh.triangles)
-        for (int i = 0; i < 3; ++i) {
-            const int b = t[(i + 1) % 3], c = t[(i + 2) % 3];
-            Neighbourhood& n = all[t[i]];
-            n.ring.insert({b, c});
-            n.across[b] = c;
-            n.before[c] = b;
-        }
+    forCorners(mesh, [&](int a, int b, int c) {
+        all[a].ring.insert({b, c});
+        all[a].across[b] = c;
+        all[a].before[c] = b;
+    });
     for (Neighbourhood& n : all) {
         for (int b : n.ring) n.border |= !n.across.contains(b) || !n.before.contains(b);
         if (n.border || n.ring.size() < 3) continue;

@@ -1,16 +1,7 @@
 #include "reference/diffusion_light.h"
 
-#include <array>
-#include <cmath>
-#include <limits>
-#include <numbers>
-
-#include "reference/cube.h"
-
 namespace reference {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Constants of the definition.
 constexpr double ownWindow = 2, ownCosine = 0.4;       // width in quarters of a texel; smallest cosine
@@ -36,14 +27,6 @@ double determinant(Vec3 a, Vec3 b, Vec3 c) {
     return dot(a, cross(b, c));
 }
 
-// p with row . p + constant = 0 for three rows, by Cramer's rule.
-Vec3 meet(const std::array<Vec3, 3>& rows, const std::array<double, 3>& constants) {
-    const double all = determinant(rows[0], rows[1], rows[2]);
-    const Vec3 sum = constants[0] * cross(rows[1], rows[2]) + constants[1] * cross(rows[2], rows[0]) +
-                     constants[2] * cross(rows[0], rows[1]);
-    return -1 * sum / all;
-}
-
 // The point that is seen at (u, v, depth).
 Vec3 pointAt(const LightDepths& map, const MappedLight& light, double u, double v, double depth) {
     if (map.face >= 0) {
@@ -51,15 +34,14 @@ Vec3 pointAt(const LightDepths& map, const MappedLight& light, double u, double 
         const double along = map.decoding.distance(depth) / (map.radial ? length(d) : 1);
         return light.position + along * d;
     }
+    // row . p + constant = 0 for three rows, by Cramer's rule.
     const Matrix4& m = map.worldToShadow;
-    std::array<Vec3, 3> rows;
-    std::array<double, 3> constants{};
+    Vec3 rows[3], sum;
     const double at[] = {u, v, depth};
-    for (size_t r = 0; r < 3; ++r) {
-        rows[r] = rowOf(m, int(r)) - at[r] * rowOf(m, 3);
-        constants[r] = m[r][3] - at[r] * m[3][3];
-    }
-    return meet(rows, constants);
+    for (int r = 0; r < 3; ++r) rows[r] = rowOf(m, r) - at[r] * rowOf(m, 3);
+    for (int r = 0; r < 3; ++r)
+        sum = sum + (m[r][3] - at[r] * m[3][3]) * cross(rows[(r + 1) % 3], rows[(r + 2) % 3]);
+    return -1 * sum / determinant(rows[0], rows[1], rows[2]);
 }
 
 // The area that a beam through 1 in u and 1 in v has across the light, where it shines on `p`; by a unit of
@@ -121,22 +103,6 @@ Vec3 stepOf(Vec3 p, Vec3 before, Vec3 after) {
     return alike && std::isfinite(back + on) ? (after - before) / 2 : shorter(p, before, after);
 }
 
-// Of the pixels that belong to the same object.
-struct Steps {
-    Vec3 right, down;
-};
-Steps stepsAt(const ScatterPicture& p, int x, int y) {
-    const auto place = [&](int u, int v) {
-        const bool there =
-            u >= 0 && v >= 0 && u < p.width && v < p.height && p.ids[p.at(u, v)] == p.ids[p.at(x, y)];
-        return there ? p.positions[p.at(u, v)] : Vec3{nan, nan, nan};
-    };
-    const Vec3 here = p.positions[p.at(x, y)];
-    const auto finite = [](Vec3 v) { return std::isfinite(length(v)) ? v : Vec3{}; };
-    return {finite(shorter(here, place(x - 1, y), place(x + 1, y))),
-            finite(shorter(here, place(x, y - 1), place(x, y + 1)))};
-}
-
 double nearShare(double distance, double rho) {
     return saturate(2 - distance / rho);
 }
@@ -148,15 +114,9 @@ class Cut {
         : profile_(profile), reach_(scatterReach(profile)), all_(enclosedEnergy(profile, reach_)) {}
     Rgb radial(double distance) const {
         if (distance >= reach_) return {};
-        Rgb density = profile_.radial(distance);
-        for (int c = 0; c < 3; ++c) density[c] /= all_[c];
-        return density;
+        return profile_.radial(distance) / all_;
     }
-    Rgb within(double distance) const {
-        Rgb share = enclosedEnergy(profile_, std::min(distance, reach_));
-        for (int c = 0; c < 3; ++c) share[c] /= all_[c];
-        return share;
-    }
+    Rgb within(double distance) const { return enclosedEnergy(profile_, std::min(distance, reach_)) / all_; }
 
   private:
     const Profile& profile_;
@@ -189,7 +149,13 @@ double trustInPixels(double byPixels, double byTexels, double weight, double win
     return std::max(saturate(2 - apart / agree), finer * whole);
 }
 
-}  // namespace
+// Lit surface: what one texel shows.
+struct LitTexel {
+    Vec3 position;
+    double flux;       // irradiance times area, over the light's colour
+    double extent;     // area
+    Vec3 right, down;  // its sides
+};
 
 std::vector<LitTexel> litTexels(const MappedLight& light) {
     std::vector<LitTexel> all;
@@ -223,6 +189,8 @@ std::vector<LitTexel> litTexels(const MappedLight& light) {
     return all;
 }
 
+}  // namespace
+
 std::vector<Rgb> scatterFromLights(const ScatterPicture& p, const std::vector<MappedLight>& lights,
                                    const Profile& whole) {
     const Cut profile(whole);
@@ -238,10 +206,10 @@ std::vector<Rgb> scatterFromLights(const ScatterPicture& p, const std::vector<Ma
             const size_t i = p.at(x, y);
             if (!(areas[i] > 0)) continue;
             const Vec3 here = p.positions[i];
-            const Steps steps = stepsAt(p, x, y);
-            const Vec3 across = cross(steps.right, steps.down),
+            const Vec3 right = shorterStep(p, x, y, 1, 0).value_or(Vec3{}),
+                       down = shorterStep(p, x, y, 0, 1).value_or(Vec3{}), across = cross(right, down),
                        normal = across / std::max(length(across), 1e-300);
-            const double step = std::max(length(steps.right), length(steps.down));
+            const double step = std::max(length(right), length(down));
             double rho = 0, own = 0, texel = 0, steepest = 1;
             for (const MappedLight& light : lights) {
                 const Vec3 toLight = light.directional ? light.toLight : normalized(light.position - here);
@@ -285,7 +253,7 @@ std::vector<Rgb> scatterFromLights(const ScatterPicture& p, const std::vector<Ma
                         lights[k].color[c] * light[c] * planeLike(weight[c], within[c] - withinOwn[c]);
             }
             // Near: the mean of what pixels show.
-            const Rgb self = profile.within(std::sqrt(areas[i] / std::numbers::pi));
+            const Rgb self = profile.within(std::sqrt(areas[i] / pi));
             Rgb weights = self, near = self * lit;
             for (size_t j = 0; j < p.positions.size(); ++j) {
                 if (j == i || !(areas[j] > 0) || p.ids[j] != p.ids[i]) continue;

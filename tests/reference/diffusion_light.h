@@ -32,15 +32,6 @@ struct MappedLight {
     std::vector<LightDepths> maps;  // of cascades the finest first: it has what it holds
 };
 
-// Lit surface: what one texel shows.
-struct LitTexel {
-    Vec3 position;
-    double flux;       // irradiance times area, over the light's colour
-    double extent;     // area
-    Vec3 right, down;  // its sides
-};
-std::vector<LitTexel> litTexels(const MappedLight& light);
-
 // All of a picture's pixels, by the profile within its reach (scatterReach), which is then the whole.
 // `picture.camera` is not looked at.
 std::vector<Rgb> scatterFromLights(const ScatterPicture& picture, const std::vector<MappedLight>& lights,

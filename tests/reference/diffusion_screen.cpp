@@ -1,19 +1,11 @@
 #include "reference/diffusion_screen.h"
 
-#include <numbers>
-
 namespace reference {
-namespace {
-
-bool finite(Vec3 v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 bool sound(const ScatterPicture& p, size_t i) {
     return p.ids[i] != 0 && finite(p.positions[i]) && finite(p.irradiance[i]);
 }
 
-// The shorter of the two steps along (dx, dy); empty where neither neighbour belongs.
 std::optional<Vec3> shorterStep(const ScatterPicture& p, int x, int y, int dx, int dy) {
     std::optional<Vec3> shortest;
     for (int side : {-1, 1}) {
@@ -26,8 +18,6 @@ std::optional<Vec3> shorterStep(const ScatterPicture& p, int x, int y, int dx, i
     }
     return shortest;
 }
-
-}  // namespace
 
 double scatterReach(const Profile& profile) {
     double low = 0, high = 64 * magnitude(rmsWidth(profile));
@@ -61,7 +51,7 @@ std::vector<Rgb> scatterOnScreen(const ScatterPicture& p, const Profile& profile
     for (size_t i = 0; i < result.size(); ++i) {
         if (!(areas[i] > 0)) continue;
         // The pixel itself: the share of a disk of its area.
-        Rgb weights = enclosedEnergy(profile, std::min(reach, std::sqrt(areas[i] / std::numbers::pi))),
+        Rgb weights = enclosedEnergy(profile, std::min(reach, std::sqrt(areas[i] / pi))),
             light = weights * p.irradiance[i];
         for (size_t j = 0; j < result.size(); ++j) {
             if (i == j || !(areas[j] > 0) || p.ids[j] != p.ids[i]) continue;

@@ -22,6 +22,11 @@ struct ScatterPicture {
 // The distance beyond which the profile's light is left out: where no channel has more than 0.4 % left.
 double scatterReach(const Profile& profile);
 
+// A pixel with an id whose position and irradiance are numbers.
+bool sound(const ScatterPicture& picture, size_t pixel);
+// The shorter of the two steps along (dx, dy) to a sound pixel of the same id; empty where neither is one.
+std::optional<Vec3> shorterStep(const ScatterPicture& picture, int x, int y, int dx, int dy);
+
 // Surface under a pixel: the cross product of the shorter steps to neighbours of its id; squares where there
 // is one step, 0 where there is none.
 double surfaceArea(const ScatterPicture& picture, int x, int y);

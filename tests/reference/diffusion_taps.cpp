@@ -1,18 +1,11 @@
 #include "reference/diffusion_taps.h"
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
-#include <numbers>
 
 namespace reference {
 namespace {
 
 constexpr double mostGain = 8, leastCosine = 0.25;
-
-bool finite(Vec3 v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 // A rising function as a table, with its inverse by bisection.
 class Rising {
@@ -20,8 +13,7 @@ class Rising {
     Rising(double end, const std::function<Rgb(double, double)>& added) : end_(end), values_{Rgb{}} {
         for (int i = 0; i < count; ++i) values_.push_back(values_.back() + added(at(i), at(i + 1)));
         const Rgb all = values_.back();
-        for (Rgb& v : values_)
-            for (int c = 0; c < 3; ++c) v[c] /= all[c];
+        for (Rgb& v : values_) v = v / all;
     }
     Rgb value(double x) const {
         const double t = std::cbrt(std::clamp(x / end_, 0.0, 1.0)) * count;
@@ -55,38 +47,20 @@ struct Surface {
     bool there = false;
 };
 
-// Steps across a view along z; every pixel of a picture is as wide as high.
-Surface surfaceAt(const ScatterPicture& s, int x, int y) {
-    const auto sound = [&](int u, int v) {
-        return u >= 0 && v >= 0 && u < s.width && v < s.height && s.ids[s.at(u, v)] &&
-               finite(s.positions[s.at(u, v)]) && finite(s.irradiance[s.at(u, v)]);
-    };
-    Surface result;
-    if (!sound(x, y)) return result;
-    result.p = s.positions[s.at(x, y)];
-    result.there = true;
-    result.area = surfaceArea(s, x, y);
-    double wide = 0;
-    for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}}) {
-        double shortest = INFINITY;
-        Vec3 step{};
-        for (int side : {-1, 1}) {
-            const int u = x + side * dx, v = y + side * dy;
-            if (!sound(u, v) || s.ids[s.at(u, v)] != s.ids[s.at(x, y)]) continue;
-            const Vec3 d = s.positions[s.at(u, v)] - result.p;
-            if (length(d) < shortest) shortest = length(d), step = d;
-        }
-        if (std::isfinite(shortest)) wide = std::max(wide, std::hypot(step.x, step.y));
-    }
-    result.pixel = wide;
-    result.area = std::min(result.area, wide * wide / leastCosine);
-    return result;
-}
-
+// Of a view along z; every pixel of a picture is as wide as high.
 std::vector<Surface> surfaces(const ScatterPicture& s) {
-    std::vector<Surface> all;
+    std::vector<Surface> all(s.positions.size());
     for (int y = 0; y < s.height; ++y)
-        for (int x = 0; x < s.width; ++x) all.push_back(surfaceAt(s, x, y));
+        for (int x = 0; x < s.width; ++x) {
+            Surface& here = all[s.at(x, y)];
+            if (!(here.there = sound(s, s.at(x, y)))) continue;
+            here.p = s.positions[s.at(x, y)];
+            for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}}) {
+                const Vec3 step = shorterStep(s, x, y, dx, dy).value_or(Vec3{});
+                here.pixel = std::max(here.pixel, std::hypot(step.x, step.y));
+            }
+            here.area = std::min(surfaceArea(s, x, y), here.pixel * here.pixel / leastCosine);
+        }
     return all;
 }
 
@@ -141,8 +115,7 @@ std::vector<Rgb> scatterOnDisk(const TapScene& s, const Profile& profile) {
                     uint32_t(x) * 3242174889u + uint32_t(y) * 2447445414u + uint32_t(s.frame) * 2654435769u;
                 Rgb sum{}, weights{};
                 for (int i = 0; i < s.taps; ++i) {
-                    const double angle = std::numbers::pi * (3 - std::sqrt(5.0)) * i +
-                                         2 * std::numbers::pi * turn / 4294967296.0;
+                    const double angle = pi * (3 - std::sqrt(5.0)) * i + 2 * pi * turn / 4294967296.0;
                     const int dx = int(std::floor(wide * radii[i] * std::cos(angle) / own.pixel + 0.5)),
                               dy = int(std::floor(wide * radii[i] * std::sin(angle) / own.pixel + 0.5));
                     const Rgb share = light.value(ends[i + 1]) - light.value(ends[i]);
@@ -239,7 +212,7 @@ std::vector<Rgb> scatterSeparably(const TapScene& s, const Profile& profile) {
                 if (weigh)
                     result[here] = mixed(s, here, sum, weights);
                 else
-                    for (int c = 0; c < 3; ++c) result[here][c] = sum[c] / weights[c];
+                    result[here] = sum / weights;
             }
         return result;
     };

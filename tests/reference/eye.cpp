@@ -1,12 +1,9 @@
 #include "reference/eye.h"
 
-#include <numbers>
 #include <random>
 
 namespace reference {
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 bool onCornea(const Eye& eye, Vec3 p) {
     return std::hypot(p.x, p.y) <= eye.limbus && p.z >= eye.limbusZ() - 1e-9;
@@ -62,19 +59,19 @@ double meetIris(const Eye& eye, Vec3 o, Vec3 d) {
 double Eye::limbusZ() const {
     return std::sqrt(sclera * sclera - limbus * limbus);
 }
-double Eye::apexZ() const {
+// Below the apex, at a distance from the axis.
+double Eye::sag(double r) const {
     const double q = 1 + conic;
-    const double sag = std::abs(q) < 1e-9 ? limbus * limbus / (2 * cornea)
-                                          : (cornea - std::sqrt(cornea * cornea - q * limbus * limbus)) / q;
-    return limbusZ() + sag;
+    return std::abs(q) < 1e-9 ? r * r / (2 * cornea) : (cornea - std::sqrt(cornea * cornea - q * r * r)) / q;
+}
+double Eye::apexZ() const {
+    return limbusZ() + sag(limbus);
 }
 double Eye::irisZ() const {
     return apexZ() - chamber;
 }
 double Eye::corneaZ(double r) const {
-    const double q = 1 + conic;
-    return apexZ() - (std::abs(q) < 1e-9 ? r * r / (2 * cornea)
-                                         : (cornea - std::sqrt(cornea * cornea - q * r * r)) / q);
+    return apexZ() - sag(r);
 }
 Vec3 Eye::corneaNormal(double x, double y) const {
     const double w = apexZ() - corneaZ(std::hypot(x, y));
@@ -227,10 +224,9 @@ double enter(const Eye& eye, Vec3 toLight, double x, double y, Vec3* p, Vec3* d)
 double Caustic::at(double x, double y, double iris) const {
     const double c = std::clamp((x / iris + 1) * 0.5 * width - 0.5, 0.0, width - 1.0);
     const double r = std::clamp(std::abs(y) / iris * height - 0.5, 0.0, height - 1.0);
-    const int i = std::min(int(c), width - 2), j = std::min(int(r), height - 2);
-    const double fx = c - i, fy = r - j;
-    const double* row = &texels[size_t(j) * width + i];
-    return (1 - fy) * ((1 - fx) * row[0] + fx * row[1]) + fy * ((1 - fx) * row[width] + fx * row[width + 1]);
+    return bilinearAt(c, r, [&](int i, int j) {
+        return texels[size_t(std::min(j, height - 1)) * width + std::min(i, width - 1)];
+    });
 }
 
 Caustic tracePhotons(const Eye& eye, double angle, int width, int height, uint64_t photons, uint64_t seed) {

@@ -16,6 +16,7 @@ struct Eye {
     double texturePupil = 0.3, tearRoughness = 0.03, wetLineRoughness = 0.2, nTear = 1.336;
 
     double limbusZ() const;
+    double sag(double r) const;
     double apexZ() const;
     double irisZ() const;            // of the rim
     double corneaZ(double r) const;  // height of the cornea at a distance from the axis

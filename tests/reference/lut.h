@@ -16,16 +16,19 @@ enum class Form { arc, ring, halfRing, sphere, pennerRing };
 
 // Truncation of arc and of the shadow integral in a profile's own lengths: 10 mm for the 2.7 mm of skin
 // [FaceWorks].
-double profileCut(const Profile& profile);
+inline double profileCut(const Profile& profile) {
+    return 10 * profile.radius() / 2.7;
+}
 
 // D for u = N.L in [-1, 1] and radius of curvature r > 0, in the profile's unit of length. arc is cut at
-// min(pi r, cut) on either side and not renormalised; the other forms ignore cut.
+// min(pi r, cut) on either side, cut 0: at profileCut, and not renormalised; the other forms ignore cut.
 // A profile that is singular at its centre has no ring: both integrals diverge there and D is their ratio's
 // limit, max0(u).
-Rgb curvatureD(Form form, const Profile& profile, double u, double r, double cut);
-inline Rgb curvatureD(Form form, const Profile& profile, double u, double r) {
-    return curvatureD(form, profile, u, r, profileCut(profile));
-}
+Rgb curvatureD(Form form, const Profile& profile, double u, double r, double cut = 0);
+
+// The integral of the form `sphere` over `norm`: on a sphere of radius r, at an angle from the light. D is
+// over the same integral where light is 1 everywhere.
+Rgb overSphere(const Profile& profile, double angle, double r, Rgb norm);
 
 struct CurvatureLutSpec {
     Form form = Form::arc;

@@ -1,20 +1,14 @@
 #include "reference/profile.h"
 
-#include <numbers>
-#include <stdexcept>
-#include <unordered_map>
-
 #include "reference/quadrature.h"
 
 namespace reference {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 class GaussiansProfile : public Profile {
   public:
-    GaussiansProfile(std::vector<Gaussian> gaussians, double radius)
-        : gaussians_(std::move(gaussians)), radius_(radius) {
+    GaussiansProfile(std::vector<Gaussian> gaussians, double radius) : gaussians_(std::move(gaussians)) {
+        radius_ = radius;
         Rgb sum;
         for (const Gaussian& g : gaussians_) {
             if (!(g.variance > 0)) throw std::invalid_argument("a Gaussian's variance must be above 0");
@@ -22,8 +16,7 @@ class GaussiansProfile : public Profile {
         }
         for (int c = 0; c < 3; ++c)
             if (!(sum[c] > 0)) throw std::invalid_argument("a channel's weights must add up to more than 0");
-        for (Gaussian& g : gaussians_)
-            for (int c = 0; c < 3; ++c) g.weight[c] /= sum[c];
+        for (Gaussian& g : gaussians_) g.weight = g.weight / sum;
     }
     Rgb radial(double d) const override {
         Rgb sum;
@@ -44,11 +37,9 @@ class GaussiansProfile : public Profile {
         std::sort(all.begin(), all.end());
         return all;
     }
-    double radius() const override { return radius_; }
 
   private:
     std::vector<Gaussian> gaussians_;
-    double radius_;
 };
 
 class TableProfile : public Profile {
@@ -63,8 +54,7 @@ class TableProfile : public Profile {
         const Rgb energy = enclosedEnergy(*this, distances_.back());
         for (int c = 0; c < 3; ++c)
             if (!(energy[c] > 0)) throw std::invalid_argument("a channel of the table holds no energy");
-        for (Rgb& value : values_)
-            for (int c = 0; c < 3; ++c) value[c] /= energy[c];
+        for (Rgb& value : values_) value = value / energy;
         radius_ = magnitude(rmsWidth(*this));
     }
     Rgb radial(double d) const override {
@@ -97,18 +87,17 @@ class TableProfile : public Profile {
         return sum;
     }
     std::vector<double> lengths() const override { return distances_; }
-    double radius() const override { return radius_; }
 
   private:
     std::vector<double> distances_;
     std::vector<Rgb> values_;
-    double radius_ = 0;
 };
 
 class ScaledProfile : public Profile {
   public:
     ScaledProfile(ProfilePtr profile, double factor) : profile_(std::move(profile)), factor_(factor) {
         if (!(factor > 0)) throw std::invalid_argument("a profile is scaled by a factor above 0");
+        radius_ = profile_->radius() * factor;
     }
     Rgb radial(double d) const override { return profile_->radial(d / factor_) / (factor_ * factor_); }
     Rgb lineSpread(double s) const override { return profile_->lineSpread(s / factor_) / factor_; }
@@ -118,29 +107,85 @@ class ScaledProfile : public Profile {
         return all;
     }
     bool singularAtZero() const override { return profile_->singularAtZero(); }
-    double radius() const override { return profile_->radius() * factor_; }
 
   private:
     ProfilePtr profile_;
     double factor_;
 };
 
-class MemoisedProfile : public Profile {
+// exp(-45) is 3e-20: what lies beyond so many decay lengths is below double precision.
+constexpr double negligibleDecay = 45;
+
+std::vector<double> geometric(double first, double last, double ratio) {
+    std::vector<double> all;
+    for (double l = first; l < last; l *= ratio) all.push_back(l);
+    all.push_back(last);
+    return all;
+}
+
+class BurleyProfile : public Profile {
   public:
-    explicit MemoisedProfile(ProfilePtr profile) : profile_(std::move(profile)) {}
-    Rgb radial(double d) const override { return profile_->radial(d); }
-    Rgb lineSpread(double s) const override {
-        const auto [at, added] = known_.try_emplace(std::abs(s));
-        if (added) at->second = profile_->lineSpread(s);
-        return at->second;
+    explicit BurleyProfile(Rgb decay) : decay_(decay) { radius_ = magnitude(rmsWidth(*this)); }
+    Rgb radial(double d) const override {
+        Rgb value;
+        for (int c = 0; c < 3; ++c)
+            value[c] = (std::exp(-d / decay_[c]) + std::exp(-d / (3 * decay_[c]))) / (8 * pi * decay_[c] * d);
+        return value;
     }
-    std::vector<double> lengths() const override { return profile_->lengths(); }
-    bool singularAtZero() const override { return profile_->singularAtZero(); }
-    double radius() const override { return profile_->radius(); }
+    std::vector<double> lengths() const override {
+        const double narrow = std::min({decay_.x, decay_.y, decay_.z});
+        return geometric(0.1 * narrow, 3 * negligibleDecay * magnitude(decay_), 3);
+    }
+    bool singularAtZero() const override { return true; }
 
   private:
-    ProfilePtr profile_;
-    mutable std::unordered_map<double, Rgb> known_;
+    Rgb decay_;  // d = l/s, the shorter of the two decay lengths
+};
+
+class DipoleProfile : public Profile {
+  public:
+    DipoleProfile(Rgb absorption, Rgb reducedScattering, double eta) {
+        // Fit of the average diffuse Fresnel reflectance from inside, for eta > 1: Jensen et al. 2001,
+        // section 2.
+        const double fresnel = -1.440 / (eta * eta) + 0.710 / eta + 0.668 + 0.0636 * eta;
+        const double mismatch = (1 + fresnel) / (1 - fresnel);  // A of the boundary condition
+        for (int c = 0; c < 3; ++c) {
+            if (!(absorption[c] > 0 && reducedScattering[c] > 0))
+                throw std::invalid_argument("absorption and reduced scattering must be above 0");
+            const double extinction = absorption[c] + reducedScattering[c], depth = 1 / extinction;
+            Dipole& p = dipoles_[c];
+            p.transport = std::sqrt(3 * absorption[c] * extinction);
+            p.depths[0] = depth;
+            p.depths[1] = depth + 4 * mismatch / (3 * extinction);
+            p.energy = 0.5 * (std::exp(-p.transport * p.depths[0]) + std::exp(-p.transport * p.depths[1]));
+        }
+        radius_ = magnitude(rmsWidth(*this));
+    }
+    Rgb radial(double d) const override {
+        Rgb value;
+        for (int c = 0; c < 3; ++c)
+            for (const Dipole& p = dipoles_[c]; double depth : p.depths) {
+                const double s = std::hypot(depth, d);
+                value[c] += depth * (1 + p.transport * s) * std::exp(-p.transport * s) /
+                            (4 * pi * s * s * s) / p.energy;
+            }
+        return value;
+    }
+    std::vector<double> lengths() const override {
+        double first = dipoles_[0].depths[0], last = 0;
+        for (const Dipole& p : dipoles_) {
+            first = std::min(first, p.depths[0]);
+            last = std::max(last, p.depths[1] + negligibleDecay / p.transport);
+        }
+        return geometric(0.3 * first, last, 3);
+    }
+
+  private:
+    struct Dipole {
+        double depths[2];  // of the source below and of its mirror image above the surface
+        double transport;  // effective transport coefficient sigma_tr, 1/length
+        double energy;     // integral over the plane for reduced albedo 1
+    } dipoles_[3];
 };
 
 }  // namespace
@@ -192,16 +237,37 @@ ProfilePtr gaussiansProfile(std::vector<Gaussian> gaussians) {
     return std::make_shared<GaussiansProfile>(std::move(gaussians), std::sqrt(widest));
 }
 
+double burleyScale(BurleyFit fit, double albedo) {
+    switch (fit) {
+        case BurleyFit::searchlight:
+            return 1.85 - albedo + 7 * std::pow(std::abs(albedo - 0.8), 3);
+        case BurleyFit::diffuseTransmission:
+            return 1.9 - albedo + 3.5 * std::pow(albedo - 0.8, 2);
+        case BurleyFit::diffuseMeanFreePath:
+            return 3.5 + 100 * std::pow(albedo - 0.33, 4);
+    }
+    throw std::invalid_argument("unknown fit of s(A)");
+}
+
+ProfilePtr burleyProfile(Rgb meanFreePath, Rgb albedo, BurleyFit fit) {
+    Rgb decay;
+    for (int c = 0; c < 3; ++c) {
+        decay[c] = meanFreePath[c] / burleyScale(fit, albedo[c]);
+        if (!(decay[c] > 0)) throw std::invalid_argument("a mean free path must be above 0");
+    }
+    return std::make_shared<BurleyProfile>(decay);
+}
+
+ProfilePtr dipoleProfile(Rgb absorption, Rgb reducedScattering, double eta) {
+    return std::make_shared<DipoleProfile>(absorption, reducedScattering, eta);
+}
+
 ProfilePtr tableProfile(std::vector<double> distances, std::vector<Rgb> values) {
     return std::make_shared<TableProfile>(std::move(distances), std::move(values));
 }
 
 ProfilePtr scaledProfile(ProfilePtr profile, double factor) {
     return std::make_shared<ScaledProfile>(std::move(profile), factor);
-}
-
-ProfilePtr memoisedProfile(ProfilePtr profile) {
-    return std::make_shared<MemoisedProfile>(std::move(profile));
 }
 
 ProfilePtr profileForRadius(ProfilePtr profile, double diffusionRadius) {
@@ -211,25 +277,25 @@ ProfilePtr profileForRadius(ProfilePtr profile, double diffusionRadius) {
 
 namespace {
 
-Rgb diskIntegral(const Profile& profile, double discRadius, bool secondMoment) {
-    auto integrand = [&](double d) { return 2 * pi * d * (secondMoment ? d * d : 1.0) * profile.radial(d); };
+Rgb diskIntegral(const Profile& profile, double discRadius, int power) {
     const auto borders = panelPoints(0, discRadius, profile.lengths());
     Rgb result;
     for (int c = 0; c < 3; ++c)
-        result[c] = integrate<double>([&](double d) { return integrand(d)[c]; }, borders, 0, 1e-12);
+        result[c] = integrate<double>(
+            [&](double d) { return 2 * pi * std::pow(d, power) * profile.radial(d)[c]; }, borders, 0, 1e-12);
     return result;
 }
 
 }  // namespace
 
 Rgb rmsWidth(const Profile& profile) {
-    Rgb width = diskIntegral(profile, profile.lengths().back(), true);
+    Rgb width = diskIntegral(profile, profile.lengths().back(), 3);
     for (int c = 0; c < 3; ++c) width[c] = std::sqrt(0.5 * width[c]);
     return width;
 }
 
 Rgb enclosedEnergy(const Profile& profile, double discRadius) {
-    return diskIntegral(profile, discRadius, false);
+    return diskIntegral(profile, discRadius, 1);
 }
 
 }  // namespace reference

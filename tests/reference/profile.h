@@ -23,7 +23,10 @@ class Profile {
     virtual bool singularAtZero() const { return false; }
     // Length that diffusion_radius refers to: a profile for radius rho is this one with lengths times
     // rho/radius().
-    virtual double radius() const = 0;
+    double radius() const { return radius_; }
+
+  protected:
+    double radius_ = 0;
 };
 using ProfilePtr = std::shared_ptr<const Profile>;
 
@@ -58,10 +61,6 @@ ProfilePtr tableProfile(std::vector<double> distances, std::vector<Rgb> values);
 // The same profile with every length multiplied by factor, radius() included.
 ProfilePtr scaledProfile(ProfilePtr profile, double factor);
 ProfilePtr profileForRadius(ProfilePtr profile, double diffusionRadius);
-
-// The same profile, each line spread computed once: for many texels of a profile without a closed form, whose
-// panels share most of their nodes. Not for use from several threads.
-ProfilePtr memoisedProfile(ProfilePtr profile);
 
 // Standard deviation of the line spread per channel, by quadrature of radial: sqrt(1/2 * integral of R d² 2
 // pi d).

@@ -76,39 +76,37 @@ Value integrate(const F& f, const std::vector<double>& points, double absoluteEr
         error += panels.top().error;
     }
     const int panelLimit = 20000;
-    double settled = 0;  // error of panels too narrow to split again
-    std::vector<Panel<Value>> finished;
-    auto sum = [&] {
-        Value value{};
-        error = settled;
-        auto copy = panels;
-        for (; !copy.empty(); copy.pop()) {
+    Panel<Value> settled{};  // panels too narrow to split again
+    const auto sum = [&] {
+        Value value = settled.value;
+        error = settled.error;
+        for (auto copy = panels; !copy.empty(); copy.pop()) {
             value = value + copy.top().value;
             error += copy.top().error;
         }
-        for (const auto& panel : finished) value = value + panel.value;
         return value;
     };
     total = sum();
-    for (int count = 0; !panels.empty(); ++count) {
+    for (int count = 0; !panels.empty() && count <= panelLimit; ++count) {
         if (!std::isfinite(magnitude(total)))
             throw std::runtime_error("reference::integrate: an integrand is not finite");
         if (error <= std::max(absoluteError, relativeError * magnitude(total))) return sum();
-        if (count > panelLimit) break;
         const Panel<Value> worst = panels.top();
         panels.pop();
-        const double middle = 0.5 * (worst.begin + worst.end);
         if (worst.end - worst.begin < 1e-14 * (std::abs(worst.begin) + std::abs(worst.end))) {
-            finished.push_back(worst);
-            settled += worst.error;
+            settled.value = settled.value + worst.value;
+            settled.error += worst.error;
             continue;
         }
-        const auto left = kronrodPanel<Value>(f, worst.begin, middle);
-        const auto right = kronrodPanel<Value>(f, middle, worst.end);
-        total = total + (left.value + right.value - worst.value);
-        error += left.error + right.error - worst.error;
-        panels.push(left);
-        panels.push(right);
+        const double middle = 0.5 * (worst.begin + worst.end);
+        for (const auto& half :
+             {kronrodPanel<Value>(f, worst.begin, middle), kronrodPanel<Value>(f, middle, worst.end)}) {
+            total = total + half.value;
+            error += half.error;
+            panels.push(half);
+        }
+        total = total - worst.value;
+        error -= worst.error;
     }
     total = sum();
     if (error > 100 * std::max(absoluteError, relativeError * magnitude(total)))

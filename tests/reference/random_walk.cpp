@@ -1,14 +1,9 @@
 #include "reference/random_walk.h"
 
-#include <cmath>
-#include <numbers>
-
 #include "reference/vec.h"
 
 namespace reference {
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 // SplitMix64 [Steele, Lea & Flood 2014]: the same numbers on every machine.
 class Random {
@@ -35,8 +30,7 @@ class Random {
     uint64_t state_;
 };
 
-constexpr double faint = 1e-3,
-                 survives = 0.1;  // Russian roulette: weights below `faint` live on in one of ten
+constexpr double faint = 1e-3, survives = 0.1;  // Russian roulette: weights below `faint`, one of ten
 
 // Walks until it is out: the weight left, at `p`. `exit(p, d)`: distance to the border along d.
 template <class Exit>
@@ -58,67 +52,65 @@ double walk(const Medium& medium, Vec3& p, Vec3 d, Random& random, const Exit& e
     }
 }
 
-struct Bins {
-    std::vector<double> sum, square;
-    explicit Bins(int count) : sum(size_t(count)), square(size_t(count)) {}
-    void add(double at, double weight) {
-        if (!(at >= 0 && at < 1)) return;
-        const size_t i = size_t(at * double(sum.size()));
-        sum[i] += weight;
-        square[i] += weight * weight;
+// one(place) walks a photon: its weight, and where in equally wide bins over [0, 1) it counts. perWeight(bin):
+// radiance by the mean of weights.
+template <class One, class PerWeight>
+WalkResult walkMany(int bins, uint64_t photons, const One& one, const PerWeight& perWeight) {
+    std::vector<double> sum(static_cast<size_t>(bins)), square(sum);
+    WalkResult result;
+    for (uint64_t i = 0; i < photons; ++i) {
+        double place = -1;
+        const double weight = one(place);
+        result.reflected += weight / double(photons);
+        if (!(place >= 0 && place < 1)) continue;
+        sum[size_t(place * bins)] += weight;
+        square[size_t(place * bins)] += weight * weight;
     }
-};
+    for (int i = 0; i < bins; ++i) {
+        const double scale = perWeight(i) / double(photons);
+        result.radiance.push_back(scale * sum[i]);
+        result.error.push_back(scale * std::sqrt(square[i]));
+    }
+    return result;
+}
 
 }  // namespace
 
 WalkResult walkBall(const Medium& medium, double radius, int bins, uint64_t photons, uint64_t seed) {
     Random random(seed);
-    Bins found(bins);
-    WalkResult result;
     const auto exit = [&](Vec3 p, Vec3 d) {
         const double b = dot(p, d), c = dot(p, p) - radius * radius;
         return std::max(0.0, -b + std::sqrt(std::max(0.0, b * b - c)));
     };
-    for (uint64_t i = 0; i < photons; ++i) {
+    const auto one = [&](double& place) {
         // Evenly over the disk that the light sees, from +z.
         const double r = radius * std::sqrt(random.next()), phi = 2 * pi * random.next();
         Vec3 p{r * std::cos(phi), r * std::sin(phi), std::sqrt(radius * radius - r * r)};
         const double weight = walk(medium, p, random.diffuse(-1 * (p / radius)), random, exit);
-        result.reflected += weight / double(photons);
-        found.add((p.z / radius + 1) / 2, weight);
-    }
+        place = (p.z / radius + 1) / 2;
+        return weight;
+    };
     // Flux pi r^2 of irradiance 1 over the bin's share of the sphere. Diffuse: exitance / pi is radiance, and
     // a white Lambertian surface has irradiance / pi; in units of that.
-    const double scale = pi * radius * radius / double(photons) / (4 * pi * radius * radius / bins);
-    for (int i = 0; i < bins; ++i) {
-        result.radiance.push_back(scale * found.sum[i]);
-        result.error.push_back(scale * std::sqrt(found.square[i]));
-    }
-    return result;
+    return walkMany(bins, photons, one, [&](int) { return bins / 4.0; });
 }
 
 WalkResult walkSlab(const Medium& medium, double thickness, double reach, int bins, uint64_t photons,
                     uint64_t seed) {
     Random random(seed);
-    Bins found(bins);
-    WalkResult result;
     const auto exit = [&](Vec3 p, Vec3 d) {
         if (d.z > 0) return std::max(0.0, -p.z / d.z);
         return d.z < 0 ? std::max(0.0, (-thickness - p.z) / d.z) : INFINITY;
     };
-    for (uint64_t i = 0; i < photons; ++i) {
+    const auto one = [&](double& place) {
         Vec3 p{};
         const double weight = walk(medium, p, random.diffuse({0, 0, -1}), random, exit);
-        if (p.z < -0.5 * thickness) continue;
-        result.reflected += weight / double(photons);
-        found.add(std::hypot(p.x, p.y) / reach, weight);
-    }
-    for (int i = 0; i < bins; ++i) {
-        const double area = pi * reach * reach * (2 * i + 1) / double(bins) / bins;
-        result.radiance.push_back(found.sum[i] / area / double(photons));
-        result.error.push_back(std::sqrt(found.square[i]) / area / double(photons));
-    }
-    return result;
+        if (p.z < -0.5 * thickness) return 0.0;
+        place = std::hypot(p.x, p.y) / reach;
+        return weight;
+    };
+    return walkMany(bins, photons, one,
+                    [&](int i) { return 1 / (pi * reach * reach * (2 * i + 1) / double(bins) / bins); });
 }
 
 }  // namespace reference

@@ -253,8 +253,7 @@ AnalyticMesh lifted(const FlatMesh& mesh, const Surface& surface) {
 
 std::vector<bool> nearBorder(const Mesh& mesh, int rows) {
     std::map<std::pair<int, int>, int> triangles;
-    for (const Triangle& t : mesh.triangles)
-        for (int i = 0; i < 3; ++i) ++triangles[std::minmax(t[i], t[(i + 1) % 3])];
+    forCorners(mesh, [&](int a, int b, int) { ++triangles[std::minmax(a, b)]; });
     std::vector<bool> near(mesh.positions.size());
     for (const auto& [edge, count] : triangles)
         if (count == 1) near[size_t(edge.first)] = near[size_t(edge.second)] = true;

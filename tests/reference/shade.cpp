@@ -1,30 +1,94 @@
 #include "reference/shade.h"
 
-#include <numbers>
-
 #include "reference/lut.h"
 
 namespace reference {
 namespace {
 
-struct Neighbours {
-    int first, second;
-    double fraction;
-};
-// The two texels round coordinate s in [0, 1] of an axis, clamped to the outermost centres.
-Neighbours neighbours(double s, int count) {
-    const double at = std::clamp(s * count - 0.5, 0.0, double(count - 1));
-    const int first = int(std::floor(at));
-    return {first, std::min(first + 1, count - 1), at - first};
+// Texels count x count over [0, 1] x [0, 1], clamped to the outermost centres.
+template <class Image, class Texel>
+auto clamped(const Image& image, double s, double t, const std::vector<Texel>& texels) {
+    const auto place = [](double c, int count) { return std::clamp(c * count - 0.5, 0.0, count - 1.0); };
+    return bilinearAt(place(s, image.width), place(t, image.height), [&](int i, int j) {
+        const int x = std::min(i, image.width - 1), y = std::min(j, image.height - 1);
+        return texels[size_t(y) * image.width + x];
+    });
 }
 
 }  // namespace
 
 Rgb bilinear(const Table& table, double s, double t) {
-    const Neighbours x = neighbours(s, table.width), y = neighbours(t, table.height);
-    auto texel = [&](int i, int j) { return table.texels[size_t(j) * table.width + i]; };
-    return mix(mix(texel(x.first, y.first), texel(x.second, y.first), x.fraction),
-               mix(texel(x.first, y.second), texel(x.second, y.second), x.fraction), y.fraction);
+    return clamped(table, s, t, table.texels);
+}
+
+const CubeFace cubeFaces[6] = {{{1, 0, 0}, {0, 0, -1}, {0, -1, 0}}, {{-1, 0, 0}, {0, 0, 1}, {0, -1, 0}},
+                               {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},   {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}},
+                               {{0, 0, 1}, {1, 0, 0}, {0, -1, 0}},  {{0, 0, -1}, {-1, 0, 0}, {0, -1, 0}}};
+
+namespace {
+
+Rgb texel(const CubeMap& cube, int face, int x, int y) {
+    const Rgb& c = cube.at(face, x, y);
+    return {max0(c.x), max0(c.y), max0(c.z)};
+}
+
+// Bilinear on one face alone, clamped to the outermost centres.
+Rgb onFace(const CubeMap& cube, int face, double s, double t) {
+    const int last = cube.size - 1;
+    const auto at = [&](double v) { return std::clamp((v + 1) / 2 * cube.size - 0.5, 0.0, double(last)); };
+    return bilinearAt(at(s), at(t),
+                      [&](int x, int y) { return texel(cube, face, std::min(x, last), std::min(y, last)); });
+}
+
+// Light at a point of the cube's surface on an edge or corner: the mean of all faces that have it. On an
+// edge, texels half a texel inside stand for a point that lies further out by 1 / (1 - 1/2n) once they are
+// averaged.
+Rgb onEdge(const CubeMap& cube, Vec3 point) {
+    int meeting = 0;
+    for (int c = 0; c < 3; ++c) meeting += std::abs(std::abs(point[c]) - 1) < 1e-12;
+    Rgb sum;
+    for (const CubeFace& f : cubeFaces) {
+        if (dot(f.out, point) < 1 - 1e-12) continue;
+        const double inward = meeting == 2 ? 1 - 0.5 / cube.size : 1;
+        double s = dot(f.right, point), t = dot(f.down, point);
+        if (std::abs(std::abs(s) - 1) > 1e-12) s *= inward;
+        if (std::abs(std::abs(t) - 1) > 1e-12) t *= inward;
+        sum = sum + onFace(cube, int(&f - cubeFaces), s, t);
+    }
+    return sum / meeting;
+}
+
+}  // namespace
+
+Vec3 cubeDirection(int face, double s, double t) {
+    return cubeFaces[face].out + s * cubeFaces[face].right + t * cubeFaces[face].down;
+}
+
+Rgb sampleCube(const CubeMap& cube, Vec3 d) {
+    if (dot(d, d) == 0) return {};
+    int face = 0;
+    for (int f = 1; f < 6; ++f)
+        if (dot(cubeFaces[f].out, d) > dot(cubeFaces[face].out, d)) face = f;
+    const Vec3 p = d / dot(cubeFaces[face].out, d);
+    const double s = dot(cubeFaces[face].right, p), t = dot(cubeFaces[face].down, p);
+    // Knots of the interpolation along each side: -1, the centres, 1.
+    std::vector<double> knots{-1};
+    for (int i = 0; i < cube.size; ++i) knots.push_back((2 * i + 1.0) / cube.size - 1);
+    knots.push_back(1);
+    const auto before = [&](double v) {
+        int k = 0;
+        while (k + 2 < int(knots.size()) && knots[k + 1] <= v) ++k;
+        return k;
+    };
+    const int i = before(s), j = before(t);
+    const auto knot = [&](int x, int y) {
+        const bool inside = x > 0 && x <= cube.size && y > 0 && y <= cube.size;
+        return inside ? texel(cube, face, x - 1, y - 1)
+                      : onEdge(cube, cubeDirection(face, knots[x], knots[y]));
+    };
+    const double fs = (s - knots[i]) / (knots[i + 1] - knots[i]),
+                 ft = (t - knots[j]) / (knots[j + 1] - knots[j]);
+    return mix(mix(knot(i, j), knot(i + 1, j), fs), mix(knot(i, j + 1), knot(i + 1, j + 1), fs), ft);
 }
 
 double radiusRatio(double lutRadius, double materialRadius) {
@@ -60,29 +124,23 @@ double sharpenedShadow(double wide, double sharpening) {
     return smoothstep01(saturate(wide * k + 0.5 * (1 - k)));
 }
 
-std::array<Vec3, 3> ambientNormals(Vec3 shading, Vec3 blurred, Rgb blend) {
-    return {normalized(mix(shading, blurred, blend.x)), normalized(mix(shading, blurred, blend.y)),
-            normalized(mix(shading, blurred, blend.z))};
-}
-
 Rgb irradiance(const Ambient& ambient, Vec3 n) {
     // Real orthonormal harmonics: the constants make each one's square integrate to 1 over the sphere.
-    const double pi = std::numbers::pi;
     const double band0 = std::sqrt(1 / (4 * pi)), band1 = std::sqrt(3 / (4 * pi));
     const double band2 = std::sqrt(15 / (4 * pi)), zonal = std::sqrt(5 / (16 * pi));
-    const double basis[9] = {band0,
-                             band1 * n.y,
-                             band1 * n.z,
-                             band1 * n.x,
-                             band2 * n.x * n.y,
-                             band2 * n.y * n.z,
-                             zonal * (3 * n.z * n.z - 1),
-                             band2 * n.x * n.z,
-                             0.5 * band2 * (n.x * n.x - n.y * n.y)};
+    const double xy = n.x * n.y, yz = n.y * n.z, xz = n.x * n.z, zz = 3 * n.z * n.z - 1,
+                 across = 0.5 * (n.x * n.x - n.y * n.y);
+    const double basis[9] = {band0,      band1 * n.y, band1 * n.z, band1 * n.x,   band2 * xy,
+                             band2 * yz, zonal * zz,  band2 * xz,  band2 * across};
     Rgb sum = ambient.constant;
     for (int i = 0; i < 9; ++i) sum = sum + basis[i] * ambient.harmonics[i];
     sum = {max0(sum.x), max0(sum.y), max0(sum.z)};
     return ambient.cube ? sum + sampleCube(*ambient.cube, n) : sum;
+}
+
+std::array<Vec3, 3> ambientNormals(Vec3 shading, Vec3 blurred, Rgb blend) {
+    return {normalized(mix(shading, blurred, blend.x)), normalized(mix(shading, blurred, blend.y)),
+            normalized(mix(shading, blurred, blend.z))};
 }
 
 Rgb ambientTerm(const Ambient& ambient, Vec3 shading, Vec3 blurred, Rgb blend) {
@@ -93,18 +151,10 @@ Rgb ambientTerm(const Ambient& ambient, Vec3 shading, Vec3 blurred, Rgb blend) {
 }
 
 double sampleMap(const ShadowMap& map, double u, double v, MapFilter filter) {
-    auto depth = [&](int i, int j) { return map.depth[size_t(j) * map.width + i]; };
-    if (filter == MapFilter::nearest)
-        return depth(std::clamp(int(std::floor(u * map.width)), 0, map.width - 1),
-                     std::clamp(int(std::floor(v * map.height)), 0, map.height - 1));
-    const Neighbours x = neighbours(u, map.width), y = neighbours(v, map.height);
-    return std::lerp(std::lerp(depth(x.first, y.first), depth(x.second, y.first), x.fraction),
-                     std::lerp(depth(x.first, y.second), depth(x.second, y.second), x.fraction), y.fraction);
-}
-
-DepthDecoding perspectiveDecoding(double m22, double m23, double handedness) {
-    // depth = handedness * m22 + m23 / distance, where clip w is the distance.
-    return {true, 1, 1 / m23, -handedness * m22 / m23};
+    if (filter == MapFilter::bilinear) return clamped(map, u, v, map.depth);
+    const int x = std::clamp(int(std::floor(u * map.width)), 0, map.width - 1),
+              y = std::clamp(int(std::floor(v * map.height)), 0, map.height - 1);
+    return map.depth[size_t(y) * map.width + x];
 }
 
 Vec3 shadowCoordinates(const Matrix4& m, Vec3 position, Vec3 normal, double offset) {
@@ -128,7 +178,7 @@ std::vector<Vec2> turnedTaps(std::vector<Vec2> taps, uint32_t column, uint32_t r
     const double plastic = 1.32471795724474602596;  // p³ = p + 1
     const auto turns = [](double fraction) { return std::floor(fraction * 0x1p32) * 0x1p-32; };
     const double turn = std::fmod(column * turns(1 / plastic) + row * turns(1 / (plastic * plastic)), 1.0);
-    const double angle = 2 * std::numbers::pi * turn;
+    const double angle = 2 * pi * turn;
     for (Vec2& tap : taps)
         tap = {tap.x * std::cos(angle) - tap.y * std::sin(angle),
                tap.x * std::sin(angle) + tap.y * std::cos(angle)};
@@ -154,7 +204,7 @@ double specular(Vec3 shading, Vec3 toLight, Vec3 toViewer, double roughness, dou
 
 double ggxLobe(Vec3 n, Vec3 l, Vec3 v, double a) {
     const double nh = dot(n, normalized(l + v)), nl = dot(n, l), nv = std::max(dot(n, v), 1e-3);
-    const double d = a * a / (std::numbers::pi * std::pow(nh * nh * (a * a - 1) + 1, 2));
+    const double d = a * a / (pi * std::pow(nh * nh * (a * a - 1) + 1, 2));
     const auto hidden = [&](double c) { return (std::sqrt(1 + a * a * (1 / (c * c) - 1)) - 1) / 2; };
     return d / (1 + hidden(nl) + hidden(nv)) / (4 * nl * nv);
 }
@@ -163,8 +213,88 @@ double specularGgx(Vec3 n, Vec3 l, Vec3 v, double roughness, double roughness2, 
                    double intensity, double f0) {
     const double nl = dot(n, l);
     if (!(nl > 0) || !(dot(n, l + v) > 0)) return 0;
-    const double lobes = std::lerp(ggxLobe(n, l, v, roughness), ggxLobe(n, l, v, roughness2), lobeMix);
-    return intensity * nl * std::numbers::pi * schlick(dot(v, normalized(l + v)), f0) * lobes;
+    const double lobes = mix(ggxLobe(n, l, v, roughness), ggxLobe(n, l, v, roughness2), lobeMix);
+    return intensity * nl * pi * schlick(dot(v, normalized(l + v)), f0) * lobes;
+}
+
+namespace {
+
+Rgb deltaAt(const Material& material, const Pixel& pixel, Vec3 toLight) {
+    if (!material.curvatureLut) return {};
+    const ScatterTable& lut = *material.curvatureLut;
+    const double u = dot(pixel.blurred, toLight);
+    const double row = curvatureRow(pixel.curvature, lut.least, lut.most,
+                                    radiusRatio(lut.diffusionRadius, material.diffusionRadius));
+    return bilinear(lut.table, 0.5 * u + 0.5, row) - max0(u) * Rgb{1, 1, 1};
+}
+
+Rgb shadowAt(const Material& material, const Pixel& pixel, const PixelLight& light) {
+    if (!material.shadowLut) return light.wideShadow * Rgb{1, 1, 1};
+    const ScatterTable& lut = *material.shadowLut;
+    const double row = shadowRow(dot(pixel.geometric, light.toLight), material.shadowFilterWidth, lut.least,
+                                 lut.most, radiusRatio(lut.diffusionRadius, material.diffusionRadius));
+    return bilinear(lut.table, light.wideShadow, row);
+}
+
+}  // namespace
+
+Shaded shadeLight(const Material& material, const Pixel& pixel, const PixelLight& light) {
+    Shaded out;
+    const Rgb delta = deltaAt(material, pixel, light.toLight);
+    const Rgb lit = direct(delta, pixel.shading, pixel.blurred, light.toLight, material.normalBlend);
+    out.scattered = material.albedo * light.color * lit * shadowAt(material, pixel, light);
+    if (light.hasThickness && magnitude(material.deepScatterColor) > 0)
+        out.deepScatter =
+            deepScatter(light.thickness, material.deepScatterRadius, pixel.blurred, light.toLight) *
+            (material.deepScatterColor * material.albedo * light.color);
+    if (material.specular > 0) {
+        const double shadow = material.shadowLut
+                                  ? sharpenedShadow(light.wideShadow, material.shadowLut->sharpening)
+                                  : light.wideShadow;
+        const double lobe =
+            material.ggx ? specularGgx(pixel.shading, light.toLight, pixel.toViewer, material.roughness,
+                                       material.roughness2, material.lobeMix, material.specular, material.f0)
+                         : specular(pixel.shading, light.toLight, pixel.toViewer, material.roughness,
+                                    material.specular, material.f0);
+        out.specular = shadow * lobe * light.color;
+    }
+    return out;
+}
+
+Shaded shadePixel(const Material& material, const Pixel& pixel, const std::vector<PixelLight>& lights,
+                  const Ambient& ambient) {
+    Shaded total;
+    for (const PixelLight& light : lights) {
+        const Shaded one = shadeLight(material, pixel, light);
+        total.scattered = total.scattered + one.scattered;
+        total.deepScatter = total.deepScatter + one.deepScatter;
+        total.specular = total.specular + one.specular;
+    }
+    total.ambient =
+        pixel.ambientOcclusion *
+        (material.albedo * ambientTerm(ambient, pixel.shading, pixel.blurred, material.normalBlend));
+    if (pixel.hasThickness && material.deepScatterAmbient > 0) {
+        const double t = pixel.thickness / material.deepScatterRadius;
+        total.deepScatter = total.deepScatter + material.deepScatterAmbient * std::exp(-t * t / 2) *
+                                                    (material.deepScatterColor * material.albedo *
+                                                     irradiance(ambient, -1 * pixel.blurred));
+    }
+    return total;
+}
+
+PixelLight lampAt(const Lamp& lamp, Vec3 position) {
+    const Vec3 offset = lamp.position - position;
+    const double distance = length(offset);
+    PixelLight light;
+    light.toLight = offset / distance;
+    double strength = 1 / (distance * distance);
+    if (lamp.range > 0 && distance > lamp.range) strength = 0;
+    if (lamp.spot) {
+        const double cosine = -dot(light.toLight, lamp.axis);
+        strength *= smoothstep01(saturate((cosine - lamp.cosOuter) / (lamp.cosInner - lamp.cosOuter)));
+    }
+    light.color = strength * lamp.color;
+    return light;
 }
 
 }  // namespace reference

@@ -8,10 +8,31 @@
 #include <cstdint>
 #include <vector>
 
-#include "reference/cube.h"
 #include "reference/vec.h"
 
 namespace reference {
+
+// --- cubes ---
+
+// An irradiance cube map: bilinear between the texels' centres of a face; on edges and corners of the cube
+// the mean of the faces that meet there.
+struct CubeMap {
+    int size = 0;             // texels along an edge
+    std::vector<Rgb> texels;  // faces +x, -x, +y, -y, +z, -z, each row by row
+    const Rgb& at(int face, int x, int y) const { return texels[(size_t(face) * size + y) * size + x]; }
+};
+
+// What points out of each face, along its rows and down them [OpenGL 4.6, table 8.19].
+struct CubeFace {
+    Vec3 out, right, down;
+};
+extern const CubeFace cubeFaces[6];
+
+// The direction of point (s, t) of a face, -1 to 1, s to the right and t down, as OpenGL and Direct3D have
+// it; not unit.
+Vec3 cubeDirection(int face, double s, double t);
+// Light along a direction; texels below 0 count as 0. The zero vector gives 0.
+Rgb sampleCube(const CubeMap& cube, Vec3 direction);
 
 // --- tables ---
 
@@ -68,10 +89,6 @@ struct DepthDecoding {
     double a = 0, b = 1;  // perspective: length = 1/(a depth + b)
     double distance(double depth) const { return perspective ? 1 / (a * depth + b) : range * depth; }
 };
-// a, b of the projection matrix with depth = m22 + m23/z_view, z_view = handedness * distance (+1 left-, -1
-// right-handed).
-DepthDecoding perspectiveDecoding(double m22, double m23, double handedness);
-
 using Matrix4 = std::array<std::array<double, 4>, 4>;  // rows; multiplies columns
 // (u, v, depth) of a position moved inwards along the normal by offset.
 Vec3 shadowCoordinates(const Matrix4& worldToShadow, Vec3 position, Vec3 normal, double offset);
@@ -96,5 +113,69 @@ double specular(Vec3 shading, Vec3 toLight, Vec3 toViewer, double roughness, dou
 double ggxLobe(Vec3 shading, Vec3 toLight, Vec3 toViewer, double roughness);  // D G / (4 (N.L) (N.V))
 double specularGgx(Vec3 shading, Vec3 toLight, Vec3 toViewer, double roughness, double roughness2,
                    double lobeMix, double intensity, double f0 = 0.028);
+
+// --- one pixel, one material, any number of lights ---
+
+struct ScatterTable {
+    Table table;                   // D(u, r) or T(w, width)
+    double least = 1, most = 100;  // radii of curvature, or penumbra widths; length
+    double diffusionRadius = 2.7;  // length
+    double sharpening = 10;        // of a shadow table
+};
+
+struct Material {
+    Rgb albedo{1, 1, 1};
+    double diffusionRadius = 2.7;  // length
+    Rgb normalBlend{1, 0.3, 0};
+    double shadowFilterWidth = 8;  // length
+    Rgb deepScatterColor;
+    double deepScatterRadius = 6;  // length
+    double specular = 0, roughness = 0.3, f0 = 0.028;
+    bool ggx = false;
+    double roughness2 = 0.15, lobeMix = 0.15;
+    double deepScatterAmbient = 0;
+    const ScatterTable* curvatureLut = nullptr;  // none: no scattering at the terminator, delta = 0
+    const ScatterTable* shadowLut = nullptr;     // none: the wide shadow as it is, in all channels
+};
+
+struct Pixel {
+    Vec3 geometric, shading, blurred, toViewer;
+    double curvature = 0;  // 1/length
+    double ambientOcclusion = 1;
+    bool hasThickness = false;  // of its own, from an image
+    double thickness = 0;       // length
+};
+
+// A light as this pixel sees it.
+struct PixelLight {
+    Vec3 toLight;
+    Rgb color;  // falloff included
+    double wideShadow = 1;
+    bool hasThickness = false;
+    double thickness = 0;  // length
+};
+
+struct Shaded {
+    Rgb scattered;  // albedo * light * direct * shadow
+    Rgb ambient, deepScatter, specular;
+    Rgb sum() const { return scattered + ambient + deepScatter + specular; }
+};
+// Terms of one light. Specular light is multiplied by the sharpened shadow (of the shadow table's sharpening;
+// by the wide shadow without a table).
+Shaded shadeLight(const Material& material, const Pixel& pixel, const PixelLight& light);
+Shaded shadePixel(const Material& material, const Pixel& pixel, const std::vector<PixelLight>& lights,
+                  const Ambient& ambient);
+
+// Light of a point or spot at a place: color / distance², nothing beyond range (0: no limit); a spot's cone
+// fades by a smoothstep of the cosine to its axis.
+struct Lamp {
+    Vec3 position;
+    Rgb color;
+    double range = 0;  // length
+    bool spot = false;
+    Vec3 axis;  // unit, away from the lamp
+    double cosInner = 1, cosOuter = 0;
+};
+PixelLight lampAt(const Lamp& lamp, Vec3 position);
 
 }  // namespace reference

@@ -1,16 +1,7 @@
 #include "reference/shade_passes.h"
 
-#include <limits>
-
-#include <algorithm>
-#include <cmath>
-
 namespace reference {
 namespace {
-
-bool finite(Vec3 v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 // Whether a number so near to a limit might fall on its other side in single precision.
 bool near(double value, double limit) {
@@ -81,16 +72,11 @@ std::vector<std::optional<Vec3>> blurredNormals(const SurfacePixels& s, std::vec
 }
 
 Vec3 sampleRepeated(const NormalLevel& level, double u, double v) {
-    const auto texel = [&](int i, int j) {
+    return bilinearAt(u * level.width - 0.5, v * level.height - 0.5, [&](int i, int j) {
         const int x = (i % level.width + level.width) % level.width,
                   y = (j % level.height + level.height) % level.height;
         return level.texels[size_t(y) * level.width + x];
-    };
-    const double x = u * level.width - 0.5, y = v * level.height - 0.5;
-    const int i = int(std::floor(x)), j = int(std::floor(y));
-    const double fx = x - i, fy = y - j;
-    return (1 - fy) * ((1 - fx) * texel(i, j) + fx * texel(i + 1, j)) +
-           fy * ((1 - fx) * texel(i, j + 1) + fx * texel(i + 1, j + 1));
+    });
 }
 
 double footprintLevel(const std::array<double, 4>& g, int width, int height) {
@@ -101,45 +87,62 @@ double footprintLevel(const std::array<double, 4>& g, int width, int height) {
 Vec3 trilinear(const std::vector<NormalLevel>& levels, double u, double v, double level) {
     const double at = std::clamp(level, 0.0, double(levels.size() - 1));
     const size_t fine = size_t(at), coarse = std::min(fine + 1, levels.size() - 1);
-    const double f = at - double(fine);
-    return (1 - f) * sampleRepeated(levels[fine], u, v) + f * sampleRepeated(levels[coarse], u, v);
+    return mix(sampleRepeated(levels[fine], u, v), sampleRepeated(levels[coarse], u, v), at - double(fine));
 }
 
 Vec3 fromTangentSpace(Vec3 texel, Vec3 tangent, Vec3 normal, double side) {
     return normalized(texel.x * tangent + side * texel.y * cross(normal, tangent) + texel.z * normal);
 }
 
+double diskWeight(double r) {
+    const double t = 1 - r * r;
+    return std::sqrt(t) / (1 + t) + std::atan(std::sqrt(t));
+}
+
+namespace {
+
+// A place as the light sees it: column and row in the map, texels' centres at whole numbers; its depth, and
+// that by length; the length that the map spans there. along: from the light; not above 0: behind it.
+struct OnMap {
+    double along, across, x, y, z, zPerLength;
+    Vec3 toLight;
+    OnMap(const ShadowMap& map, const ShadowView& view, Vec3 position) {
+        const Vec3 from = position - view.origin;
+        const DepthDecoding& d = view.decoding;
+        along = dot(from, view.forward);
+        across = d.perspective ? view.extent * along : view.extent;
+        x = (dot(from, view.right) / across + 0.5) * map.width - 0.5;
+        y = (dot(from, view.down) / across + 0.5) * map.height - 0.5;
+        z = d.perspective ? (1 / along - d.b) / d.a : along / d.range;
+        zPerLength = d.perspective ? -1 / (d.a * along * along) : 1 / d.range;
+        toLight = d.perspective ? from / -along : -1 * view.forward;
+        if (!d.perspective) along = 1;
+    }
+};
+
+}  // namespace
+
 std::vector<FilterSample> filterSamples(const ShadowMap& map, const ShadowView& view, Vec3 position,
                                         Vec3 normal, const WideFilterParams& p) {
     std::vector<FilterSample> samples;
-    const Vec3 from = position - view.origin;
-    const double along = dot(from, view.forward),
-                 across = view.decoding.perspective ? view.extent * along : view.extent;
-    if (view.decoding.perspective && !(along > 0)) return samples;
-    // Depth of a distance, and its derivative.
-    const double a = view.decoding.a, b = view.decoding.b;
-    const double z = view.decoding.perspective ? (1 / along - b) / a : along / view.decoding.range;
-    const double zPerLength = view.decoding.perspective ? -1 / (a * along * along) : 1 / view.decoding.range;
-    const double u = dot(from, view.right) / across + 0.5, v = dot(from, view.down) / across + 0.5;
-    const Vec3 toLight = view.decoding.perspective ? from / -along : -1 * view.forward;
-    const double cosine = dot(normal, toLight), tilt = 1 / std::max(cosine, 0.2);
-    const double receiver = z - (p.bias + 2 * p.width * max0(-cosine)) * zPerLength;
-    const double texelU = across / map.width, texelV = across / map.height;
+    const OnMap at(map, view, position);
+    if (!(at.along > 0)) return samples;
+    const double cosine = dot(normal, at.toLight), tilt = 1 / std::max(cosine, 0.2);
+    const double receiver = at.z - (p.bias + 2 * p.width * max0(-cosine)) * at.zPerLength;
+    const double texelU = at.across / map.width, texelV = at.across / map.height;
     const double radiusU = std::max(p.width / 2 / texelU, 2.0), radiusV = std::max(p.width / 2 / texelV, 2.0);
     const int step = std::max(1, int(std::ceil(2 * std::max(radiusU, radiusV) / p.maxTexels)));
-    const double x = u * map.width - 0.5, y = v * map.height - 0.5;
-    for (int j = int(std::floor(y - radiusV)); j <= y + radiusV + 1; ++j)
-        for (int i = int(std::floor(x - radiusU)); i <= x + radiusU + 1; ++i) {
+    for (int j = int(std::floor(at.y - radiusV)); j <= at.y + radiusV + 1; ++j)
+        for (int i = int(std::floor(at.x - radiusU)); i <= at.x + radiusU + 1; ++i) {
             if (i % step || j % step) continue;
-            const double r = std::hypot((i - x) / radiusU, (j - y) / radiusV);
+            const double r = std::hypot((i - at.x) / radiusU, (j - at.y) / radiusV);
             if (r >= 1) continue;
-            const double t = 1 - r * r, weight = std::sqrt(t) / (1 + t) + std::atan(std::sqrt(t));
             const bool inside = i >= 0 && j >= 0 && i < map.width && j < map.height;
             const double sideways =
-                dot(normal, view.right) * (i - x) * texelU + dot(normal, view.down) * (j - y) * texelV;
-            samples.push_back({inside ? j * map.width + i : -1, weight,
-                               receiver + (sideways - p.coneSlope * p.width / 2 * r) * tilt * zPerLength,
-                               zPerLength});
+                dot(normal, view.right) * (i - at.x) * texelU + dot(normal, view.down) * (j - at.y) * texelV;
+            samples.push_back({inside ? j * map.width + i : -1, diskWeight(r),
+                               receiver + (sideways - p.coneSlope * p.width / 2 * r) * tilt * at.zPerLength,
+                               at.zPerLength});
         }
     return samples;
 }
@@ -158,26 +161,18 @@ double wideShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, V
 }
 
 double sharpShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, Vec3 normal) {
-    const Vec3 from = position - view.origin;
-    const double along = dot(from, view.forward),
-                 across = view.decoding.perspective ? view.extent * along : view.extent;
-    if (!(along > 0) && view.decoding.perspective) return 1;
-    const double size = across / map.width;  // of a texel, length
-    const double a = view.decoding.a, b = view.decoding.b;
-    const double z = view.decoding.perspective ? (1 / along - b) / a : along / view.decoding.range;
-    const double zPerLength = view.decoding.perspective ? -1 / (a * along * along) : 1 / view.decoding.range;
-    const double x = (dot(from, view.right) / across + 0.5) * map.width - 0.5,
-                 y = (dot(from, view.down) / across + 0.5) * map.height - 0.5;
-    const Vec3 toLight = view.decoding.perspective ? from / -along : -1 * view.forward;
-    const double tilt = 1 / std::max(dot(normal, toLight), 0.05), tolerance = 0.5 * size * tilt;
+    const OnMap at(map, view, position);
+    if (!(at.along > 0)) return 1;
+    const double size = at.across / map.width, x = at.x, y = at.y;  // the first: of a texel, length
+    const double tilt = 1 / std::max(dot(normal, at.toLight), 0.05), tolerance = 0.5 * size * tilt;
     // Length along the light, to first order; NaN outside.
     const auto depth = [&](int i, int j) {
         const bool inside = i >= 0 && j >= 0 && i < map.width && j < map.height;
-        return inside ? map.depth[size_t(j) * map.width + i] / zPerLength : NAN;
+        return inside ? map.depth[size_t(j) * map.width + i] / at.zPerLength : NAN;
     };
     const auto share = [&](int i, int j) {
         const double plane =
-            z / zPerLength +
+            at.z / at.zPerLength +
             (dot(normal, view.right) * (i - x) + dot(normal, view.down) * (j - y)) * size * tilt;
         const double behind = depth(i, j) - plane;
         return std::isfinite(behind) ? saturate(2 + behind / tolerance) : 1.0;
@@ -199,7 +194,7 @@ double sharpShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, 
         for (int i = middleX - 1; i <= middleX + 1; ++i) {
             double inverse = 0;
             for (int axis = 0; axis < 2; ++axis) {
-                double nearest = std::numeric_limits<double>::infinity();
+                double nearest = INFINITY;
                 for (int side : {-1, 1}) {
                     const int di = axis ? 0 : side, dj = axis ? side : 0;
                     if (dark(i, j) == dark(i + di, j + dj)) continue;
@@ -215,6 +210,174 @@ double sharpShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, 
         }
     if (least == 1 || most == 0) return least;
     return saturate(3 * (sum / total - 0.5) + 0.5);
+}
+
+namespace {
+
+struct Tangents {
+    Vec3 right, down;
+};
+// x and -y, turned by the smallest rotation that takes z to `axis` (Rodrigues' formula).
+Tangents tangents(Vec3 axis) {
+    const Vec3 z{0, 0, 1}, k = cross(z, axis);
+    const double sine = length(k), cosine = axis.z;
+    const auto turned = [&](Vec3 v) {
+        if (sine < 1e-12) return v;
+        const Vec3 unit = k / sine;
+        return cosine * v + sine * cross(unit, v) + (1 - cosine) * dot(unit, v) * unit;
+    };
+    return {turned({1, 0, 0}), turned({0, -1, 0})};
+}
+
+// Where a direction meets a face: the length along its axis, and the place in texels, centres at whole
+// numbers.
+struct OnFace {
+    int face;
+    double along, x, y;
+    OnFace(Vec3 d, int size) : face(shadowCubeFace(d)), along(dot(d, cubeFaces[face].out)) {
+        x = (dot(d, cubeFaces[face].right) / along + 1) / 2 * size - 0.5;
+        y = (dot(d, cubeFaces[face].down) / along + 1) / 2 * size - 0.5;
+    }
+};
+double depthAt(const CubeShadowMap& map, const OnFace& at) {
+    const auto index = [&](double t) { return std::clamp(int(std::floor(t + 0.5)), 0, map.size - 1); };
+    return map.depth[size_t((at.face * map.size + index(at.y)) * map.size + index(at.x))];
+}
+
+}  // namespace
+
+int shadowCubeFace(Vec3 d) {
+    const double x = std::abs(d.x), y = std::abs(d.y), z = std::abs(d.z);
+    if (x >= y && x >= z) return d.x < 0;
+    if (y >= z) return 2 + (d.y < 0);
+    return 4 + (d.z < 0);
+}
+
+Vec3 shadowCubeDirection(int face, double column, double row, int size) {
+    return cubeDirection(face, (2 * column + 1) / size - 1, (2 * row + 1) / size - 1);
+}
+
+double CubeShadowMap::nearestReach(Vec3 direction) const {
+    const OnFace at(direction, size);
+    const double z = depthAt(*this, at);
+    return radial ? decoding.range * z / length(direction) : decoding.distance(z) / at.along;
+}
+
+double CubeShadowMap::bilinearReach(Vec3 direction) const {
+    const OnFace at(direction, size);
+    const double value = bilinearAt(at.x, at.y, [&](int column, int row) {
+        const OnFace texel(shadowCubeDirection(at.face, column, row, size), size);
+        const double z = depthAt(*this, texel);
+        return radial ? decoding.range * z : (decoding.a * z + decoding.b) * texel.along;
+    });
+    return radial ? value / length(direction) : 1 / (value * at.along);
+}
+
+double cubeThickness(const CubeShadowMap& map, Vec3 point, const std::vector<Vec2>& taps,
+                     double filterRadius) {
+    const double distance = length(point);
+    const Vec3 axis = point / distance;
+    const auto [right, down] = tangents(axis);
+    double sum = 0;
+    for (const Vec2& tap : taps)
+        sum += max0(distance - map.bilinearReach(axis + 2 * filterRadius * (tap.x * right + tap.y * down)));
+    return sum / double(taps.size());
+}
+
+double cubeWideShadow(const CubeShadowMap& map, Vec3 point, Vec3 normal, const WideFilterParams& p) {
+    const double distance = length(point), near = 1 / distance, perLength = -near * near;
+    const Vec3 axis = point / distance;
+    const int face = shadowCubeFace(axis);
+    const double reach = std::min(std::max(p.width / 2 / distance, 4.0 / map.size), 0.5);
+    const double cosine = -dot(normal, axis), tilt = 1 / std::max(cosine, 0.2);
+    const double receiver = near - (p.bias + 2 * p.width * max0(-cosine)) * perLength;
+    // The rectangle round the disk on the face, from the planes that touch its cone.
+    const double w = dot(axis, cubeFaces[face].out), sine2 = reach * reach / (1 + reach * reach);
+    double low[2], high[2];
+    for (int k = 0; k < 2; ++k) {
+        const double a = dot(axis, k ? cubeFaces[face].down : cubeFaces[face].right),
+                     middle = std::atan2(a, w), half = std::asin(std::sqrt(sine2 / (a * a + w * w)));
+        low[k] = std::tan(middle - half), high[k] = std::tan(middle + half);
+    }
+    const auto texels = [&](double t) { return (t + 1) / 2 * map.size - 0.5; };
+    const double across = std::max(high[0] - low[0], high[1] - low[1]) / 2 * map.size;
+    const int step = std::max(1, int(std::ceil(across / p.maxTexels)));
+    double sum = 0, total = 0;
+    for (int row = int(std::floor(texels(low[1]))); row <= texels(high[1]) + 1; ++row)
+        for (int column = int(std::floor(texels(low[0]))); column <= texels(high[0]) + 1; ++column) {
+            if (row % step || column % step) continue;
+            const Vec3 d = shadowCubeDirection(face, column, row, map.size), e = d / dot(d, axis),
+                       aside = e - axis;
+            const double r = length(aside) / reach;
+            if (!(dot(d, axis) > 0) || r >= 1) continue;
+            const double weight = diskWeight(r) * std::pow(dot(d, axis) * w, -3);
+            const double seen = 1 / map.nearestReach(e);
+            double shown = 1;
+            if (std::isfinite(seen)) {
+                const double plane =
+                    receiver +
+                    (dot(normal, aside) * distance - p.coneSlope * p.width / 2 * r) * tilt * perLength;
+                shown = saturate(1 + (seen - plane) / (p.softness * p.width * perLength));
+            }
+            sum += weight * shown;
+            total += weight;
+        }
+    return total > 0 ? sum / total : 1;
+}
+
+double uvPerLength(const Matrix4& m, int row) {
+    return length(Vec3{m[row][0], m[row][1], m[row][2]}) / std::abs(m[3][3]);
+}
+
+int cascadeOf(const std::vector<Matrix4>& maps, Vec3 position, double radius) {
+    for (size_t i = 0; i < maps.size(); ++i) {
+        const Vec3 at = shadowCoordinates(maps[i], position, {0, 0, 0}, 0);
+        const double u = radius * uvPerLength(maps[i], 0), v = radius * uvPerLength(maps[i], 1);
+        if (at.x >= u && at.x <= 1 - u && at.y >= v && at.y <= 1 - v && at.z >= 0 && at.z <= 1) return int(i);
+    }
+    return -1;
+}
+
+double momentShadow(const ShadowMap& map, const std::vector<double>& second, const ShadowView& view,
+                    Vec3 position, Vec3 normal, const WideFilterParams& params, const MomentParams& moments) {
+    double total = 0, mean = 0, square = 0;
+    for (const FilterSample& s : filterSamples(map, view, position, normal, params)) {
+        total += s.weight;
+        if (s.texel < 0 || !std::isfinite(map.depth[s.texel]) || !std::isfinite(second[s.texel])) continue;
+        const double z = map.depth[s.texel], before = std::min(0.0, (z - s.receiver) / s.zPerLength);
+        const double variance =
+            before < 0 ? max0(second[s.texel] - z * z) / (s.zPerLength * s.zPerLength) : 0;
+        mean += s.weight * before;
+        square += s.weight * (before * before + variance);
+    }
+    if (!(total > 0)) return 1;
+    mean /= total;
+    const double variance =
+        std::max(square / total - mean * mean, moments.minDeviation * moments.minDeviation);
+    return saturate((variance / (variance + mean * mean) - moments.bleeding) / (1 - moments.bleeding));
+}
+
+double exponentialShadow(const ShadowMap& map, double c, const ShadowView& view, Vec3 position, Vec3 normal,
+                         const WideFilterParams& params) {
+    double total = 0, sum = 0;
+    for (const FilterSample& s : filterSamples(map, view, position, normal, params)) {
+        const double e = s.texel < 0 ? NAN : map.depth[s.texel];
+        total += s.weight;
+        sum += s.weight *
+               (e > 0 && std::isfinite(e) ? std::min(1.0, std::exp(std::log(e) - c * s.receiver)) : 1.0);
+    }
+    return total > 0 ? sum / total : 1;
+}
+
+double exponentialThickness(const ShadowMap& map, double c, Vec3 uvDepth, const std::vector<Vec2>& taps,
+                            double filterRadius, const DepthDecoding& decoding) {
+    double sum = 0;
+    for (const Vec2& tap : taps) {
+        const double e = sampleMap(map, uvDepth.x + filterRadius * tap.x, uvDepth.y + filterRadius * tap.y,
+                                   MapFilter::bilinear);
+        if (e > 0) sum += max0(decoding.distance(uvDepth.z) - decoding.distance(std::log(e) / c));
+    }
+    return sum / double(taps.size());
 }
 
 }  // namespace reference

@@ -1,13 +1,10 @@
 #include "reference/surface_integral.h"
 
-#include <numbers>
-
-#include "reference/quadrature.h"
+#include "reference/lut.h"
 
 namespace reference {
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr double stop = 1e-9;  // change of a triangle's integral by splitting it that no longer matters
 constexpr int deepest = 26;    // halvings: 1/r leaves 2^-26 of a triangle's share
 
@@ -81,16 +78,11 @@ Rgb adaptive(const Kernel& kernel, const LitTriangle& t, Rgb whole, int depth) {
 Rgb scaleOf(const Profile& profile, Rgb cut) {
     Rgb scale{1, 1, 1};
     for (int c = 0; c < 3; ++c)
-        if (cut[c] > 0) scale[c] = 1 / energyWithin(profile, cut[c])[c];
+        if (cut[c] > 0) scale[c] = 1 / enclosedEnergy(profile, cut[c])[c];
     return scale;
 }
 
 }  // namespace
-
-Rgb energyWithin(const Profile& profile, double distance) {
-    return integrate<Rgb>([&](double r) { return 2 * pi * r * profile.radial(r); },
-                          panelPoints(0, distance, profile.lengths()));
-}
 
 Rgb surfaceIntegral(const Profile& profile, const std::vector<LitTriangle>& mesh, Vec3 x, Rgb cut) {
     const Kernel kernel{profile, cut, scaleOf(profile, cut), x};
@@ -99,30 +91,8 @@ Rgb surfaceIntegral(const Profile& profile, const std::vector<LitTriangle>& mesh
     return sum;
 }
 
-Rgb surfaceIntegralOfSphere(const Profile& profile, double radius, double angle, Rgb cut) {
-    const Rgb scale = scaleOf(profile, cut);
-    // Mean of max0(cos) over the circle at an angle psi round the point.
-    const auto mean = [&](double psi) {
-        const double a = std::cos(angle) * std::cos(psi), b = std::sin(angle) * std::sin(psi);
-        if (a >= b) return a;
-        if (a <= -b) return 0.0;
-        return (a * std::acos(-a / b) + std::sqrt((b - a) * (b + a))) / pi;
-    };
-    Rgb sum{};
-    for (int c = 0; c < 3; ++c) {
-        const double end = cut[c] > 0 ? std::min(cut[c], 2 * radius) : 2 * radius;
-        std::vector<double> borders = profile.lengths();
-        for (const double psi : {std::abs(pi / 2 - angle), pi - std::abs(pi / 2 - angle)})
-            borders.push_back(2 * radius * std::sin(psi / 2));
-        // s ds = radius^2 sin psi dpsi
-        sum[c] = scale[c] * integrate<double>(
-                                [&](double s) {
-                                    return 2 * pi * s * profile.radial(s)[c] *
-                                           mean(2 * std::asin(std::min(1.0, s / (2 * radius))));
-                                },
-                                panelPoints(0, end, borders), 1e-11, 1e-10);
-    }
-    return sum;
+Rgb surfaceIntegralOfSphere(const Profile& profile, double radius, double angle) {
+    return overSphere(profile, angle, radius, {1, 1, 1});
 }
 
 }  // namespace reference

@@ -19,9 +19,6 @@ Rgb surfaceIntegral(const Profile& profile, const std::vector<LitTriangle>& mesh
 
 // On a sphere of that radius round the origin, lit by a parallel light of irradiance 1 that makes the angle
 // with x's normal: the closed form `sphere` of section 2, not renormalised.
-Rgb surfaceIntegralOfSphere(const Profile& profile, double radius, double angle, Rgb cut = {});
-
-// Part of a profile's energy within a distance on a plane.
-Rgb energyWithin(const Profile& profile, double distance);
+Rgb surfaceIntegralOfSphere(const Profile& profile, double radius, double angle);
 
 }  // namespace reference

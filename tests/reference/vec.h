@@ -3,38 +3,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace reference {
+
+constexpr double pi = std::numbers::pi;
 
 struct Vec3 {
     double x = 0, y = 0, z = 0;
     double operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
     double& operator[](int i) { return i == 0 ? x : i == 1 ? y : z; }
+    friend Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+    friend Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+    friend Vec3 operator*(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+    friend Vec3 operator/(Vec3 a, Vec3 b) { return {a.x / b.x, a.y / b.y, a.z / b.z}; }
+    friend Vec3 operator*(double k, Vec3 a) { return {k * a.x, k * a.y, k * a.z}; }
+    friend Vec3 operator*(Vec3 a, double k) { return k * a; }
+    friend Vec3 operator/(Vec3 a, double k) { return {a.x / k, a.y / k, a.z / k}; }
 };
 using Rgb = Vec3;
 
 struct Vec2 {
     double x = 0, y = 0;
 };
-
-inline Vec3 operator+(Vec3 a, Vec3 b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-inline Vec3 operator-(Vec3 a, Vec3 b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-inline Vec3 operator*(Vec3 a, Vec3 b) {
-    return {a.x * b.x, a.y * b.y, a.z * b.z};
-}
-inline Vec3 operator*(double k, Vec3 a) {
-    return {k * a.x, k * a.y, k * a.z};
-}
-inline Vec3 operator*(Vec3 a, double k) {
-    return k * a;
-}
-inline Vec3 operator/(Vec3 a, double k) {
-    return {a.x / k, a.y / k, a.z / k};
-}
 
 inline double dot(Vec3 a, Vec3 b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -48,18 +39,28 @@ inline double length(Vec3 a) {
 inline Vec3 normalized(Vec3 a) {
     return a / length(a);
 }
-inline Vec3 mix(Vec3 a, Vec3 b, double t) {
-    return (1 - t) * a + t * b;
+inline bool finite(Vec3 v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-inline double saturate(double x) {
-    return std::clamp(x, 0.0, 1.0);
-}
 inline double max0(double x) {
     return std::max(x, 0.0);
 }
+inline double saturate(double x) {
+    return std::clamp(x, 0.0, 1.0);
+}
 inline double smoothstep01(double t) {
     return t * t * (3 - 2 * t);
+}
+template <class Value>
+Value mix(Value a, Value b, double t) {
+    return (1 - t) * a + t * b;
+}
+// Between the four values at(column, row) round a place.
+template <class At>
+auto bilinearAt(double x, double y, const At& at) {
+    const int i = int(std::floor(x)), j = int(std::floor(y));
+    return mix(mix(at(i, j), at(i + 1, j), x - i), mix(at(i, j + 1), at(i + 1, j + 1), x - i), y - j);
 }
 
 // Largest magnitude: the norm that the adaptive quadrature steers by.

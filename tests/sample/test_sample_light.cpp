@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "reference/shadow_forms.h"
+#include "reference/shade_passes.h"
 #include "sample/shadow_forms.h"
 #include "sample/sky.h"
 #include "sample/wide_shadow.h"

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "faceworks_material.h"
-#include "reference/shade_pixel.h"
+#include "reference/shade.h"
 #include "test_size.h"
 
 namespace shade_test {

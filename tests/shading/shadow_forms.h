@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "pass_scene.h"
-#include "reference/shadow_forms.h"
+#include "reference/shade_passes.h"
 
 namespace shade_test {
 

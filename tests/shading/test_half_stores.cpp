@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "diffusion/scatter_scene.h"
-#include "diffusion/shown_images.h"
 #include "half_bits.h"
 
 using namespace scatter_scene;

@@ -1,18 +1,15 @@
 // The oracle's shading terms: hand-worked values, limits, and 20,000 pixels that FaceWorks shaded.
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <random>
 
 #include "npy.h"
 #include "reference/lut.h"
-#include "reference/shade_pixel.h"
+#include "reference/shade.h"
 #include "tolerances.h"
 
 using namespace reference;
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 Vec3 randomUnit(std::mt19937& random) {
     std::normal_distribution<double> gaussian;
@@ -137,16 +134,6 @@ TEST(ReferenceShade, ThicknessOfASlabIsItsDepthAlongTheLight) {
     EXPECT_NEAR(thickness(slab, {0.5, 0.5, 0.4}, taps, 0.02, parallel, MapFilter::bilinear), 45,
                 tolerance::oracleClosedForm);
     EXPECT_EQ(thickness(slab, {0.5, 0.5, 0.2}, taps, 0.02, parallel, MapFilter::bilinear), 0);
-    for (double handedness : {-1.0, 1.0}) {
-        // Depths of a projection with near 100, far 400, either hand: m22 z + m23 over w = handedness * z.
-        const double m22 = handedness * 400 / 300, m23 = -100.0 * 400 / 300;
-        const DepthDecoding decoding = perspectiveDecoding(m22, m23, handedness);
-        for (double distance : {100.0, 170.0, 400.0})
-            EXPECT_NEAR(decoding.distance((m22 * handedness * distance + m23) / distance), distance,
-                        tolerance::oracleClosedForm);
-        EXPECT_NEAR(decoding.a, -0.0075, tolerance::oracleExact);
-        EXPECT_NEAR(decoding.b, 0.01, tolerance::oracleExact);
-    }
     // A hard edge through the middle of the disk: half of the taps see it.
     ShadowMap edge{100, 1, std::vector<double>(100, 1.0)};
     for (int x = 0; x < 50; ++x) edge.depth[x] = 0.1;

@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "reference/screen.h"
+#include "reference/curvature.h"
 #include "tolerances.h"
 
 using namespace pellucid;
