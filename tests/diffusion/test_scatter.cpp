@@ -235,7 +235,7 @@ TEST(Scatter, WeightAndRadiusPerPixel) {
     }
 }
 
-// A pixel that holds no number keeps it, and its neighbours miss its light.
+// A pixel of NaN or Inf keeps it, and its neighbours miss its light.
 TEST(Scatter, NoNumberSpreadsNoFurtherThanItself) {
     for (const auto& [method, taps] : ways) {
         Picture p = scene();

@@ -93,7 +93,7 @@ struct QuadricCurvature : PrincipalCurvatures {
 // own.
 std::vector<QuadricCurvature> quadricCurvature(const Mesh& mesh);
 
-// --- from a G-buffer (section 5 of the mathematics): |fwidth N| / |fwidth P|, where fwidth never crosses an edge ---
+// --- from a G-buffer: |fwidth N| / |fwidth P|, where fwidth never crosses an edge ---
 
 struct ScreenImage {
     int width = 0, height = 0;

@@ -25,14 +25,6 @@ class Rising {
         const Rgb v = value(x);
         return (v.x + v.y + v.z) / 3;
     }
-    static double inverse(double end, double wanted, const std::function<double(double)>& of) {
-        double low = 0, high = end;
-        for (int k = 0; k < 60; ++k) {
-            const double middle = (low + high) / 2;
-            (of(middle) < wanted ? low : high) = middle;
-        }
-        return (low + high) / 2;
-    }
 
   private:
     static constexpr int count = 3000;
@@ -91,9 +83,9 @@ std::vector<Rgb> scatterOnDisk(const TapScene& s, const Profile& profile) {
         return enclosedEnergy(profile, b) - (a > 0 ? enclosedEnergy(profile, a) : Rgb{});
     });
     const auto quantile = [&](double part) {
-        return Rising::inverse(reach, part, [&](double r) {
+        return bisected(0, reach, [&](double r) {
             const Rgb v = light.value(r);
-            return std::min({v.x, v.y, v.z});
+            return std::min({v.x, v.y, v.z}) < part;
         });
     };
     std::vector<double> ends{0};
@@ -156,12 +148,9 @@ std::vector<Rgb> scatterSeparably(const TapScene& s, const Profile& profile) {
     std::vector<double> ends;
     for (int i = 0; i <= s.taps; ++i) {
         const double t = 2.0 * i / s.taps - 1;
-        ends.push_back(std::copysign(
-            i == 0 || i == s.taps
-                ? reach
-                : Rising::inverse(reach, std::abs(t),
-                                  [&](double x) { return 0.5 * half.mean(x) + 0.5 * std::sqrt(x / reach); }),
-            t));
+        const auto below = [&](double x) { return (half.mean(x) + std::sqrt(x / reach)) / 2 < std::abs(t); };
+        const bool outer = i == 0 || i == s.taps;
+        ends.push_back(std::copysign(outer ? reach : bisected(0, reach, below), t));
     }
     const std::vector<Surface> all = surfaces(picture);
     const auto filtered = [&](const std::vector<Rgb>& from, int dx, int dy, bool weigh) {

@@ -2,6 +2,8 @@
 
 #include <random>
 
+#include "reference/shade.h"
+
 namespace reference {
 namespace {
 
@@ -21,12 +23,7 @@ bool firstRoot(const std::function<double(double)>& f, double a, double b, int s
     for (int i = 1; i <= steps; ++i) {
         const double right = a + (b - a) * i / steps, next = f(right);
         if ((value > 0) != (next > 0)) {
-            double lo = left, hi = right;
-            for (int k = 0; k < 70; ++k) {
-                const double mid = 0.5 * (lo + hi);
-                ((f(mid) > 0) == (value > 0) ? lo : hi) = mid;
-            }
-            *root = 0.5 * (lo + hi);
+            *root = bisected(left, right, [&](double t) { return (f(t) > 0) == (value > 0); });
             return true;
         }
         left = right, value = next;
@@ -304,15 +301,8 @@ double ambientOnIris(const Eye& eye, double r, int steps) {
 }
 
 double tearGloss(Vec3 n, Vec3 l, Vec3 v, double roughness, double index) {
-    const double nl = dot(n, l), nv = std::max(dot(n, v), 1e-3);
-    if (nl <= 0) return 0;
-    const Vec3 h = normalized(l + v);
-    const double nh = dot(n, h), a2 = roughness * roughness;
-    if (nh <= 0) return 0;
-    const double k = nh * nh * (a2 - 1) + 1, d = a2 / (pi * k * k);
-    const double lambdaL = std::sqrt(a2 + (1 - a2) * nl * nl), lambdaV = std::sqrt(a2 + (1 - a2) * nv * nv);
-    const double visibility = 0.5 / (nl * lambdaV + nv * lambdaL);
-    return pi * nl * d * visibility * fresnel(max0(dot(v, h)), 1, index);
+    if (!(dot(n, l) > 0) || !(dot(n, l + v) > 0)) return 0;
+    return pi * dot(n, l) * ggxLobe(n, l, v, roughness) * fresnel(max0(dot(v, normalized(l + v))), 1, index);
 }
 
 }  // namespace reference

@@ -52,8 +52,8 @@ double walk(const Medium& medium, Vec3& p, Vec3 d, Random& random, const Exit& e
     }
 }
 
-// one(place) walks a photon: its weight, and where in equally wide bins over [0, 1) it counts. perWeight(bin):
-// radiance by the mean of weights.
+// one(place) walks a photon: its weight, and where in equally wide bins over [0, 1) it counts.
+// perWeight(bin): radiance by the mean of weights.
 template <class One, class PerWeight>
 WalkResult walkMany(int bins, uint64_t photons, const One& one, const PerWeight& perWeight) {
     std::vector<double> sum(static_cast<size_t>(bins)), square(sum);
