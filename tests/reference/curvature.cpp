@@ -1,5 +1,7 @@
 #include "reference/curvature.h"
 
+#include <map>
+
 namespace reference {
 namespace {
 
@@ -12,13 +14,6 @@ struct TangentForm {
         return uu * au * bu + uv * (au * bv + av * bu) + vv * av * bv;
     }
 };
-
-// Solves the symmetric 3x3 system by Cramer's rule.
-Vec3 solve(Vec3 row0, Vec3 row1, Vec3 row2, Vec3 right) {
-    const double determinant = dot(row0, cross(row1, row2));
-    return (right.x * cross(row1, row2) + right.y * cross(row2, row0) + right.z * cross(row0, row1)) /
-           determinant;
-}
 
 TangentForm faceForm(const Vec3 (&p)[3], const Vec3 (&n)[3]) {
     TangentForm form;
@@ -36,7 +31,7 @@ TangentForm faceForm(const Vec3 (&p)[3], const Vec3 (&n)[3]) {
         c += ev * ev;
         right = right + Vec3{eu * tu, ev * tu + eu * tv, ev * tv};
     }
-    const Vec3 solution = solve({a, b, 0}, {b, a + c, b}, {0, b, c}, right);
+    const Vec3 solution = solved({a, b, 0}, {b, a + c, b}, {0, b, c}, right);
     form.uu = solution.x;
     form.uv = solution.y;
     form.vv = solution.z;
@@ -190,31 +185,21 @@ std::vector<PrincipalCurvatures> tensorCurvature(const Mesh& mesh) {
 std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> values,
                                      const RadiusSmoothing& how) {
     const size_t count = values.size();
-    struct Edge {
-        int to;
-        double weight;
-    };
-    std::vector<std::vector<Edge>> edges(count);
+    std::vector<std::map<int, double>> edges(count);  // weights
     std::vector<double> areas(count), voronoi(count);
-    const auto add = [&](int from, int to, double weight) {
-        for (Edge& e : edges[size_t(from)])
-            if (e.to == to) return void(e.weight += weight);
-        edges[size_t(from)].push_back({to, weight});
-    };
     for (const Triangle& t : mesh.triangles) {
-        const Vec3 p[3] = {mesh.positions[size_t(t[0])], mesh.positions[size_t(t[1])],
-                           mesh.positions[size_t(t[2])]};
+        const Vec3 p[3] = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
         const double doubled = length(cross(p[1] - p[0], p[2] - p[0]));
         const auto nearest = voronoiAreas(p[0], p[1], p[2]);
         for (int i = 0; i < 3; ++i) {
             const int j = (i + 1) % 3, k = (i + 2) % 3;
             const Vec3 toJ = p[j] - p[i], toK = p[k] - p[i], between = p[k] - p[j];
             if (doubled * doubled <= flatTriangle * dot(toJ, toJ) * dot(toK, toK)) continue;
-            voronoi[size_t(t[i])] += nearest[size_t(i)];
-            areas[size_t(t[i])] += how.byArea ? doubled / 6 : nearest[size_t(i)];
+            voronoi[t[i]] += nearest[i];
+            areas[t[i]] += how.byArea ? doubled / 6 : nearest[i];
             // The edge to j has the cotangent at k, and the other way round.
-            add(t[i], t[j], dot(toK, between) / doubled);
-            add(t[i], t[k], -dot(toJ, between) / doubled);
+            edges[t[i]][t[j]] += dot(toK, between) / doubled;
+            edges[t[i]][t[k]] -= dot(toJ, between) / doubled;
         }
     }
     if (how.byArea) {
@@ -222,39 +207,38 @@ std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> value
         std::vector<double> factors(count);
         for (size_t i = 0; i < count; ++i) {
             double moment = 0;
-            for (Edge& e : edges[i]) {
-                const Vec3 along = mesh.positions[size_t(e.to)] - mesh.positions[i];
-                e.weight = max0(e.weight);
-                moment += e.weight * dot(along, along);
+            for (auto& [to, weight] : edges[i]) {
+                const Vec3 along = mesh.positions[to] - mesh.positions[i];
+                weight = max0(weight);
+                moment += weight * dot(along, along);
             }
             factors[i] = moment > 0 ? 8 * voronoi[i] / moment : 0;
         }
         for (size_t i = 0; i < count; ++i)
-            for (Edge& e : edges[i]) e.weight *= (factors[i] + factors[size_t(e.to)]) / 2;
+            for (auto& [to, weight] : edges[i]) weight *= (factors[i] + factors[to]) / 2;
     }
     // What so many stages can do: slots that even out faster are slowed down to it.
     const double time = how.radius * how.radius / 2, wide = (how.stages > 1 ? how.stages - 1 : 0.5) / 2.63,
                  span = wide * wide / 2, limit = span / time, turn = 2 * std::sin(how.crease / 2);
     std::vector<double> rates(count);
     for (size_t i = 0; i < count; ++i)
-        for (Edge& e : edges[i]) {
-            e.weight *= 0.5 / areas[i];
-            if (!(areas[i] > 0)) e.weight = 0;
+        for (auto& [to, weight] : edges[i]) {
+            weight = areas[i] > 0 ? weight * 0.5 / areas[i] : 0;
             if (how.crease > 0) {
-                const Vec3 change = normalized(mesh.normals[size_t(e.to)]) - normalized(mesh.normals[i]);
-                e.weight = max0(e.weight) * std::exp(-dot(change, change) / (turn * turn));
+                const Vec3 change = normalized(mesh.normals[to]) - normalized(mesh.normals[i]);
+                weight = max0(weight) * std::exp(-dot(change, change) / (turn * turn));
             }
-            rates[i] += std::abs(e.weight);
+            rates[i] += std::abs(weight);
         }
     for (size_t i = 0; i < count; ++i)
-        for (Edge& e : edges[i])
-            e.weight /= std::max({1.0, rates[i] / limit, how.byArea ? rates[size_t(e.to)] / limit : 0.0});
+        for (auto& [to, weight] : edges[i])
+            weight /= std::max({1.0, rates[i] / limit, how.byArea ? rates[to] / limit : 0.0});
     // The equation itself by the classical Runge-Kutta method, in steps of a quarter of what is stable.
     const int steps = std::max(4, int(std::ceil(3 * span)));
     const auto slope = [&](const std::vector<double>& v) {
         std::vector<double> change(count);
         for (size_t i = 0; i < count; ++i)
-            for (const Edge& e : edges[i]) change[i] += e.weight * (v[size_t(e.to)] - v[i]);
+            for (const auto& [to, weight] : edges[i]) change[i] += weight * (v[to] - v[i]);
         return change;
     };
     const auto moved = [&](const std::vector<double>& by, double part) {

@@ -125,28 +125,6 @@ Chart chartOf(const Mesh& mesh, const std::set<int>& ring, int vertex, Vec3 norm
     return chart;
 }
 
-// Gaussian elimination with pivots, in place.
-template <size_t N>
-std::array<double, N> solve(std::array<std::array<double, N>, N> a, std::array<double, N> b) {
-    for (size_t i = 0; i < N; ++i) {
-        size_t pivot = i;
-        for (size_t k = i; k < N; ++k)
-            if (std::abs(a[k][i]) > std::abs(a[pivot][i])) pivot = k;
-        std::swap(a[i], a[pivot]);
-        std::swap(b[i], b[pivot]);
-        for (size_t k = i + 1; k < N; ++k) {
-            const double factor = a[k][i] / a[i][i];
-            for (size_t j = i; j < N; ++j) a[k][j] -= factor * a[i][j];
-            b[k] -= factor * b[i];
-        }
-    }
-    for (size_t i = N; i-- > 0;) {
-        for (size_t j = i + 1; j < N; ++j) b[i] -= a[i][j] * b[j];
-        b[i] /= a[i][i];
-    }
-    return b;
-}
-
 // Principal curvatures and directions of the graph h(u, v) with these derivatives at 0: Gauss and Weingarten.
 void principal(QuadricCurvature& out, const Frame& frame, double hu, double hv, double huu, double huv,
                double hvv) {
@@ -195,22 +173,10 @@ void nearer(double& margin, double value, double threshold) {
     margin = std::min(margin, std::abs(value / threshold - 1));
 }
 
-// The smallest contribution of a quadratic or cubic term to the sum of squares, given the terms before it, in
-// units of the ridge that is used inside of a mesh. The ridge itself is subtracted.
-double smallestTerm(std::array<std::array<double, 9>, 9> a, double total, bool border) {
-    double least = 1e30;
-    for (size_t i = 0; i < 9; ++i) {
-        const double ridge = i < 5 ? 1e-7 : 1e-5, added = i >= 5 && border ? 1e-3 : ridge;
-        const double share = i == 3 ? 2 : i == 6 || i == 7 ? 3 : 1;
-        if (i >= 2) least = std::min(least, (a[i][i] / (total * share) - added) / ridge);
-        for (size_t k = i + 1; k < 9; ++k)
-            for (size_t j = 9; j-- > i;) a[k][j] -= a[k][i] / a[i][i] * a[i][j];
-    }
-    return least;
-}
-
 struct Fit {
     std::array<double, 9> solution{};
+    // The smallest contribution of a quadratic or cubic term to the sum of squares, given the terms before
+    // it, in units of the ridge that is used inside of a mesh. The ridge itself is subtracted.
     double told = 0;
     int points = 0;
 };
@@ -218,7 +184,7 @@ struct Fit {
 Fit fitTo(const Mesh& mesh, const std::map<int, int>& points, const Chart& chart, int vertex, bool border) {
     Fit fit;
     std::array<std::array<double, 9>, 9> matrix{};
-    std::array<double, 9> right{};
+    std::array<double, 9>& right = fit.solution;
     double total = 0;
     for (const auto& [point, count] : points) {
         const Vec3 p = (mesh.positions[point] - mesh.positions[vertex]) / chart.unit;
@@ -239,10 +205,24 @@ Fit fitTo(const Mesh& mesh, const std::map<int, int>& points, const Chart& chart
     }
     // The squares of all derivatives of an order: mixed ones stand there twice, or three times.
     const double often[9] = {1, 1, 1, 2, 1, 1, 3, 3, 1};
-    for (int i = 0; i < 9; ++i) matrix[i][i] += total * often[i] * (i < 5 ? 1e-7 : border ? 1e-3 : 1e-5);
+    const auto added = [&](int i) { return i < 5 ? 1e-7 : border ? 1e-3 : 1e-5; };
+    for (int i = 0; i < 9; ++i) matrix[i][i] += total * often[i] * added(i);
     if (!(total > 0)) return fit;
-    fit.told = smallestTerm(matrix, total, border);
-    fit.solution = solve(matrix, right);
+    fit.told = 1e30;
+    for (int i = 0; i < 9; ++i) {  // Gaussian elimination; the matrix is positive definite
+        if (i >= 2)
+            fit.told =
+                std::min(fit.told, (matrix[i][i] / (total * often[i]) - added(i)) / (i < 5 ? 1e-7 : 1e-5));
+        for (int k = i + 1; k < 9; ++k) {
+            const double factor = matrix[k][i] / matrix[i][i];
+            for (int j = i; j < 9; ++j) matrix[k][j] -= factor * matrix[i][j];
+            right[k] -= factor * right[i];
+        }
+    }
+    for (int i = 9; i-- > 0;) {
+        for (int j = i + 1; j < 9; ++j) right[i] -= matrix[i][j] * right[j];
+        right[i] /= matrix[i][i];
+    }
     return fit;
 }
 

@@ -23,10 +23,6 @@ Vec3 rowOf(const Matrix4& m, int r) {
     return {m[size_t(r)][0], m[size_t(r)][1], m[size_t(r)][2]};
 }
 
-double determinant(Vec3 a, Vec3 b, Vec3 c) {
-    return dot(a, cross(b, c));
-}
-
 // The point that is seen at (u, v, depth).
 Vec3 pointAt(const LightDepths& map, const MappedLight& light, double u, double v, double depth) {
     if (map.face >= 0) {
@@ -34,14 +30,14 @@ Vec3 pointAt(const LightDepths& map, const MappedLight& light, double u, double 
         const double along = map.decoding.distance(depth) / (map.radial ? length(d) : 1);
         return light.position + along * d;
     }
-    // row . p + constant = 0 for three rows, by Cramer's rule.
     const Matrix4& m = map.worldToShadow;
-    Vec3 rows[3], sum;
     const double at[] = {u, v, depth};
-    for (int r = 0; r < 3; ++r) rows[r] = rowOf(m, r) - at[r] * rowOf(m, 3);
-    for (int r = 0; r < 3; ++r)
-        sum = sum + (m[r][3] - at[r] * m[3][3]) * cross(rows[(r + 1) % 3], rows[(r + 2) % 3]);
-    return -1 * sum / determinant(rows[0], rows[1], rows[2]);
+    Vec3 rows[3], right;
+    for (int r = 0; r < 3; ++r) {
+        rows[r] = rowOf(m, r) - at[r] * rowOf(m, 3);
+        right[r] = at[r] * m[3][3] - m[r][3];
+    }
+    return solved(rows[0], rows[1], rows[2], right);
 }
 
 // The area that a beam through 1 in u and 1 in v has across the light, where it shines on `p`; by a unit of

@@ -98,17 +98,23 @@ double fresnel(double cosine, double from, double to) {
     return 0.5 * (s * s + p * p);
 }
 
+namespace {
+
+// Through the cornea, from air to the aqueous: both of its sides, without what goes to and fro between them.
 double corneaTransmittance(const Eye& eye, double cosine) {
     const double inside = std::sqrt(max0(1 - (1 - cosine * cosine) / (eye.nCornea * eye.nCornea)));
     return (1 - fresnel(cosine, 1, eye.nCornea)) * (1 - fresnel(inside, eye.nCornea, eye.nAqueous));
 }
 
+// The direction behind an interface; n against d. False: totally reflected.
 bool refract(Vec3 d, Vec3 n, double from, double to, Vec3* out) {
     const double cosine = -dot(d, n), ratio = from / to, sine2 = ratio * ratio * (1 - cosine * cosine);
     if (sine2 > 1) return false;
     *out = ratio * d + (ratio * cosine - std::sqrt(1 - sine2)) * n;
     return true;
 }
+
+}  // namespace
 
 EyeHit traceEye(const Eye& eye, Vec3 origin, Vec3 d) {
     EyeHit hit;

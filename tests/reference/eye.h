@@ -30,10 +30,6 @@ double largestAngle(const Eye& eye);
 // Share of light that an interface from index `from` to index `to` reflects; 1 beyond the critical angle.
 // Fresnel's equations, the mean of both polarisations.
 double fresnel(double cosine, double from, double to);
-// Through the cornea, from air to the aqueous: both of its sides, without what goes to and fro between them.
-double corneaTransmittance(const Eye& eye, double cosineInAir);
-// The direction behind an interface; n against d. False: totally reflected.
-bool refract(Vec3 d, Vec3 n, double from, double to, Vec3* out);
 
 // What a ray from the camera meets.
 struct EyeHit {

@@ -15,7 +15,7 @@ bool inCircle(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
     const auto row = [&](Vec2 p) {
         return Vec3{p.x - d.x, p.y - d.y, (p.x - d.x) * (p.x - d.x) + (p.y - d.y) * (p.y - d.y)};
     };
-    return dot(row(a), cross(row(b), row(c))) > 0;
+    return determinant(row(a), row(b), row(c)) > 0;
 }
 
 class Delaunay {

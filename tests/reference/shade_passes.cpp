@@ -94,12 +94,13 @@ Vec3 fromTangentSpace(Vec3 texel, Vec3 tangent, Vec3 normal, double side) {
     return normalized(texel.x * tangent + side * texel.y * cross(normal, tangent) + texel.z * normal);
 }
 
+namespace {
+
+// Of the wide filter, at part r of its radius.
 double diskWeight(double r) {
     const double t = 1 - r * r;
     return std::sqrt(t) / (1 + t) + std::atan(std::sqrt(t));
 }
-
-namespace {
 
 // A place as the light sees it: column and row in the map, texels' centres at whole numbers; its depth, and
 // that by length; the length that the map spans there. along: from the light; not above 0: behind it.
@@ -120,8 +121,11 @@ struct OnMap {
     }
 };
 
-}  // namespace
-
+// One texel under the filter, its weight, and the depth of the receiver's plane there, less the bias.
+struct FilterSample {
+    int texel;  // in map.depth; -1: outside of it
+    double weight, receiver, zPerLength;
+};
 std::vector<FilterSample> filterSamples(const ShadowMap& map, const ShadowView& view, Vec3 position,
                                         Vec3 normal, const WideFilterParams& p) {
     std::vector<FilterSample> samples;
@@ -146,6 +150,8 @@ std::vector<FilterSample> filterSamples(const ShadowMap& map, const ShadowView& 
         }
     return samples;
 }
+
+}  // namespace
 
 double wideShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, Vec3 normal,
                   const WideFilterParams& p) {

@@ -51,14 +51,6 @@ struct WideFilterParams {
     double width = 8, bias = 0.5, softness = 0.25, coneSlope = 0.5;
     int maxTexels = 48;
 };
-// One texel under the filter, its weight, and the depth of the receiver's plane there, less the bias.
-struct FilterSample {
-    int texel;  // in map.depth; -1: outside of it
-    double weight, receiver, zPerLength;
-};
-double diskWeight(double r);  // of the filter, at part r of its radius
-std::vector<FilterSample> filterSamples(const ShadowMap& map, const ShadowView& view, Vec3 position,
-                                        Vec3 normal, const WideFilterParams& params);
 double wideShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, Vec3 normal,
                   const WideFilterParams& params);
 

@@ -33,6 +33,13 @@ inline double dot(Vec3 a, Vec3 b) {
 inline Vec3 cross(Vec3 a, Vec3 b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+inline double determinant(Vec3 a, Vec3 b, Vec3 c) {
+    return dot(a, cross(b, c));
+}
+// x with dot(a, x), dot(b, x), dot(c, x) = right, by Cramer's rule.
+inline Vec3 solved(Vec3 a, Vec3 b, Vec3 c, Vec3 right) {
+    return (right.x * cross(b, c) + right.y * cross(c, a) + right.z * cross(a, b)) / determinant(a, b, c);
+}
 inline double length(Vec3 a) {
     return std::sqrt(dot(a, a));
 }
