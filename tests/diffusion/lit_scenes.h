@@ -20,7 +20,6 @@ using pellucid::Profile;
 
 // Lengths in units of positions, which are `unit` mm long.
 struct LitScene {
-    std::string name;
     double unit = 1;
     int width = 0, height = 0;
     Vec3 toLight;
@@ -77,7 +76,6 @@ class Stage {
     // The picture, its map and its irradiance, without what light does.
     LitScene look(const SceneRequest& request, const Profile& profile) const {
         LitScene s;
-        s.name = body_.name;
         s.unit = unit_;
         s.width = s.height = request.size;
         s.toLight = headDirection(body_.pose, request.lightAzimuth, request.lightElevation);

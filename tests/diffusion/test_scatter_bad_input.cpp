@@ -236,19 +236,16 @@ TEST(ScatterControls, OfMaterialsAreChecked) {
     }
     // Of frames: what the method cannot do.
     Frame f(plane(8, 8, 1, [](double, double) { return Vec3{}; }), PEL_SCATTERING_SCREEN);
-    const auto refused = [&](const char* word) {
-        expectRefused(
-            {word}, [&] { f.shade(); }, PEL_ERROR_UNSUPPORTED);
-    };
     f.material.borderColor[0] = 1;
-    refused("scatterTaps of 8 to 256");
+    expectRefused(
+        {"scatterTaps of 8 to 256"}, [&] { f.shade(); }, PEL_ERROR_UNSUPPORTED);
     f.material.scatterTaps = 16;
     f.shade();
     f.material = whiteMaterial(Profile(), PEL_SCATTERING_SCREEN);
     f.material.thinThickness = 1;  // nothing comes from behind
     for (PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_PREINTEGRATED}) {
         f.material.scattering = method;
-        refused("thinThickness");
+        expectRefused("thinThickness", [&] { f.shade(); });
     }
 }
 

@@ -3,22 +3,13 @@
 #include "reference/lut.h"
 
 namespace reference {
-namespace {
-
-// Texels count x count over [0, 1] x [0, 1], clamped to the outermost centres.
-template <class Image, class Texel>
-auto clamped(const Image& image, double s, double t, const std::vector<Texel>& texels) {
-    const auto place = [](double c, int count) { return std::clamp(c * count - 0.5, 0.0, count - 1.0); };
-    return bilinearAt(place(s, image.width), place(t, image.height), [&](int i, int j) {
-        const int x = std::min(i, image.width - 1), y = std::min(j, image.height - 1);
-        return texels[size_t(y) * image.width + x];
-    });
-}
-
-}  // namespace
 
 Rgb bilinear(const Table& table, double s, double t) {
-    return clamped(table, s, t, table.texels);
+    const auto place = [](double c, int count) { return std::clamp(c * count - 0.5, 0.0, count - 1.0); };
+    return bilinearAt(place(s, table.width), place(t, table.height), [&](int i, int j) {
+        const int x = std::min(i, table.width - 1), y = std::min(j, table.height - 1);
+        return table.texels[size_t(y) * table.width + x];
+    });
 }
 
 const CubeFace cubeFaces[6] = {{{1, 0, 0}, {0, 0, -1}, {0, -1, 0}}, {{-1, 0, 0}, {0, 0, 1}, {0, -1, 0}},
@@ -151,10 +142,17 @@ Rgb ambientTerm(const Ambient& ambient, Vec3 shading, Vec3 blurred, Rgb blend) {
 }
 
 double sampleMap(const ShadowMap& map, double u, double v, MapFilter filter) {
-    if (filter == MapFilter::bilinear) return clamped(map, u, v, map.depth);
-    const int x = std::clamp(int(std::floor(u * map.width)), 0, map.width - 1),
-              y = std::clamp(int(std::floor(v * map.height)), 0, map.height - 1);
-    return map.depth[size_t(y) * map.width + x];
+    const auto depth = [&](double x, double y) {
+        const int i = std::clamp(int(std::floor(x)), 0, map.width - 1),
+                  j = std::clamp(int(std::floor(y)), 0, map.height - 1);
+        return map.depth[size_t(j) * map.width + i];
+    };
+    if (filter == MapFilter::nearest) return depth(u * map.width, v * map.height);
+    const double x = std::clamp(u * map.width - 0.5, 0.0, map.width - 1.0), fx = x - std::floor(x),
+                 y = std::clamp(v * map.height - 0.5, 0.0, map.height - 1.0), fy = y - std::floor(y);
+    // Of a texel of NaN before another, std::lerp gives the other: fewer pixels than by mix() are NaN.
+    return std::lerp(std::lerp(depth(x, y), depth(x + 1, y), fx),
+                     std::lerp(depth(x, y + 1), depth(x + 1, y + 1), fx), fy);
 }
 
 Vec3 shadowCoordinates(const Matrix4& m, Vec3 position, Vec3 normal, double offset) {
