@@ -1,4 +1,4 @@
-#include "fuzz/mutate.h"
+#include "fuzz/readers.h"
 
 #include <algorithm>
 #include <cctype>
