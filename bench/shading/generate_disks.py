@@ -73,8 +73,7 @@ def main():
     )
     print("""\
 // Written by bench/shading/generate_disks.py, which says how: do not edit.
-#ifndef PEL_LIB_POISSON_DISK
-#define PEL_LIB_POISSON_DISK
+#pragma once
 """)
     for count in (8, 16, 32):
         print(f"__constant float2 pelDisk{count}[{count}] = {{")
@@ -83,9 +82,7 @@ def main():
         print("};\n")
     print("""static inline __constant float2* poissonDisk(uint taps) {
     return taps <= 8 ? pelDisk8 : taps <= 16 ? pelDisk16 : pelDisk32;
-}
-
-#endif""")
+}""")
 
 
 main()

@@ -8,7 +8,6 @@
 #include "io/file_error.h"
 #include "io/image/image_compare.h"
 #include "io/image/image_file.h"
-#include "io/image/npy_read.h"
 #include "io/image/picture.h"
 #include "io/image/tone_map.h"
 #include "io/input_file.h"

@@ -16,7 +16,7 @@
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "mesh_curvature.h"
-#include "scene/scene_programs.h"
+#include "scene/scene_frame.h"
 #include "system/process.h"
 
 namespace pellucid::cli {

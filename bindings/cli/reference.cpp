@@ -19,7 +19,6 @@
 #include "mesh_curvature.h"
 #include "sample/lit_mesh.h"
 #include "sample/random_walk.h"
-#include "sample/surface_light.h"
 #include "scene/scene_frame.h"
 
 namespace pellucid::cli {

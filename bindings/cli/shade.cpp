@@ -22,7 +22,6 @@
 #include "io/input_file.h"
 #include "io/scene/scene_keys.h"
 #include "scene/scene_frame.h"
-#include "scene/scene_programs.h"
 #include "system/process.h"
 
 namespace pellucid::cli {

@@ -3,7 +3,7 @@
 
 #include "command.h"
 #include "io/file_error.h"
-#include "scene/scene_programs.h"
+#include "scene/scene_frame.h"
 #include "system/process.h"
 
 namespace pellucid::cli {

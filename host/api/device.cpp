@@ -1,31 +1,26 @@
 #include "core/device.h"
-
 #include "api/entry.h"
 #include "cl/platform.h"
+#include "core/buffer.h"
 #include "core/submission.h"
 
 using namespace pel;
 
 const char* pelErrorName(PelError error) {
     switch (error) {
-        case PEL_SUCCESS:
-            return "PEL_SUCCESS";
-        case PEL_ERROR_INVALID_ARGUMENT:
-            return "PEL_ERROR_INVALID_ARGUMENT";
-        case PEL_ERROR_INVALID_STATE:
-            return "PEL_ERROR_INVALID_STATE";
-        case PEL_ERROR_NO_DEVICE:
-            return "PEL_ERROR_NO_DEVICE";
-        case PEL_ERROR_OUT_OF_MEMORY:
-            return "PEL_ERROR_OUT_OF_MEMORY";
-        case PEL_ERROR_DEVICE:
-            return "PEL_ERROR_DEVICE";
-        case PEL_ERROR_UNSUPPORTED:
-            return "PEL_ERROR_UNSUPPORTED";
-        case PEL_ERROR_CANCELLED:
-            return "PEL_ERROR_CANCELLED";
-        case PEL_ERROR_UNKNOWN:
-            break;
+#define NAME(error) \
+    case error:     \
+        return #error;
+        NAME(PEL_SUCCESS)
+        NAME(PEL_ERROR_INVALID_ARGUMENT)
+        NAME(PEL_ERROR_INVALID_STATE)
+        NAME(PEL_ERROR_NO_DEVICE)
+        NAME(PEL_ERROR_OUT_OF_MEMORY)
+        NAME(PEL_ERROR_DEVICE)
+        NAME(PEL_ERROR_UNSUPPORTED)
+        NAME(PEL_ERROR_CANCELLED)
+        NAME(PEL_ERROR_UNKNOWN)
+#undef NAME
     }
     return "PEL_ERROR_UNKNOWN";
 }
@@ -56,24 +51,17 @@ PelError pelDeviceEnumerate(uint32_t index, PelDeviceInfo* info) {
 }
 
 PelError pelDeviceCreate(const char* selector, PelDevice* device) {
-    return entry([&] { handOut(device, "device", [&] { return Device::create(selector); }); });
+    return create(device, "device", [&] { return Device::create(selector); });
 }
 
 PelError pelDeviceCreateFromCl(void* clContext, void* clDeviceId, void* clCommandQueue, PelDevice* device) {
-    return entry([&] {
-        handOut(device, "device", [&] {
-            return Device::createFromCl(cl_context(clContext), cl_device_id(clDeviceId),
-                                        cl_command_queue(clCommandQueue));
-        });
+    return create(device, "device", [&] {
+        return Device::createFromCl(cl_context(clContext), cl_device_id(clDeviceId),
+                                    cl_command_queue(clCommandQueue));
     });
 }
 
-void pelDeviceRetain(PelDevice device) {
-    retainEntry<Device>(device);
-}
-void pelDeviceRelease(PelDevice device) {
-    releaseEntry<Device>(device);
-}
+PEL_COUNTED(Device)
 
 PelError pelDeviceGetInfo(PelDevice device, PelDeviceInfo* info) {
     return entry([&] { writeStruct(info, fromHandle<Device>(device)->info(), "PelDeviceInfo"); });
@@ -101,10 +89,10 @@ PelError pelDeviceSetProgress(PelDevice device, PelProgressCallback callback, vo
 }
 
 PelError pelEventCreateFromCl(PelDevice device, void* clEvent, PelEvent* event) {
-    return entry([&] {
+    return create(event, "event", [&] {
         const Ref<Device> d = fromHandle<Device>(device);
         if (!clEvent) invalidArgument("a cl_event is needed, not NULL");
-        handOut(event, "event", [&] { return make<Event>(d, cl::Event::retained(cl_event(clEvent))); });
+        return make<Event>(d, cl::Event::retained(cl_event(clEvent)));
     });
 }
 
@@ -120,9 +108,61 @@ PelError pelEventIsDone(PelEvent event, int* done) {
     return entry([&] { output(done, "done") = fromHandle<Event>(event)->isDone(); });
 }
 
-void pelEventRetain(PelEvent event) {
-    retainEntry<Event>(event);
+PEL_COUNTED(Event)
+
+PelError pelBufferCreate(PelDevice device, size_t bytes, const void* initial, PelBuffer* buffer) {
+    return create(buffer, "buffer",
+                  [&] { return Buffer::create(fromHandle<Device>(device), bytes, initial); });
 }
-void pelEventRelease(PelEvent event) {
-    releaseEntry<Event>(event);
+
+PelError pelBufferCreateFromHost(PelDevice device, void* memory, size_t bytes, PelBuffer* buffer) {
+    return create(buffer, "buffer",
+                  [&] { return Buffer::createFromHost(fromHandle<Device>(device), memory, bytes); });
+}
+
+PelError pelBufferCreateFromCl(PelDevice device, void* clMem, PelBuffer* buffer) {
+    return create(buffer, "buffer",
+                  [&] { return Buffer::createFromCl(fromHandle<Device>(device), cl_mem(clMem)); });
+}
+
+PEL_COUNTED(Buffer)
+
+PelError pelBufferGetSize(PelBuffer buffer, size_t* bytes) {
+    return entry([&] { output(bytes, "bytes") = fromHandle<Buffer>(buffer)->bytes(); });
+}
+
+PelError pelBufferGetCl(PelBuffer buffer, void** clMem) {
+    return entry([&] { output(clMem, "clMem") = fromHandle<Buffer>(buffer)->memory().get(); });
+}
+
+PelError pelBufferRead(PelBuffer buffer, size_t offset, size_t bytes, void* destination,
+                       const PelSubmit* submit) {
+    return entry([&] {
+        const Ref<Buffer> b = fromHandle<Buffer>(buffer);
+        b->checkRange(offset, bytes, "the read");
+        if (bytes > 0) output(static_cast<char*>(destination), "destination");
+        submitted(b->device(), submit, [&](bool blocking) {
+            if (bytes > 0) b->device().read(b->memory().get(), offset, bytes, destination, blocking);
+        });
+    });
+}
+
+PelError pelBufferWrite(PelBuffer buffer, size_t offset, size_t bytes, const void* source,
+                        const PelSubmit* submit) {
+    return entry([&] {
+        const Ref<Buffer> b = fromHandle<Buffer>(buffer);
+        b->checkRange(offset, bytes, "the write");
+        if (bytes > 0 && !source) invalidArgument("source is NULL but ", bytes, " bytes are to be written");
+        submitted(b->device(), submit, [&](bool blocking) {
+            if (bytes > 0) b->device().write(b->memory().get(), offset, bytes, source, blocking);
+        });
+    });
+}
+
+PelError pelBufferMap(PelBuffer buffer, void** memory) {
+    return entry([&] { output(memory, "memory") = fromHandle<Buffer>(buffer)->map(); });
+}
+
+PelError pelBufferUnmap(PelBuffer buffer) {
+    return entry([&] { fromHandle<Buffer>(buffer)->unmap(); });
 }

@@ -2,7 +2,7 @@
 #pragma once
 #include <new>
 
-#include "cl/process.h"
+#include "cl/machine.h"
 #include "core/error_log.h"
 #include "core/handle_table.h"
 #include "core/struct_size.h"
@@ -26,16 +26,14 @@ PelError entry(Body&& body) noexcept {
     }
 }
 
-// Retain and Release: NULL does nothing. An error can only be reported by the message and the callback.
-template <class T>
-void retainEntry(const void* handle) noexcept {
-    if (handle) entry([&] { retainHandle(handle, T::kind); });
-}
-
-template <class T>
-void releaseEntry(const void* handle) noexcept {
-    if (handle) entry([&] { releaseHandle(handle, T::kind); });
-}
+// pel...Retain and Release: NULL does nothing. An error can only be reported by the message and the callback.
+#define PEL_COUNTED(T)                                              \
+    void pel##T##Retain(Pel##T handle) {                            \
+        if (handle) entry([&] { retainHandle(handle, T::kind); });  \
+    }                                                               \
+    void pel##T##Release(Pel##T handle) {                           \
+        if (handle) entry([&] { releaseHandle(handle, T::kind); }); \
+    }
 
 // Throws if an output parameter is NULL.
 template <class T>
@@ -44,11 +42,14 @@ T& output(T* pointer, const char* name) {
     return *pointer;
 }
 
-// A handle of what `make` returns. `make` is not called if there is nowhere to put the handle.
+// An entry point that hands out what `make` returns, which is not called if there is nowhere to put the
+// handle.
 template <class Handle, class Make>
-void handOut(Handle* to, const char* name, const Make& make) {
-    Handle& place = output(to, name);
-    place = toHandle<Handle>(make());
+PelError create(Handle* to, const char* name, const Make& make) noexcept {
+    return entry([&] {
+        Handle& place = output(to, name);
+        place = toHandle<Handle>(make());
+    });
 }
 
 }  // namespace pel

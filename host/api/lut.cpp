@@ -1,9 +1,11 @@
+#include <cmath>
+
 #include "api/entry.h"
 #include "core/submission.h"
-#include "eye/check_eye.h"
-#include "eye/eye_lut.h"
-#include "lut/lut_check.h"
+#include "eye/eye.h"
+#include "lut/lut.h"
 #include "lut/luts.h"
+#include "lut/profile.h"
 
 using namespace pel;
 
@@ -18,9 +20,8 @@ PelError createLut(PelDevice device, const Desc* desc, const Desc& olderHeaders,
         const Ref<Device> d = fromHandle<Device>(device);
         const Desc request = readStruct(desc, olderHeaders, name);
         PelLut& result = output(lut, "lut");
-        Submission submission(*d, submit);
-        Ref<Lut> made = integrate(d, request);
-        submission.finish();
+        Ref<Lut> made;
+        submitted(*d, submit, [&](bool) { made = integrate(d, request); });
         result = toHandle<PelLut>(std::move(made));
     });
 }
@@ -36,9 +37,9 @@ void checkInfo(const PelLutInfo& info) {
         case PEL_LUT_EYE:
             return checkEyeLutDesc(info.eye);
     }
-    invalidArgument("PelLutInfo.kind is ", int(info.kind),
-                    "; PEL_LUT_CURVATURE (0), PEL_LUT_SHADOW (1), PEL_LUT_SPECULAR (2) or PEL_LUT_EYE (3) is "
-                    "needed");
+    invalidArgument(
+        "PelLutInfo.kind is ", int(info.kind),
+        "; PEL_LUT_CURVATURE (0), PEL_LUT_SHADOW (1), PEL_LUT_SPECULAR (2) or PEL_LUT_EYE (3) is needed");
 }
 
 }  // namespace
@@ -46,9 +47,7 @@ void checkInfo(const PelLutInfo& info) {
 PelError pelCurvatureLutCreate(PelDevice device, const PelCurvatureLutDesc* desc, PelLut* lut,
                                const PelSubmit* submit) {
     return createLut(device, desc, pelCurvatureLutDescFaceWorks(), "PelCurvatureLutDesc", lut, submit,
-                     [](const Ref<Device>& d, const PelCurvatureLutDesc& request) {
-                         return integrateCurvatureLut(d, request);  // with the default number of nodes
-                     });
+                     integrateCurvatureLut);
 }
 
 PelError pelShadowLutCreate(PelDevice device, const PelShadowLutDesc* desc, PelLut* lut,
@@ -72,20 +71,15 @@ PelError pelEyeLutCreate(PelDevice device, const PelEyeLutDesc* desc, PelLut* lu
 
 PelError pelLutCreateFromTexels(PelDevice device, const PelLutInfo* info, const float* texels, size_t bytes,
                                 PelLut* lut) {
-    return entry([&] {
+    return create(lut, "lut", [&] {
         const Ref<Device> d = fromHandle<Device>(device);
         const auto known = readStruct(info, pelLutInfoDefaults(), "PelLutInfo");
         checkInfo(known);
-        handOut(lut, "lut", [&] { return uploadLut(d, known, texels, bytes); });
+        return uploadLut(d, known, texels, bytes);
     });
 }
 
-void pelLutRetain(PelLut lut) {
-    retainEntry<Lut>(lut);
-}
-void pelLutRelease(PelLut lut) {
-    releaseEntry<Lut>(lut);
-}
+PEL_COUNTED(Lut)
 
 PelError pelLutGetInfo(PelLut lut, PelLutInfo* info) {
     return entry([&] { writeStruct(info, fromHandle<Lut>(lut)->info(), "PelLutInfo"); });
@@ -113,8 +107,86 @@ PelError pelLutRead(PelLut lut, PelLutEncoding encoding, void* destination, size
         if (bytes < needed)
             invalidArgument("the LUT takes ", needed, " bytes in this encoding; destination has ", bytes);
         output(static_cast<char*>(destination), "destination");
-        Submission submission(l->device(), submit);
-        readLut(*l, encoding, destination, submission.blocking());
-        submission.finish();
+        submitted(l->device(), submit, [&](bool blocking) { readLut(*l, encoding, destination, blocking); });
+    });
+}
+
+PelError pelProfileCreateSkin(PelProfile* profile) {
+    return create(profile, "profile", [&] { return Profile::skin(); });
+}
+
+PelError pelProfileCreateGaussians(const PelGaussian* gaussians, uint32_t count, PelProfile* profile) {
+    return create(profile, "profile", [&] { return Profile::gaussians(gaussians, count); });
+}
+
+PelError pelProfileCreateBurley(const float meanFreePath[3], const float albedo[3], PelBurleyFit fit,
+                                PelProfile* profile) {
+    return create(profile, "profile", [&] { return Profile::burley(meanFreePath, albedo, fit); });
+}
+
+PelError pelProfileCreateBurleyDistance(const float distance[3], PelProfile* profile) {
+    return create(profile, "profile", [&] { return Profile::burleyDistance(distance); });
+}
+
+PelError pelProfileCreateNamed(const char* name, PelProfile* profile) {
+    return create(profile, "profile", [&] { return namedProfile(name); });
+}
+
+const char* pelProfileLibraryName(uint32_t index) {
+    return index < profileLibrary().size() ? profileLibrary()[index].name : nullptr;
+}
+
+PelError pelProfileTransmission(PelProfile profile, const double* distances, uint32_t count,
+                                double* transmission) {
+    return entry([&] {
+        const Ref<Profile> held = fromHandle<Profile>(profile);
+        const ProfileShape& shape = held->shape();
+        if (count > 0 && !distances) invalidArgument("distances are needed, not NULL");
+        if (count > 0 && !transmission) invalidArgument("a transmission to fill is needed, not NULL");
+        for (uint32_t i = 0; i < count; ++i)
+            if (!std::isfinite(distances[i]) || distances[i] < 0)
+                invalidArgument("distance ", i, " is ", distances[i],
+                                "; a finite length of 0 or more is needed");
+        for (uint32_t i = 0; i < count; ++i) {
+            const Rgb t = shape.transmission(distances[i]);
+            std::copy(t.begin(), t.end(), transmission + 3 * i);
+        }
+    });
+}
+
+PelError pelProfileCreateDipole(const float absorption[3], const float reducedScattering[3], float eta,
+                                PelProfile* profile) {
+    return create(profile, "profile", [&] { return Profile::dipole(absorption, reducedScattering, eta); });
+}
+
+PelError pelProfileCreateTable(const float* distances, const float* values, uint32_t count,
+                               PelProfile* profile) {
+    return create(profile, "profile", [&] { return Profile::table(distances, values, count); });
+}
+
+PEL_COUNTED(Profile)
+
+PelError pelProfileGetInfo(PelProfile profile, PelProfileInfo* info) {
+    return entry([&] { writeStruct(info, fromHandle<Profile>(profile)->info(), "PelProfileInfo"); });
+}
+
+PelError pelProfileSetName(PelProfile profile, const char* name) {
+    return entry([&] { fromHandle<Profile>(profile)->setName(name); });
+}
+
+PelError pelProfileEvaluate(PelProfile profile, const double* distances, uint32_t count, double* radial,
+                            double* lineSpread) {
+    return entry([&] {
+        const Ref<Profile> held = fromHandle<Profile>(profile);
+        const ProfileShape& shape = held->shape();
+        if (count > 0 && !distances) invalidArgument("distances are needed, not NULL");
+        for (uint32_t i = 0; i < count; ++i)
+            if (!std::isfinite(distances[i]) || distances[i] <= 0)
+                invalidArgument("distance ", i, " is ", distances[i], "; a finite length above 0 is needed");
+        for (uint32_t i = 0; i < count; ++i)
+            for (int c = 0; c < 3; ++c) {
+                if (radial) radial[3 * i + c] = shape.radial(distances[i])[c];
+                if (lineSpread) lineSpread[3 * i + c] = shape.lineSpread(distances[i])[c];
+            }
     });
 }

@@ -2,10 +2,8 @@
 #include "core/submission.h"
 #include "mesh/curvature.h"
 #include "mesh/live_mesh.h"
-#include "mesh/mesh_normals.h"
-#include "mesh/mesh_orient.h"
+#include "mesh/mesh_passes.h"
 #include "mesh/mesh_topology.h"
-#include "mesh/uv_scale.h"
 
 using namespace pel;
 
@@ -50,9 +48,7 @@ PelError pelMeshNormals(PelMeshTopology topology, const PelVertexView* positions
         const Ref<MeshTopology> mesh = fromHandle<MeshTopology>(topology);
         const VertexView p = checkedView(positions, "positions", mesh->device(), mesh->vertices(), 3);
         const VertexView n = checkedView(normals, "normals", mesh->device(), mesh->vertices(), 3);
-        Submission submission(mesh->device(), submit);
-        meshNormals(*mesh, p, n);
-        submission.finish();
+        submitted(mesh->device(), submit, [&](bool) { meshNormals(*mesh, p, n); });
     });
 }
 
@@ -69,12 +65,7 @@ PelError pelMeshOrient(const PelMeshTopologyDesc* desc, const float* normals, ui
     });
 }
 
-void pelMeshTopologyRetain(PelMeshTopology topology) {
-    retainEntry<MeshTopology>(topology);
-}
-void pelMeshTopologyRelease(PelMeshTopology topology) {
-    releaseEntry<MeshTopology>(topology);
-}
+PEL_COUNTED(MeshTopology)
 
 PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* params,
                           const PelVertexView* positions, const PelVertexView* normals,
@@ -92,9 +83,8 @@ PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* pa
         PelMeshReport found = mesh->report();
         if (report) writeStruct(report, found, "PelMeshReport");  // an error comes before any work
         MeshCounts counts{};
-        Submission submission(mesh->device(), submit);
-        meshCurvature(*mesh, full, p, n, out, report ? &counts : nullptr);
-        submission.finish();
+        submitted(mesh->device(), submit,
+                  [&](bool) { meshCurvature(*mesh, full, p, n, out, report ? &counts : nullptr); });
         if (!report) return;
         found.zeroLengthEdges = counts.zeroLengthEdges;
         found.nonFinitePositions = counts.nonFinitePositions;
@@ -123,12 +113,7 @@ PelError pelLiveMeshCreate(PelMeshTopology topology, const PelCurvatureParams* p
     });
 }
 
-void pelLiveMeshRetain(PelLiveMesh live) {
-    retainEntry<LiveMesh>(live);
-}
-void pelLiveMeshRelease(PelLiveMesh live) {
-    releaseEntry<LiveMesh>(live);
-}
+PEL_COUNTED(LiveMesh)
 
 PelError pelLiveMeshUpdate(PelLiveMesh live, const PelVertexView* positions, const PelVertexView* normals,
                            const PelVertexView* curvature, const PelVertexRange* changed, uint32_t numChanged,
@@ -143,9 +128,7 @@ PelError pelLiveMeshUpdate(PelLiveMesh live, const PelVertexView* positions, con
         const VertexView n = normals ? view(normals, "normals", 3) : VertexView{};
         const VertexView out = view(curvature, "curvature", quantityFloats(mesh->params().quantity));
         checkRanges(changed, numChanged, topology.vertices());
-        Submission submission(topology.device(), submit);
-        mesh->update(p, n, out, changed, numChanged);
-        submission.finish();
+        submitted(topology.device(), submit, [&](bool) { mesh->update(p, n, out, changed, numChanged); });
     });
 }
 

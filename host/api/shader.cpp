@@ -1,23 +1,23 @@
 #include "shading/shader.h"
 
 #include "api/entry.h"
-#include "api/shading_passes.h"
 #include "core/submission.h"
+#include "diffusion/passes.h"
 
 using namespace pel;
 
+// The passes of every shader, in the order in which they run: a pass reads what earlier passes made.
+static const PassKind shadingPasses[] = {
+    ambientCubePass,    reflectionCubePass, irisesPass,       classifyTilesPass, tapCellsPass,
+    blurNormalsPass,    normalMapPass,      shadowBoundsPass, wideShadowPass,    irradiancePass,
+    prepareScatterPass, diskPass,           separablePass,    texturePass,       scatterPass,
+    lightScatterPass,   weighScatterPass,   curvaturePass,    shadePass};
+
 PelError pelShaderCreate(PelDevice device, PelShader* shader) {
-    return entry([&] {
-        handOut(shader, "shader", [&] { return make<Shader>(fromHandle<Device>(device), shadingPasses()); });
-    });
+    return create(shader, "shader", [&] { return make<Shader>(fromHandle<Device>(device), shadingPasses); });
 }
 
-void pelShaderRetain(PelShader shader) {
-    retainEntry<Shader>(shader);
-}
-void pelShaderRelease(PelShader shader) {
-    releaseEntry<Shader>(shader);
-}
+PEL_COUNTED(Shader)
 
 PelError pelShaderSetOptions(PelShader shader, const PelShaderOptions* options) {
     return entry([&] {
@@ -99,9 +99,7 @@ PelError pelShaderCommit(PelShader shader) {
 PelError pelShaderExecute(PelShader shader, const PelSubmit* submit) {
     return entry([&] {
         const Ref<Shader> s = fromHandle<Shader>(shader);
-        Submission submission(s->device(), submit);
-        s->execute(submit == nullptr);
-        submission.finish();
+        submitted(s->device(), submit, [&](bool) { s->execute(submit == nullptr); });
     });
 }
 

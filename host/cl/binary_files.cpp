@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cl/error.h"
-#include "cl/private_folder.h"
+#include "cl/machine.h"
 #include "system/process.h"
 
 namespace pel::cl {

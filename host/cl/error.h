@@ -37,4 +37,14 @@ template <class... Parts>
     fail(PEL_ERROR_INVALID_ARGUMENT, parts...);
 }
 
+// What body() returns. The message of an error that it throws begins with `parts`.
+template <class Body, class... Parts>
+auto about(Body&& body, const Parts&... parts) {
+    try {
+        return body();
+    } catch (const Error& e) {
+        fail(e.code(), parts..., ": ", e.what());
+    }
+}
+
 }  // namespace pel

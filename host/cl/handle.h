@@ -14,41 +14,30 @@ const char* errorName(cl_int code);
 // PEL_ERROR_DEVICE.
 void check(cl_int code, const char* call);
 
-inline cl_int retain(cl_context h) {
-    return clRetainContext(h);
-}
-inline cl_int release(cl_context h) {
-    return clReleaseContext(h);
-}
-inline cl_int retain(cl_command_queue h) {
-    return clRetainCommandQueue(h);
-}
-inline cl_int release(cl_command_queue h) {
-    return clReleaseCommandQueue(h);
-}
-inline cl_int retain(cl_mem h) {
-    return clRetainMemObject(h);
-}
-inline cl_int release(cl_mem h) {
-    return clReleaseMemObject(h);
-}
-inline cl_int retain(cl_program h) {
-    return clRetainProgram(h);
-}
-inline cl_int release(cl_program h) {
-    return clReleaseProgram(h);
-}
-inline cl_int retain(cl_kernel h) {
-    return clRetainKernel(h);
-}
-inline cl_int release(cl_kernel h) {
-    return clReleaseKernel(h);
-}
-inline cl_int retain(cl_event h) {
-    return clRetainEvent(h);
-}
-inline cl_int release(cl_event h) {
-    return clReleaseEvent(h);
+#define PEL_OBJECT(H, Type)                                                          \
+    inline cl_int retain(H h) {                                                      \
+        return clRetain##Type(h);                                                    \
+    }                                                                                \
+    inline cl_int release(H h) {                                                     \
+        return clRelease##Type(h);                                                   \
+    }                                                                                \
+    inline void getInfo(H h, cl_uint what, size_t bytes, void* to) {                 \
+        check(clGet##Type##Info(h, what, bytes, to, nullptr), "clGet" #Type "Info"); \
+    }
+PEL_OBJECT(cl_context, Context)
+PEL_OBJECT(cl_command_queue, CommandQueue)
+PEL_OBJECT(cl_mem, MemObject)
+PEL_OBJECT(cl_program, Program)
+PEL_OBJECT(cl_kernel, Kernel)
+PEL_OBJECT(cl_event, Event)
+#undef PEL_OBJECT
+
+// A fact about an object, as OpenCL's functions for it return.
+template <class T, class H>
+T info(H object, cl_uint what) {
+    T value{};
+    getInfo(object, what, sizeof value, &value);
+    return value;
 }
 
 template <class H>

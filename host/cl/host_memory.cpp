@@ -6,7 +6,7 @@
 #include <memory>
 #include <new>
 
-#include "cl/pages.h"
+#include "cl/machine.h"
 
 namespace pel::cl {
 namespace {
@@ -18,8 +18,6 @@ constexpr size_t mapped = 32 << 20;
 constexpr size_t mappedZeros = 2 << 20;
 // May be allocated before the free memory is measured again, which takes 100 us.
 constexpr size_t unasked = 16 << 20;
-
-std::atomic<uint64_t> inUse{0};
 
 class Block {
   public:
@@ -33,14 +31,12 @@ class Block {
             if (!at_) none();
             if (zeros) std::memset(at_, 0, bytes);
         }
-        inUse.fetch_add(bytes, std::memory_order_relaxed);
     }
     ~Block() {
         if (mapped_)
             unmapPages(at_, bytes_);
         else
             freeAligned(at_);
-        inUse.fetch_sub(bytes_, std::memory_order_relaxed);
     }
     Block(const Block&) = delete;
     Block& operator=(const Block&) = delete;
@@ -80,10 +76,6 @@ Memory createInHostMemory(cl_context context, size_t bytes, const void* initial,
     check(code, "clSetMemObjectDestructorCallback");
     (void)block.release();
     return memory;
-}
-
-uint64_t hostMemoryInUse() {
-    return inUse.load(std::memory_order_relaxed);
 }
 
 }  // namespace pel::cl

@@ -10,12 +10,4 @@ namespace pel::cl {
 // report when that is. Throws PEL_ERROR_OUT_OF_MEMORY.
 Memory createInHostMemory(cl_context context, size_t bytes, const void* initial, bool zeros);
 
-// Throws PEL_ERROR_OUT_OF_MEMORY if so many more bytes would use what drivers and others need of the machine,
-// of the process's control group or of its address space (ulimit -v). When that is used up, processes end
-// without an error.
-void requireMemory(uint64_t bytes, const char* what);
-
-// Bytes of such memory in use.
-uint64_t hostMemoryInUse();
-
 }  // namespace pel::cl

@@ -24,7 +24,11 @@ inline Range folded(size_t items, size_t group) {
 
 class Launch {
   public:
-    // A new cl_kernel: making one costs about a microsecond and needs no lock.
+    // A new cl_kernel: making one costs about a microsecond and needs no lock. `values` are its arguments.
+    template <class... Values>
+    Launch(const Program& program, const char* kernel, const Values&... values) : Launch(program, kernel) {
+        args(values...);
+    }
     Launch(const Program& program, const char* kernel);
 
     Launch& arg(cl_mem memory) { return raw(&memory, sizeof memory); }
@@ -33,6 +37,11 @@ class Launch {
     template <class T>
     requires std::is_trivially_copyable_v<T> &&(!std::is_pointer_v<T>)Launch& arg(const T& value) {
         return raw(&value, sizeof value);
+    }
+    template <class... Values>
+    Launch& args(const Values&... values) {
+        (arg(values), ...);
+        return *this;
     }
 
     // Nothing is launched, and the event is empty, if a dimension has no items or another process builds the
@@ -46,6 +55,33 @@ class Launch {
     cl_program program_;  // retained by the kernel
     const char* name_;
     cl_uint next_ = 0;
+};
+
+// A warm-up that several processes share. PoCL compiles one kernel at a time in a process, and keeps kernels
+// on disk. PELLUCID_BUILD_SHARE names a folder; each process that sees the variable builds what no other has
+// begun.
+
+// Whether this process is the first to claim `what`; always true without a folder.
+bool claimBuild(const std::string& what);
+// Whether this process only helps another one: PELLUCID_BUILD_SHARE begins with "helper:".
+bool helpsToBuild();
+
+// During its lifetime this thread launches kernels only so that the driver compiles them, on memory of zeros.
+class BuildScope {
+  public:
+    enum Launches { all, claimed, none };
+    explicit BuildScope(Launches launches);
+    ~BuildScope();
+    BuildScope(const BuildScope&) = delete;
+
+    // Whether new memory must be zero, because the kernel that writes to it may be skipped.
+    static bool zeroes();
+    // Whether this process launches a kernel of the program.
+    static bool launches(cl_program program, const char* kernel, cl_command_queue queue);
+
+  private:
+    const BuildScope* outer_;
+    Launches launches_;
 };
 
 }  // namespace pel::cl

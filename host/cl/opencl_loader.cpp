@@ -11,10 +11,9 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <string>
 #include <vector>
 
-#include "system/library.h"
+#include "system/process.h"
 
 namespace pel::cl {
 namespace {
@@ -34,8 +33,8 @@ constexpr char separator = ':';
 constexpr const char* usual = "libOpenCL.so.1:libOpenCL.so";
 constexpr const char* advice =
     "install it (Debian and Ubuntu: apt-get install ocl-icd-libopencl1, Fedora: dnf install ocl-icd) and a "
-    "driver, for example PoCL "
-    "for the CPU (pocl-opencl-icd, pocl); in Python, pip install 'pellucid[cpu]' brings both";
+    "driver, for example PoCL for the CPU (pocl-opencl-icd, pocl); in Python, pip install 'pellucid[cpu]' "
+    "brings both";
 #endif
 
 using GetPlatforms = cl_int(CL_API_CALL*)(cl_uint, cl_platform_id*, cl_uint*);

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <mutex>
 #include <optional>
 
+#include "cl/machine.h"
 #include "cl/opencl_loader.h"
 #include "cl/pocl_cache.h"
-#include "cl/private_folder.h"
-#include "cl/process.h"
 
 namespace pel::cl {
 namespace {
@@ -166,8 +164,8 @@ PelDeviceInfo describe(cl_device_id device, uint32_t index) {
     if (d.mathWidth > 1) quirks += text("explicit ", d.mathWidth, "-wide arithmetic; ");
     if (platform == pocl)
         quirks +=
-            "fixed work-group sizes, short ranges and no global offsets (each is compiled anew); "
-            "program binaries by a warm-up alone (own cache); ";
+            "fixed work-group sizes, short ranges and no global offsets (each is compiled anew); program "
+            "binaries by a warm-up alone (own cache); ";
     if (platform == "rusticl" && std::string(d.driver).starts_with("22."))
         quirks += "its compiler crashes on kernels of auto, screen and light scattering; ";
     if (!quirks.empty()) quirks.resize(quirks.size() - 2);

@@ -4,8 +4,7 @@
 #include <utility>
 
 #include "cl/error.h"
-#include "cl/private_folder.h"
-#include "cl/process.h"
+#include "cl/machine.h"
 #include "system/process.h"
 
 namespace pel::cl {

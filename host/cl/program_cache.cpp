@@ -1,11 +1,16 @@
 #include "cl/program_cache.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cstdlib>
+#include <set>
 
-#include "cl/host_memory.h"
+#include "cl/error.h"
 #include "cl/kernel_files.h"
+#include "cl/machine.h"
 #include "cl/platform.h"
 #include "cl/pocl_cache.h"
+#include "system/process.h"
 
 namespace pel::cl {
 
@@ -87,6 +92,163 @@ Program ProgramCache::compile(const std::string& source, const std::vector<std::
     clGetProgramBuildInfo(program.get(), device_, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
     fail(PEL_ERROR_DEVICE, "kernel file ", files[0], " did not build with ", options, ": ", errorName(code),
          "\n", log.c_str());
+}
+
+namespace {
+
+constexpr uint64_t defaultLimit = 512;  // MiB: some three hundred shading programs of a CPU
+
+struct Use {
+    bool load, store;
+};
+
+Use wanted(cl_device_id device) {
+    const char* text = std::getenv("PELLUCID_CACHE");
+    const std::string value = text ? text : "";
+    // PoCL compiles everything again to make a binary, but loads one faster than it finds a program in its
+    // cache.
+    if (value.empty() || value == "auto")
+        return {!keepsPrograms(device) || isPocl(device), !keepsPrograms(device)};
+    if (value == "on" || value == "1") return {true, true};
+    if (value == "off" || value == "0") return {false, false};
+    invalidArgument("PELLUCID_CACHE is \"", value, "\"; it can be on, off or auto");
+}
+
+uint64_t limitBytes() {
+    const char* text = std::getenv("PELLUCID_CACHE_MB");
+    if (!text || !*text) return defaultLimit << 20;
+    char* end = nullptr;
+    const unsigned long long value = std::strtoull(text, &end, 10);
+    if (*end || *text < '0' || *text > '9' || value > (1ull << 40))
+        invalidArgument("PELLUCID_CACHE_MB is \"", text, "\"; it can be a number of MiB, such as ",
+                        defaultLimit);
+    return uint64_t(value) << 20;
+}
+
+// Settings of drivers that change what they compile. Settings that say where it is kept are left out.
+std::string settings() {
+    static constexpr const char* prefixes[] = {"CL_CONFIG_", "POCL_", "RUSTICL_", "LP_", "GALLIVM_", "IGC_"};
+    std::vector<std::string> found;
+    for (const std::string& text : system::environment()) {
+        const std::string name = text.substr(0, text.find('='));
+        const bool theirs = std::any_of(std::begin(prefixes), std::end(prefixes),
+                                        [&](const char* prefix) { return name.starts_with(prefix); });
+        if (theirs && name.find("CACHE") == std::string::npos) found.push_back(text);
+    }
+    std::sort(found.begin(), found.end());
+    std::string all;
+    for (const std::string& entry : found) all += entry + "\n";
+    return all;
+}
+
+std::string describeBuilder(cl_device_id device) {
+    Digest all;
+    all.addPart("2").addPart(text(pelVersion()));  // the form of the files, and the version
+    for (const cl_device_info what :
+         {CL_DEVICE_NAME, CL_DEVICE_VENDOR, CL_DEVICE_VERSION, CL_DRIVER_VERSION, CL_DEVICE_EXTENSIONS})
+        all.addPart(infoString(device, what));
+    all.addPart(platformName(device))
+        .addPart(platformVersion(device))
+        .addPart(system::instructionSet())
+        .addPart(settings());
+    return all.text();
+}
+
+}  // namespace
+
+BinaryCache::BinaryCache(cl_context context, cl_device_id device) : context_(context), device_(device) {
+    const uint64_t limit = limitBytes();
+    const Use use = wanted(device);
+    if (!use.load) return;
+    stores_ = use.store;
+    const std::filesystem::path folder = binaryFolder();
+    if (folder.empty()) return;
+    builtBy_ = describeBuilder(device);
+    files_.emplace(folder, limit);
+}
+
+Digest BinaryCache::name(const std::string& source, const std::string& options) const {
+    return Digest().addPart(builtBy_).addPart(options).addPart(source);
+}
+
+Program BinaryCache::load(const std::string& source, const std::string& options) const {
+    if (!files_) return {};
+    const std::optional<std::string> binary = files_->load(name(source, options));
+    if (!binary) return {};
+    const auto* bytes = reinterpret_cast<const unsigned char*>(binary->data());
+    const size_t size = binary->size();
+    cl_int status = CL_SUCCESS, code = CL_SUCCESS;
+    Program program(clCreateProgramWithBinary(context_, 1, &device_, &size, &bytes, &status, &code));
+    if (code != CL_SUCCESS || status != CL_SUCCESS) return {};
+    if (clBuildProgram(program.get(), 1, &device_, options.c_str(), nullptr, nullptr) != CL_SUCCESS)
+        return {};
+    return program;
+}
+
+bool BinaryCache::store(const Program& program, const std::string& source, const std::string& options) const {
+    if (!files_ || !stores_) return false;
+    // A program of a context with several devices has an entry for each.
+    cl_uint count = 0;
+    if (clGetProgramInfo(program.get(), CL_PROGRAM_NUM_DEVICES, sizeof count, &count, nullptr) !=
+            CL_SUCCESS ||
+        !count)
+        return false;
+    std::vector<cl_device_id> devices(count);
+    std::vector<size_t> sizes(count);
+    if (clGetProgramInfo(program.get(), CL_PROGRAM_DEVICES, count * sizeof devices[0], devices.data(),
+                         nullptr) != CL_SUCCESS ||
+        clGetProgramInfo(program.get(), CL_PROGRAM_BINARY_SIZES, count * sizeof sizes[0], sizes.data(),
+                         nullptr) != CL_SUCCESS)
+        return false;
+    const size_t mine = size_t(std::find(devices.begin(), devices.end(), device_) - devices.begin());
+    if (mine == count || sizes[mine] == 0) return false;
+    std::string binary(sizes[mine], '\0');
+    std::vector<unsigned char*> places(count);  // NULL: not wanted
+    places[mine] = reinterpret_cast<unsigned char*>(binary.data());
+    if (clGetProgramInfo(program.get(), CL_PROGRAM_BINARIES, count * sizeof places[0], places.data(),
+                         nullptr) != CL_SUCCESS)
+        return false;
+    return files_->store(name(source, options), binary);
+}
+
+namespace {
+
+std::string_view find(std::string_view name) {
+    for (const KernelFile& file : kernelFiles())
+        if (file.name == name) return file.text;
+    fail(PEL_ERROR_UNKNOWN, "no kernel file named ", name, " is embedded in this library");
+}
+
+void expand(std::string_view name, std::set<std::string_view>& seen, std::string& out) {
+    static constexpr std::string_view directive = "#include \"";
+    std::string_view rest = find(name);
+    // With #line, compiler messages name the file that a reader can open.
+    out += text("#line 1 \"", name, "\"\n");
+    for (int line = 1; !rest.empty(); ++line) {
+        const size_t end = std::min(rest.find('\n'), rest.size() - 1);
+        const std::string_view current = rest.substr(0, end + 1);
+        rest.remove_prefix(end + 1);
+        if (!current.starts_with(directive)) {
+            out += current == "#pragma once\n" ? "\n" : current;  // of no use in the main file, and warned of
+            continue;
+        }
+        std::string_view included = current.substr(directive.size());
+        included = included.substr(0, included.find('"'));
+        for (const KernelFile& file : kernelFiles())
+            if (file.name == included && seen.insert(file.name).second) expand(file.name, seen, out);
+        find(included);
+        out += text("#line ", line + 1, " \"", name, "\"\n");
+    }
+}
+
+}  // namespace
+
+std::string kernelSource(std::span<const std::string> names) {
+    std::string out;
+    std::set<std::string_view> seen;
+    for (const std::string& name : names)
+        if (seen.insert(name).second) expand(name, seen, out);
+    return out;
 }
 
 }  // namespace pel::cl

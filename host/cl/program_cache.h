@@ -1,19 +1,28 @@
 // Programs for one device: each is built once per kernel file and options, or loaded from disk
-// (cl/binary_cache.h).
+// (docs/guide/devices.md, "Compiled programs").
 #pragma once
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "cl/binary_cache.h"
+#include "cl/binary_files.h"
+#include "cl/handle.h"
 
 namespace pel::cl {
 
 // Compile-time choices of a program, NAME=VALUE. Only structure (features, formats, counts); numbers are
 // kernel arguments.
-using Defines = std::map<std::string, std::string>;
+struct DefineValue : std::string {
+    using std::string::string;
+    DefineValue(std::string text) : std::string(std::move(text)) {}
+    template <class Number>
+    requires std::is_integral_v<Number> || std::is_enum_v<Number> DefineValue(Number number)
+        : std::string(std::to_string(static_cast<long long>(number))) {}
+};
+using Defines = std::map<std::string, DefineValue>;
 
 // What a program is made of: kernel files, one after another, each included file once; and the choices. Equal
 // requests compare equal.
@@ -21,6 +30,28 @@ struct ProgramKey {
     std::vector<std::string> files;
     Defines defines;
     bool operator==(const ProgramKey&) const = default;
+};
+
+// Programs from binaries that earlier processes left on disk.
+class BinaryCache {
+  public:
+    // If the driver keeps compiled programs itself, this cache loads only PoCL's, and stores none unless
+    // PELLUCID_CACHE is "on".
+    BinaryCache(cl_context context, cl_device_id device);
+
+    // Empty when there is none, or the driver refuses it.
+    Program load(const std::string& source, const std::string& options) const;
+    // False if it could not be stored.
+    bool store(const Program& program, const std::string& source, const std::string& options) const;
+
+  private:
+    Digest name(const std::string& source, const std::string& options) const;
+
+    cl_context context_;
+    cl_device_id device_;
+    std::string builtBy_;  // whatever else the driver's output depends on
+    std::optional<BinaryFiles> files_;
+    bool stores_ = false;
 };
 
 class ProgramCache {

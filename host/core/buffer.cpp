@@ -6,18 +6,10 @@ Buffer::Buffer(Ref<Device> device, cl::Memory memory, size_t bytes)
     : Object(kind), device_(std::move(device)), memory_(std::move(memory)), bytes_(bytes) {
     // Where the bytes are: in host memory, or in a cl_mem of which this one is a part. Other buffers may be
     // views of the same bytes.
-    void* host = nullptr;
-    cl_mem whole = nullptr;
-    size_t offset = 0;
-    const auto ask = [&](cl_mem_info what, auto& value) {
-        cl::check(clGetMemObjectInfo(memory_.get(), what, sizeof value, &value, nullptr),
-                  "clGetMemObjectInfo");
-    };
-    ask(CL_MEM_HOST_PTR, host);
-    ask(CL_MEM_ASSOCIATED_MEMOBJECT, whole);
-    if (whole) ask(CL_MEM_OFFSET, offset);
+    const cl_mem own = memory_.get(), whole = cl::info<cl_mem>(own, CL_MEM_ASSOCIATED_MEMOBJECT);
+    void* const host = cl::info<void*>(own, CL_MEM_HOST_PTR);
     place_ = host    ? Place{nullptr, reinterpret_cast<uintptr_t>(host)}
-             : whole ? Place{whole, offset}
+             : whole ? Place{whole, cl::info<size_t>(own, CL_MEM_OFFSET)}
                      : Place{memory_.get(), 0};
 }
 
@@ -42,17 +34,11 @@ Ref<Buffer> Buffer::createFromHost(Ref<Device> device, void* host, size_t bytes)
 
 Ref<Buffer> Buffer::createFromCl(Ref<Device> device, cl_mem mem) {
     if (!mem) invalidArgument("a cl_mem is needed, not NULL");
-    cl_context context = nullptr;
-    cl_mem_object_type type = 0;
-    size_t bytes = 0;
-    cl::check(clGetMemObjectInfo(mem, CL_MEM_CONTEXT, sizeof context, &context, nullptr),
-              "clGetMemObjectInfo");
-    cl::check(clGetMemObjectInfo(mem, CL_MEM_TYPE, sizeof type, &type, nullptr), "clGetMemObjectInfo");
-    cl::check(clGetMemObjectInfo(mem, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr), "clGetMemObjectInfo");
-    if (context != device->context())
+    if (cl::info<cl_context>(mem, CL_MEM_CONTEXT) != device->context())
         invalidArgument("the cl_mem belongs to another cl_context than the device");
-    if (type != CL_MEM_OBJECT_BUFFER) invalidArgument("the cl_mem is an image; a buffer is needed");
-    return make<Buffer>(std::move(device), cl::Memory::retained(mem), bytes);
+    if (cl::info<cl_mem_object_type>(mem, CL_MEM_TYPE) != CL_MEM_OBJECT_BUFFER)
+        invalidArgument("the cl_mem is an image; a buffer is needed");
+    return make<Buffer>(std::move(device), cl::Memory::retained(mem), cl::info<size_t>(mem, CL_MEM_SIZE));
 }
 
 void Buffer::checkRange(uint64_t offset, uint64_t bytes, const char* what) const {

@@ -2,10 +2,9 @@
 
 #include <cstring>
 
-#include "cl/build_share.h"
 #include "cl/host_memory.h"
+#include "cl/machine.h"
 #include "cl/platform.h"
-#include "cl/process.h"
 #include "core/launch_policy.h"
 
 namespace pel {
@@ -27,20 +26,12 @@ Ref<Device> Device::createFromCl(cl_context context, cl_device_id id, cl_command
             "a device from the caller's OpenCL objects needs all of cl_context, cl_device_id and "
             "cl_command_queue");
     cl::claimProcess();
-    cl_command_queue_properties properties = 0;
-    cl_context queueContext = nullptr;
-    cl_device_id queueDevice = nullptr;
-    cl::check(clGetCommandQueueInfo(queue, CL_QUEUE_PROPERTIES, sizeof properties, &properties, nullptr),
-              "clGetCommandQueueInfo");
-    cl::check(clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof queueContext, &queueContext, nullptr),
-              "clGetCommandQueueInfo");
-    cl::check(clGetCommandQueueInfo(queue, CL_QUEUE_DEVICE, sizeof queueDevice, &queueDevice, nullptr),
-              "clGetCommandQueueInfo");
-    if (queueContext != context)
+    if (cl::info<cl_context>(queue, CL_QUEUE_CONTEXT) != context)
         invalidArgument("the cl_command_queue belongs to another cl_context than the one given");
-    if (queueDevice != id)
+    if (cl::info<cl_device_id>(queue, CL_QUEUE_DEVICE) != id)
         invalidArgument("the cl_command_queue belongs to another cl_device_id than the one given");
-    if (properties & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE)
+    if (cl::info<cl_command_queue_properties>(queue, CL_QUEUE_PROPERTIES) &
+        CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE)
         invalidArgument("the cl_command_queue is out of order; an in-order queue is needed");
     return make<Device>(cl::Context::retained(context), id, cl::Queue::retained(queue),
                         cl::describe(id, UINT32_MAX));
@@ -53,13 +44,10 @@ Device::Device(cl::Context context, cl_device_id id, cl::Queue queue, const PelD
       queue_(std::move(queue)),
       info_(info),
       programs_(std::move(context), id,
-                {{"PEL_WIDTH", std::to_string(info.mathWidth)},
-                 {"PEL_GROUP", std::to_string(launchPolicy(info.mathWidth).texels)}}),
-      stats_(pelDeviceStatsDefaults()) {
-    cl_command_queue_properties properties = 0;
-    clGetCommandQueueInfo(queue_.get(), CL_QUEUE_PROPERTIES, sizeof properties, &properties, nullptr);
-    profiling_ = properties & CL_QUEUE_PROFILING_ENABLE;
-}
+                {{"PEL_WIDTH", info.mathWidth}, {"PEL_GROUP", launchPolicy(info.mathWidth).texels}}),
+      profiling_(cl::info<cl_command_queue_properties>(queue_.get(), CL_QUEUE_PROPERTIES) &
+                 CL_QUEUE_PROFILING_ENABLE),
+      stats_(pelDeviceStatsDefaults()) {}
 
 Device::~Device() {
     clFinish(queue_.get());

@@ -2,7 +2,7 @@
 
 #include <mutex>
 
-#include "cl/process.h"
+#include "cl/machine.h"
 
 namespace pel {
 namespace {

@@ -1,6 +1,5 @@
 #include "core/image_view.h"
 
-#include "core/about.h"
 #include "core/handle_table.h"
 #include "core/struct_size.h"
 #include "shared/formats.h"

@@ -46,6 +46,12 @@ T readStruct(const T* from, T defaults, const char* name) {
     return defaults;
 }
 
+// The same, where NULL stands for the defaults.
+template <class T>
+T readStructOr(const T* from, const T& defaults, const char* name) {
+    return from ? readStruct(from, defaults, name) : defaults;
+}
+
 template <class T>
 void writeStruct(T* to, const T& value, const char* name) {
     if (!to) invalidArgument("a ", name, " to fill is needed, not NULL");

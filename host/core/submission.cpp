@@ -13,11 +13,7 @@ void Event::wait() const {
 }
 
 cl_int Event::status() const {
-    cl_int status = CL_QUEUED;
-    cl::check(
-        clGetEventInfo(event_.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr),
-        "clGetEventInfo");
-    return status;
+    return cl::info<cl_int>(event_.get(), CL_EVENT_COMMAND_EXECUTION_STATUS);
 }
 
 bool Event::isDone() const {

@@ -33,4 +33,12 @@ class Submission {
     const PelSubmit* submit_;
 };
 
+// A call whose commands are those of work(blocking).
+template <class Work>
+void submitted(Device& device, const PelSubmit* submit, Work&& work) {
+    Submission submission(device, submit);
+    work(submission.blocking());
+    submission.finish();
+}
+
 }  // namespace pel

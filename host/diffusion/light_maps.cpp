@@ -5,7 +5,7 @@
 #include <cfloat>
 #include <cmath>
 
-#include "shading/mapped_lights.h"
+#include "shading/features.h"
 #include "shading/shading_constants.h"
 
 namespace pel {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/launch_policy.h"
+#include "shading/features.h"
 #include "shading/launch_ranges.h"
-#include "shading/mapped_lights.h"
 #include "shading/shading_constants.h"
 
 namespace pel {

@@ -2,7 +2,7 @@
 #pragma once
 #include "diffusion/light_maps.h"
 #include "diffusion/scatter_images.h"
-#include "shading/cached_upload.h"
+#include "shading/scratch_image.h"
 
 namespace pel {
 

@@ -7,7 +7,6 @@
 #include "diffusion/passes.h"
 #include "diffusion/scatter_material.h"
 #include "shading/features.h"
-#include "shading/mapped_lights.h"
 #include "shared/features.h"
 
 namespace pel {

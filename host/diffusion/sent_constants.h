@@ -1,6 +1,6 @@
 // A structure on the device that kernels read, sent only when it has changed.
 #pragma once
-#include "shading/cached_upload.h"
+#include "shading/scratch_image.h"
 
 namespace pel {
 

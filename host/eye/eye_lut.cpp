@@ -1,4 +1,4 @@
-#include "eye/eye_lut.h"
+#include "eye/eye.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,6 @@
 #include <optional>
 
 #include "core/launch_policy.h"
-#include "eye/check_eye.h"
-#include "eye/eye_constants.h"
 #include "lut/lut_terms.h"
 
 namespace pel {
@@ -138,35 +136,30 @@ Ref<Lut> integrateEyeLut(Ref<Device> device, const PelEyeLutDesc& desc, bool int
     const size_t group = launchPolicy(*device).texels, lanes = device->info().mathWidth;
     const cl::Memory sums =
         device->allocateZeros(size_t(desc.width) * desc.height * desc.depth * sizeof(cl_uint));
-    const cl::Program& program =
-        device->programs().get({{"eye/eye_lut.cl"}, {{"PEL_GROUP", std::to_string(group)}}});
+    const cl::Program& program = device->programs().get({{"eye/eye_lut.cl"}, {{"PEL_GROUP", group}}});
     inSteps(
         *device, desc.depth, double(grid.columns) * grid.rows * desc.depth / cellsPerStep, interruptible,
         [&](uint32_t first, uint32_t count) {
             grid.firstSlice = first;
-            cl::Launch splat(program, "eye_lut");
-            splat.arg(unit).arg(grid).arg(sums);
+            cl::Launch splat(program, "eye_lut", unit, grid, sums);
             device->launch(splat, {{(grid.columns + lanes - 1) / lanes, grid.rows, count}, {group, 1, 1}});
         });
 
     const uint32_t rows = lut->height() + 1;
     if (!weights) {
-        cl::Launch finish(program, "finish_eye_lut");
-        finish.arg(unit).arg(grid).arg(lut->layout()).arg(sums).arg(lut->texels());
+        cl::Launch finish(program, "finish_eye_lut", unit, grid, lut->layout(), sums, lut->texels());
         device->launch(finish, {{lut->layout().rowTexels, rows, 1}, {group, 1, 1}});
         return lut;
     }
     const uint32_t border = uint32_t(weights->reachX), stride = desc.width + 2 * border + uint32_t(lanes);
     const cl::Memory plain = device->allocate(size_t(stride) * lut->height() * sizeof(float)),
                      shares = upload(*device, weights->values);
-    cl::Launch spread(program, "plain_eye_lut");
-    spread.arg(unit).arg(grid).arg(stride).arg(border).arg(sums).arg(plain);
+    cl::Launch spread(program, "plain_eye_lut", unit, grid, stride, border, sums, plain);
     device->launch(spread, {{stride, lut->height(), 1}, {group, 1, 1}});
     const double steps = weights->products / productsPerStep;
     inSteps(*device, rows, steps, interruptible, [&](uint32_t first, uint32_t count) {
-        cl::Launch scatter(program, "scatter_eye_lut");
-        scatter.arg(grid).arg(lut->layout()).arg(plain).arg(stride).arg(shares);
-        scatter.arg(cl_int(weights->reachX)).arg(cl_int(weights->reachY)).arg(first).arg(lut->texels());
+        cl::Launch scatter(program, "scatter_eye_lut", grid, lut->layout(), plain, stride, shares,
+                           cl_int(weights->reachX), cl_int(weights->reachY), first, lut->texels());
         device->launch(scatter, {{(desc.width + lanes - 1) / lanes, count, 1}, {group, 1, 1}});
     });
     return lut;

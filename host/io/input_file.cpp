@@ -8,8 +8,6 @@
 #include <cstring>
 #include <filesystem>
 
-#include "io/file_error.h"
-
 namespace pellucid::io {
 namespace fs = std::filesystem;
 namespace {

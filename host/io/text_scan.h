@@ -36,17 +36,15 @@ class TextScan {
 
     // Word i of the line as a finite number. `what` names it in the error.
     float number(size_t i, std::string_view what) const {
-        if (i >= words_.size()) {
+        if (i >= words_.size())
             fail(std::string(what) + " is missing: the line has " + std::to_string(words_.size()) +
                  " entries, not " + std::to_string(i + 1));
-        }
         float value = 0;
         if (!parse(words_[i], value))
             fail(std::string(what) + " '" + std::string(words_[i]) + "' is not a number that fits a float");
-        if (!std::isfinite(value)) {
+        if (!std::isfinite(value))
             fail(std::string(what) + " is '" + std::string(words_[i]) +
                  "'; a finite number is needed (the mesh cannot be measured there)");
-        }
         return value;
     }
 

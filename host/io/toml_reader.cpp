@@ -12,7 +12,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/spelling.h"
 
@@ -193,9 +192,8 @@ void TomlReader::texts(std::string_view key, std::vector<std::string>& values, s
         if (!entry.is_string()) fail(key, "holds " + typeName(entry) + "; " + wanted + " would be right");
         values.push_back(entry.as_string()->get());
     }
-    if (values.size() > most || values.size() < least) {
+    if (values.size() > most || values.size() < least)
         fail(key, "has " + std::to_string(values.size()) + " names; " + wanted + " would be right");
-    }
 }
 
 void TomlReader::choiceIndex(std::string_view key, uint32_t& index, std::span<const std::string_view> names) {

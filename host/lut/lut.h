@@ -10,8 +10,8 @@ class Lut final : public Object {
   public:
     static constexpr Kind kind = Kind::lut;
 
-    // Allocates the texels, uninitialised. `info` must be valid (lut/lut_check.h). Its profile is retained,
-    // and its defaults (no profile, radius 0) are filled in.
+    // Allocates the texels, uninitialised. `info` must be valid (see below). Its profile is retained, and
+    // its defaults (no profile, radius 0) are filled in.
     Lut(Ref<Device> device, const PelLutInfo& info);
 
     Device& device() const { return *device_; }
@@ -37,5 +37,13 @@ class Lut final : public Object {
     LutLayout layout_;
     cl::Memory texels_;
 };
+
+// Checks a LUT description. Throws PEL_ERROR_INVALID_ARGUMENT with the field, its value and what would be
+// right.
+void checkCurvatureDesc(const PelCurvatureLutDesc& desc);
+void checkShadowDesc(const PelShadowLutDesc& desc);
+void checkSpecularDesc(const PelSpecularLutDesc& desc);
+// That the ends of its range are in order, once lengths that were left out are known.
+void checkOrder(const PelLutInfo& info);
 
 }  // namespace pel

@@ -4,17 +4,9 @@
 
 namespace pel {
 
-// Nodes of a curvature row, and Gauss points between two of them (1 to 3). 64 and 2 leave an error of about
-// 1e-7.
-struct CurvatureQuality {
-    int nodes = 64;
-    int points = 2;
-};
-
 // Each throws PEL_ERROR_INVALID_ARGUMENT with the name of the field if a description is outside what
 // pellucid.h documents. Work is enqueued, not waited for.
-Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& desc,
-                               const CurvatureQuality& quality = {});
+Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& desc);
 Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc);
 Ref<Lut> tabulateSpecularLut(Ref<Device> device, const PelSpecularLutDesc& desc);
 // From texels that were packed as PEL_LUT_FLOAT; `bytes` is checked against the size in `info`, whose
@@ -27,5 +19,10 @@ void readLut(const Lut& lut, PelLutEncoding encoding, void* destination, bool bl
 
 // Texels that PEL_LUT_FACEWORKS8 clips; 0 for other kinds than curvature. Waits.
 uint64_t countClipped(const Lut& lut);
+
+// Fill the texels of a table whose description is valid. Row limits are in 1/diffusion radii. Enqueued, not
+// waited for.
+void integrateTabulatedCurvature(Lut& lut, double curvatureMin, double curvatureMax);
+void integrateTabulatedShadow(Lut& lut, double reciprocalMin, double reciprocalMax);
 
 }  // namespace pel

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -89,5 +90,19 @@ class GaussianShape : public ProfileShape {
     Rgb sum(F&& f) const;
     std::vector<GaussianTerm> terms_;
 };
+
+// Lengths in mm. dipole: absorption and reduced scattering (1/mm) and eta; burley: mean free path and albedo.
+struct LibraryProfile {
+    const char* name;
+    PelProfileKind kind;
+    const char* source;
+    float first[3], second[3], eta;
+};
+
+// "skin" first.
+std::span<const LibraryProfile> profileLibrary();
+
+// Throws PEL_ERROR_INVALID_ARGUMENT, with a list of the library, for an unknown name.
+Ref<Profile> namedProfile(const char* name);
 
 }  // namespace pel

@@ -1,4 +1,4 @@
-#include "lut/tabulated_integrals.h"
+#include "lut/lut_terms.h"
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,12 @@
 // Beside kernels/lut/tabulated_curvature_lut.cl and kernels/lut/tabulated_shadow_lut.cl.
-#include "lut/tabulated_luts.h"
+#include "lut/luts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "core/launch_policy.h"
-#include "lut/tabulated_integrals.h"
+#include "lut/lut_terms.h"
 
 namespace pel {
 namespace {
@@ -78,9 +78,7 @@ void integrateTabulatedCurvature(Lut& lut, double curvatureMin, double curvature
 
     const uint32_t lanes = device.info().mathWidth;
     const size_t group = launchPolicy(device).group, columnsPerItem = launchPolicy(device).columns;
-    cl::Defines options{{"PEL_GROUP", std::to_string(group)},
-                        {"PEL_NODES", std::to_string(intervals)},
-                        {"PEL_COLUMNS", std::to_string(columnsPerItem)}};
+    cl::Defines options{{"PEL_GROUP", group}, {"PEL_NODES", intervals}, {"PEL_COLUMNS", columnsPerItem}};
     if (desc.form == PEL_FORM_HALF_RING) options.emplace("PEL_HALF", "1");
     const cl::Program program = device.programs().get("lut/tabulated_curvature_lut.cl", options);
     const cl::Memory rows =
@@ -89,23 +87,20 @@ void integrateTabulatedCurvature(Lut& lut, double curvatureMin, double curvature
         const SpherePoints of = spherePoints(profile, desc, axis);
         const cl::Memory nodes = upload(device, meshOfNodes(intervals)), ofRow = upload(device, of.ofRow),
                          points = upload(device, of.points);
-        cl::Launch launch(program, "tabulated_sphere_rows");
-        launch.arg(params).arg(nodes).arg(ofRow).arg(points).arg(rows);
+        cl::Launch launch(program, "tabulated_sphere_rows", params, nodes, ofRow, points, rows);
         device.launch(launch, {{intervals / lanes + 1, desc.height, 1}, {group, 1, 1}});
     } else {
         const cl::Memory mesh = upload(device, tableMesh(intervals, chord)),
                          sums = upload(device, ring ? radialSums(profile, end, radialCells)
                                                     : lineSums(profile, end, PEL_TAIL_CELLS)),
                          opposite = upload(device, antipodes(profile, ring, radiiOf(desc, axis)));
-        cl::Launch launch(program, "tabulated_rows");
-        launch.arg(params).arg(mesh).arg(sums).arg(opposite).arg(rows);
+        cl::Launch launch(program, "tabulated_rows", params, mesh, sums, opposite, rows);
         const size_t rowsPerItem = std::max(lanes / 4, 1u);
         device.launch(launch, {{(desc.height + rowsPerItem - 1) / rowsPerItem, 1, 1}, {group, 1, 1}});
     }
     const std::vector<LutColumn> columnWeights = curvatureColumns(desc.width, desc.axis, intervals);
     const cl::Memory columns = upload(device, columnWeights);
-    cl::Launch texelLaunch(program, "curvature_texels");
-    texelLaunch.arg(desc.width).arg(desc.height).arg(rows).arg(columns).arg(lut.texels());
+    cl::Launch texelLaunch(program, "curvature_texels", desc.width, desc.height, rows, columns, lut.texels());
     const size_t items = (columnWeights.size() + columnsPerItem - 1) / columnsPerItem;
     device.launch(texelLaunch, {{items, desc.height + size_t(1), 1}, {group, 1, 1}});
 }
@@ -124,20 +119,17 @@ void integrateTabulatedShadow(Lut& lut, double reciprocalMin, double reciprocalM
                                           uint32_t(desc.axis), desc.closedEnds, nodes};
     const size_t group = launchPolicy(device).group, columnsPerItem = launchPolicy(device).tableColumns;
     const cl::Program program = device.programs().get(
-        "lut/tabulated_shadow_lut.cl",
-        {{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}});
+        "lut/tabulated_shadow_lut.cl", {{"PEL_GROUP", group}, {"PEL_COLUMNS", columnsPerItem}});
     const cl::Memory tails = upload(device, tableTails(*lut.profile(), end));
     const size_t record = PEL_RAMP_RECORD(size_t(nodes)), samples = 2 * PEL_RAMP_SAMPLES(size_t(nodes));
     const cl::Memory ofRows = device.allocate(record * desc.height * sizeof(cl_float4));
     if (nodes) {
         const cl::Memory weights = upload(device, rampWeights()),
                          scratch = device.allocate(samples * desc.height * sizeof(cl_float4));
-        cl::Launch rows(program, "tabulated_shadow_rows");
-        rows.arg(params).arg(tails).arg(weights).arg(scratch).arg(ofRows);
+        cl::Launch rows(program, "tabulated_shadow_rows", params, tails, weights, scratch, ofRows);
         device.launch(rows, {{(desc.height + group - 1) / group * group, 1, 1}, {group, 1, 1}});
     }
-    cl::Launch launch(program, "tabulated_shadow_texels");
-    launch.arg(params).arg(tails).arg(ofRows).arg(lut.texels());
+    cl::Launch launch(program, "tabulated_shadow_texels", params, tails, ofRows, lut.texels());
     const size_t lit = desc.width - desc.width / 2;
     device.launch(launch,
                   {{(lit + columnsPerItem - 1) / columnsPerItem, desc.height + size_t(1), 1}, {group, 1, 1}});

@@ -1,8 +1,9 @@
 #include "mesh/curvature.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "mesh/two_ring.h"
+#include "cl/error.h"
 #include "shared/choices.h"
 
 namespace pel {
@@ -16,11 +17,10 @@ MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, cons
                        const SlotData& data, const cl::Memory& memory) {
     const VertexView& normals = given.memory ? given : positions;
     Device& device = topology.device();
-    cl::Launch count(device.programs().get("mesh/mesh_rows.cl", mapping(topology)), "mesh_count");
-    count.arg(topology.vertices());
-    count.arg(positions.memory).arg(positions.layout).arg(normals.memory).arg(normals.layout);
-    count.arg(topology.slots()).arg(topology.slices()).arg(topology.rings());
-    count.arg(data.positions.memory).arg(data.positions.layout).arg(memory);
+    cl::Launch count(device.programs().get("mesh/mesh_rows.cl", mapping(topology)), "mesh_count",
+                     topology.vertices(), positions.memory, positions.layout, normals.memory, normals.layout,
+                     topology.slots(), topology.slices(), topology.rings(), data.positions.memory,
+                     data.positions.layout, memory);
     device.launch(count, over(topology.vertices()));
     MeshCounts counts;
     device.read(memory.get(), 0, sizeof counts, &counts, true);
@@ -84,12 +84,12 @@ uint32_t planeStrideOf(const MeshTopology& topology) {
 
 cl::Defines passDefines(const MeshTopology& topology, const PelCurvatureParams& params, uint32_t stride) {
     return {{"PEL_MESH_MAPPED", topology.mapped() ? "1" : "0"},
-            {"PEL_MESH_STRIDE", std::to_string(stride)},
-            {"PEL_MESH_PLANES", std::to_string(planesOf(params.quantity))},
-            {"PEL_MESH_QUANTITY", std::to_string(params.quantity)},
+            {"PEL_MESH_STRIDE", stride},
+            {"PEL_MESH_PLANES", planesOf(params.quantity)},
+            {"PEL_MESH_QUANTITY", params.quantity},
             PEL_EACH_QUANTITY(NUMBER) PEL_EACH_QUANTITY_OF_SEVERAL(NUMBER){"PEL_MESH_LISTED", "0"},
             {"PEL_MESH_RUNS", haveRuns(topology)},
-            {"PEL_WIDTH", std::to_string(width(topology.device()))}};
+            {"PEL_WIDTH", width(topology.device())}};
 }
 
 namespace {
@@ -98,19 +98,16 @@ void estimateQuadric(MeshTopology& topology, const cl::Defines& common, const Sl
                      const cl::Memory& planes, const Rows& rows, const cl::Memory& counts) {
     cl::Defines defines = common;
     const uint32_t lanes = rows.list ? width(topology.device()) : topology.device().info().mathWidth;
-    defines["PEL_WIDTH"] = std::to_string(lanes);
+    defines["PEL_WIDTH"] = lanes;
     // In one program, for each one costs a CPU's compiler a tenth of a second before its first kernel.
     const cl::Program program =
         topology.device().programs().get({{"mesh/curvature_quadric.cl", "mesh/two_ring.cl"}, defines});
     const MeshTopology::TwoRings& lists = twoRings(topology, program);
     cl::Launch estimate(program, "curvature_quadric");
     rowArguments(topology, estimate, rows);
-    estimate.arg(data.positions.memory).arg(data.positions.layout.offset);
-    estimate.arg(data.normals.memory)
-        .arg(data.normals.layout.offset)
-        .arg(planeStrideOf(topology))
-        .arg(planes);
-    estimate.arg(lists.starts).arg(lists.points).arg(lists.rounds).arg(counts);
+    estimate.args(data.positions.memory, data.positions.layout.offset, data.normals.memory,
+                  data.normals.layout.offset, planeStrideOf(topology), planes, lists.starts, lists.points,
+                  lists.rounds, counts);
     launchRows(topology, estimate, rows, lanes);
 }
 
@@ -132,11 +129,8 @@ void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params,
         topology.device().programs().get(edge ? "mesh/curvature.cl" : "mesh/curvature_tensor.cl", defines),
         edge ? "curvature_edge" : "curvature_tensor");
     ringArguments(topology, estimate, rows);
-    estimate.arg(data.positions.memory).arg(data.positions.layout.offset);
-    estimate.arg(data.normals.memory)
-        .arg(data.normals.layout.offset)
-        .arg(planeStrideOf(topology))
-        .arg(planes);
+    estimate.args(data.positions.memory, data.positions.layout.offset, data.normals.memory,
+                  data.normals.layout.offset, planeStrideOf(topology), planes);
     launchRows(topology, estimate, rows, width(topology.device()));
 }
 
@@ -145,9 +139,8 @@ void storeQuantity(MeshTopology& topology, const PelCurvatureParams& params, uin
                    Rows::Work* work) {
     cl::Launch store(
         topology.device().programs().get("mesh/curvature.cl", passDefines(topology, params, stride)),
-        "curvature_store");
-    store.arg(topology.slotOf()).arg(planeStrideOf(topology)).arg(smoothed).arg(estimated);
-    store.arg(params.scale).arg(curvature.memory).arg(curvature.layout);
+        "curvature_store", topology.slotOf(), planeStrideOf(topology), smoothed, estimated, params.scale,
+        curvature.memory, curvature.layout);
     topology.device().launch(store, over(topology.vertices()));
     if (work) ++work->launches, work->rows += topology.slots();
 }
@@ -175,6 +168,53 @@ void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, con
     if (diffusion.passes() > 0) smoothToRadius(topology, data, diffusion, values, scratch);
     storeQuantity(topology, params, data.stride, values.from, estimated, curvature, nullptr);
     if (counts) *counts = countFaults(topology, positions, normals, data, counted);
+}
+
+namespace {
+
+// The first row of each slice, from the numbers of points of its slots.
+std::vector<uint32_t> startsOf(const std::vector<uint32_t>& counts) {
+    std::vector<uint32_t> starts{0};
+    for (auto slice = counts.begin(); slice != counts.end(); slice += PEL_POINT_LANES) {
+        const uint32_t rows = *std::max_element(slice, slice + PEL_POINT_LANES);
+        if (starts.back() > UINT32_MAX - rows)
+            fail(PEL_ERROR_UNSUPPORTED, "the two-rings of this mesh exceed ", UINT32_MAX, " rows: split it");
+        starts.push_back(starts.back() + rows);
+    }
+    return starts;
+}
+
+}  // namespace
+
+const MeshTopology::TwoRings& twoRings(MeshTopology& topology, const cl::Program& program) {
+    MeshTopology::TwoRings& made = topology.twoRings;
+    if (made.points) return made;
+    Device& device = topology.device();
+    const size_t padded =
+        (size_t(topology.slots()) + PEL_POINT_LANES - 1) / PEL_POINT_LANES * PEL_POINT_LANES;
+    std::vector<uint32_t> counts(padded);
+    const cl::Queue queue = device.anotherQueue();
+    const cl::Memory links = device.allocate(std::max<size_t>(topology.ringEntries(), 1) * sizeof(uint32_t)),
+                     rounds = device.allocate(padded * sizeof(uint32_t)),
+                     counted = device.allocate(padded * sizeof(uint32_t));
+    const auto run = [&](uint32_t stage, const cl::Memory& starts, const cl::Memory& points) {
+        cl::Launch launch(program, "two_ring", stage, topology.slots(), topology.slices(), topology.rings(),
+                          links, rounds, counted, starts, points);
+        device.launch(launch, over(padded), queue.get());
+    };
+    run(PEL_TWO_RING_LINK, {}, {});
+    run(PEL_TWO_RING_COUNT, {}, {});
+    cl::check(clFinish(queue.get()), "clFinish");
+    device.readAside(counted.get(), counts.size() * sizeof(uint32_t), counts.data());
+    const std::vector<uint32_t> starts = startsOf(counts);
+    const size_t entries = std::max<size_t>(size_t(starts.back()) * PEL_POINT_LANES, 1);
+    const cl::Memory begin = device.allocate(starts.size() * sizeof(uint32_t)),
+                     points = device.allocate(entries * sizeof(uint32_t));
+    device.writeAside(begin.get(), starts.size() * sizeof(uint32_t), starts.data());
+    run(PEL_TWO_RING_LIST, begin, points);
+    cl::check(clFinish(queue.get()), "clFinish");
+    made = {begin, points, rounds};
+    return made;
 }
 
 }  // namespace pel

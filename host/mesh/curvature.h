@@ -1,13 +1,12 @@
 // Curvature at the vertices of a mesh: kernels/mesh/mesh_rows.cl and kernels/mesh/curvature.cl.
 #pragma once
-#include "mesh/mesh_normals.h"
-#include "mesh/mesh_smoothing.h"
+#include "mesh/mesh_passes.h"
 
 namespace pel {
 
 void checkCurvatureParams(const PelCurvatureParams& params);
 uint32_t quantityFloats(PelCurvatureQuantity quantity);  // per vertex
-uint32_t planesOf(PelCurvatureQuantity quantity);  // that the passes carry (kernels/lib/mesh/principal.clh)
+uint32_t planesOf(PelCurvatureQuantity quantity);  // that the passes carry (kernels/lib/mesh/mesh_frame.clh)
 uint32_t planeStrideOf(const MeshTopology& topology);  // floats
 
 // The steps of a curvature, for callers that take only some of them (mesh/live_mesh.cpp). `counts`: a

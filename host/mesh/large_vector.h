@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "cl/pages.h"
+#include "cl/machine.h"
 
 namespace pel {
 

@@ -1,13 +1,139 @@
 // One-ring lists of a triangle mesh from raw index arrays: any connectivity, manifold or not.
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "mesh/large_vector.h"
-#include "mesh/mesh_corners.h"
 
 namespace pel {
+
+// The other two corners of a triangle at a slot, in the order of the triangle.
+struct Corner {
+    uint32_t from, to;
+};
+
+// Makes the walks round one vertex (shared/mesh.h) of the triangles that meet there.
+class RingBuilder {
+  public:
+    struct Edges {
+        uint32_t all = 0, border = 0, nonManifold = 0;  // to slots above `slot`
+        uint32_t inconsistent = 0;  // edges whose two triangles run along them in the same direction
+        Edges& operator+=(const Edges& b) {
+            all += b.all, border += b.border, nonManifold += b.nonManifold, inconsistent += b.inconsistent;
+            return *this;
+        }
+    };
+    // Appends the list of `slot` to `out`. Of `corners` (count of them) the first
+    // `readAhead` are read, whatever is there.
+    static constexpr uint32_t readAhead = 8;
+    Edges build(uint32_t slot, const Corner* corners, uint32_t count, LargeVector<uint32_t>& out);
+
+  private:
+    bool buildSmallFan(const Corner* corners, uint32_t count, LargeVector<uint32_t>& out);
+    bool buildFan(const Corner* corners, uint32_t count, LargeVector<uint32_t>& out);
+    void buildTrails(const Corner* corners, uint32_t count, LargeVector<uint32_t>& out);
+
+    // One end of the edge that is opposite to the slot in a triangle.
+    struct End {
+        uint32_t node, backward, other, triangle;
+        bool operator<(const End& b) const;
+    };
+    struct Node {
+        uint32_t slot, next, end;  // ends that may still be free: next to end
+        uint32_t free;             // how many of them are
+        bool visited;
+    };
+    Node& node(uint32_t slot);
+    void walk(Node& start, LargeVector<uint32_t>& out);
+
+    std::vector<Corner> fan_;
+    std::vector<End> ends_;
+    std::vector<Node> nodes_;
+    std::vector<char> used_;  // per triangle
+};
+
+// The triangles of a mesh between slots.
+struct Triangles {
+    const uint32_t* indices;  // three vertices for each of `count`
+    uint64_t count;
+    const std::vector<uint32_t>& slotOf;  // by vertex; empty: vertices are the slots
+    uint32_t vertices, slots;
+
+    // The slots of a triangle; false if two of them are the same.
+    bool slotsOf(uint64_t triangle, uint32_t (&v)[3]) const {
+        for (uint64_t c = 0; c < 3; ++c) {
+            const uint32_t vertex = indices[3 * triangle + c];
+            v[c] = slotOf.empty() ? vertex : slotOf[vertex];
+        }
+        return v[0] != v[1] && v[1] != v[2] && v[2] != v[0];
+    }
+};
+
+// The corners of all triangles but degenerate ones, sorted by the slot that they are at.
+struct CornerTable {
+    LargeVector<uint32_t>
+        begins;  // slots + 1: those of a slot are from begins[slot] to before begins[slot + 1]
+    LargeVector<Corner> corners;  // and RingBuilder::readAhead more
+    uint32_t degenerate = 0;
+    uint32_t unreferenced = 0;  // vertices without a triangle
+    // Whether neighbours are so far apart in memory that every access misses the caches. If so, the corners
+    // of a slot are sorted by `from`.
+    bool scattered = false;
+};
+CornerTable sortCorners(const Triangles& triangles);
+
+// How many slots one thread has written for others to read.
+class Written {
+  public:
+    explicit Written(uint32_t slots) : slots_(slots) {}
+    void tell(uint32_t slots) {
+        slots_.store(slots, std::memory_order_release);
+        slots_.notify_all();
+    }
+    // At least `slots`; waits until there are so many.
+    uint32_t waitFor(uint32_t slots) const {
+        for (;;) {
+            const uint32_t now = slots_.load(std::memory_order_acquire);
+            if (now >= slots) return now;
+            slots_.wait(now);
+        }
+    }
+
+  private:
+    std::atomic<uint32_t> slots_;
+};
+
+// Breadth first from the first slot of each part of the mesh.
+class Renumbering {
+  public:
+    explicit Renumbering(const CornerTable& table);
+    void run() noexcept;
+
+    // Filled by run(). Another thread may read the corners of as many slots as `ready` says meanwhile, and
+    // RingBuilder::readAhead more.
+    CornerTable moved;
+    Written ready{0};
+    std::vector<uint32_t> numbers;  // the new number of each slot, once all is done
+
+  private:
+    static constexpr uint32_t none = UINT32_MAX, block = 4096;
+    uint32_t number(uint32_t slot) {
+        const bool isNew = numbers[slot] == none;
+        queue_[known_] = slot;
+        const uint32_t n = isNew ? known_ : numbers[slot];
+        numbers[slot] = n;
+        known_ += isNew;
+        return n;
+    }
+    void move(uint32_t next);
+
+    const CornerTable& table_;
+    uint32_t slots_;
+    LargeVector<uint32_t> queue_;
+    uint32_t known_ = 0, written_ = 0;
+};
 
 struct MeshAdjacency {
     LargeVector<uint32_t> offsets;     // slots + 1

@@ -1,4 +1,4 @@
-#include "mesh/mesh_corners.h"
+#include "mesh/mesh_adjacency.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "mesh/mesh_normals.h"
+#include "mesh/mesh_passes.h"
 
 namespace pel {
 namespace {
@@ -8,11 +8,11 @@ SlotData gatherRows(MeshTopology& topology, const VertexView& positions, const V
                     const cl::Memory& memory, const Rows& rows) {
     cl::Defines defines = mapping(topology);
     defines["PEL_MESH_LISTED"] = listed(rows);
-    defines["PEL_WIDTH"] = std::to_string(width(topology.device()));  // whether to fetch ahead
+    defines["PEL_WIDTH"] = width(topology.device());  // whether to fetch ahead
     cl::Launch gather(topology.device().programs().get("mesh/mesh_rows.cl", defines), "mesh_rows");
     rowArguments(topology, gather, rows);
-    gather.arg(topology.memberOffsets()).arg(topology.members());
-    gather.arg(positions.memory).arg(positions.layout).arg(normals.memory).arg(normals.layout).arg(memory);
+    gather.args(topology.memberOffsets(), topology.members(), positions.memory, positions.layout,
+                normals.memory, normals.layout, memory);
     launchRows(topology, gather, rows, 1);
     const uint32_t slots = topology.slots();
     return {{memory, {slots, 0, 8, 0}}, {memory, {slots, 4, 8, 0}}, 8};
@@ -20,18 +20,18 @@ SlotData gatherRows(MeshTopology& topology, const VertexView& positions, const V
 
 cl::Program program(const MeshTopology& topology, uint32_t stride, const Rows& rows) {
     cl::Defines defines = mapping(topology);
-    defines["PEL_MESH_STRIDE"] = std::to_string(stride);
+    defines["PEL_MESH_STRIDE"] = stride;
     defines["PEL_MESH_LISTED"] = listed(rows);
     defines["PEL_MESH_RUNS"] = haveRuns(topology);
-    defines["PEL_WIDTH"] = std::to_string(width(topology.device()));
+    defines["PEL_WIDTH"] = width(topology.device());
     return topology.device().programs().get("mesh/mesh_normals.cl", defines);
 }
 
 void makeNormals(MeshTopology& topology, const SlotData& data, const Rows& rows) {
     cl::Launch make(program(topology, data.stride, rows), "mesh_normals");
     ringArguments(topology, make, rows);
-    make.arg(data.positions.memory).arg(data.positions.layout.offset);
-    make.arg(data.normals.memory).arg(data.normals.layout.offset);
+    make.args(data.positions.memory, data.positions.layout.offset, data.normals.memory,
+              data.normals.layout.offset);
     launchRows(topology, make, rows, width(topology.device()));
 }
 
@@ -56,9 +56,8 @@ void meshNormals(MeshTopology& topology, const VertexView& positions, const Vert
     if (topology.vertices() == 0) return;
     const auto lock = topology.lock();
     const SlotData data = gatherBySlot(topology, positions, {}, scratchOf(topology));
-    cl::Launch store(program(topology, data.stride, {}), "mesh_normals_store");
-    store.arg(topology.slotOf()).arg(data.normals.memory).arg(data.normals.layout.offset);
-    store.arg(normals.memory).arg(normals.layout);
+    cl::Launch store(program(topology, data.stride, {}), "mesh_normals_store", topology.slotOf(),
+                     data.normals.memory, data.normals.layout.offset, normals.memory, normals.layout);
     topology.device().launch(store, over(topology.vertices()));
 }
 

@@ -1,4 +1,4 @@
-#include "mesh/mesh_orient.h"
+#include "mesh/mesh_topology.h"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,6 @@
 #include <cstring>
 
 #include "cl/error.h"
-#include "mesh/mesh_topology.h"
-#include "mesh/mesh_weld.h"
 
 namespace pel {
 namespace {

@@ -1,6 +1,8 @@
 // What all passes over a topology's slots share.
 #pragma once
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "mesh/mesh_topology.h"
 #include "mesh/vertex_view.h"
@@ -73,5 +75,81 @@ inline Scratch scratchOf(MeshTopology& topology) {
         return topology.scratch(which, bytes);
     };
 }
+
+// Positions and normals by slot, and normals made from positions: kernels/mesh/mesh_rows.cl,
+// kernels/mesh/mesh_normals.cl.
+
+// If `normals` is empty they are made from the positions. `moved`: slots whose vertices are gathered.
+// `turned`: slots whose normals are made, including the neighbours of moved ones. Other rows of the scratch
+// memory keep their values.
+SlotData gatherBySlot(MeshTopology& topology, const VertexView& positions, const VertexView& normals,
+                      const Scratch& scratch, const Rows& moved = {}, const Rows& turned = {});
+
+// Unit normals of the caller's vertices from their positions. Enqueues everything.
+void meshNormals(MeshTopology& topology, const VertexView& positions, const VertexView& normals);
+
+// Smoothing of values on a mesh: kernels/mesh/curvature.cl (uniform passes) and
+// kernels/mesh/curvature_diffuse.cl (to a radius).
+
+// Planes of one value per slot, planeStride apart, in two memories that are used in turn; `from` holds the
+// values. With a `spare` the first values are kept, and the spare takes the place of their memory.
+struct SlotPlanes {
+    uint32_t planes, planeStride;
+    cl::Memory from, to, spare, before;
+    void advance() {
+        before = from;
+        std::swap(from, to);
+        if (spare) to = std::exchange(spare, {});
+    }
+};
+
+// Which rows pass i of a smoothing works on; none given: all.
+using RowsOfPass = std::function<Rows(uint32_t pass)>;
+
+void smoothUniform(MeshTopology& topology, const cl::Defines& defines, uint32_t count, SlotPlanes& values,
+                   const RowsOfPass& rows = {});
+
+// The passes of a smoothing to a radius. Waits for the device the first time, if params do not give the
+// number of stages.
+struct Diffusion {
+    float limit = 0, turn2 = 0;       // of rates, 1/length^2; square of the change of the normal at a crease
+    std::vector<float> coefficients;  // of the Chebyshev polynomials from degree 0 on; empty: nothing to do
+    PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT;
+    uint32_t passes() const { return coefficients.empty() ? 0 : uint32_t(coefficients.size()) - 1; }
+    // By how many edges changed positions change weights beyond the changed vertices.
+    uint32_t weightReach(bool madeNormals) const {
+        // By areas a weight depends on factors of both ends, and its limit on the rates of both.
+        return (madeNormals && turn2 > 0 ? 2 : 1) + (weights == PEL_SMOOTHING_AREA ? 2 : 0);
+    }
+};
+Diffusion planDiffusion(MeshTopology& topology, const SlotData& data, const PelCurvatureParams& params,
+                        const Scratch& scratch);
+
+// `weighed`: rows whose weights are computed.
+void smoothToRadius(MeshTopology& topology, const SlotData& data, const Diffusion& diffusion,
+                    SlotPlanes& values, const Scratch& scratch, const Rows& weighed = {},
+                    const RowsOfPass& rows = {});
+
+// The heat equation as a sum of Chebyshev polynomials (kernels/mesh/curvature_diffuse.cl).
+constexpr uint32_t mostStages = 4000;
+
+// `span`: time times the largest rate, half the largest eigenvalue. The truncation error of a sum of n stages
+// is erfc(n / sqrt(2 span)) for large n, about 2e-4 here.
+double stagesOfSpan(double span);
+double spanOfStages(uint32_t stages);
+
+// Coefficients of degree 0 to `stages` for exp(-span (x + correction x^2)), where x from 0 to 2 is an
+// eigenvalue divided by the largest rate. Their sum is 1. correction: waves on vertices h apart have the
+// eigenvalues k^2 (1 - k^2 h^2 / 16) instead of k^2 (the mean over directions, on squares and on equilateral
+// triangles alike), so their square times h^2 / 16, divided by the largest rate, is added.
+std::vector<float> heatCoefficients(uint32_t stages, double span, double correction);
+
+// The lists of the topology, made at the first call, which waits until they are there, on a queue of its
+// own. `program` holds two_ring.cl. Call with the topology's lock held.
+const MeshTopology::TwoRings& twoRings(MeshTopology& topology, const cl::Program& program);
+
+// UV scale of a mesh: kernels/mesh/uv_scale.cl.
+// Length per UV unit. Waits for the result.
+float meshUvScale(MeshTopology& topology, const VertexView& positions, const VertexView& uvs);
 
 }  // namespace pel

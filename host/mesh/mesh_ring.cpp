@@ -1,4 +1,4 @@
-#include "mesh/mesh_ring.h"
+#include "mesh/mesh_adjacency.h"
 
 #include <algorithm>
 #include <bit>

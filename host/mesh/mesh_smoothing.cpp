@@ -1,9 +1,8 @@
-#include "mesh/mesh_smoothing.h"
+#include "mesh/mesh_passes.h"
 
 #include <algorithm>
 #include <cmath>
-
-#include "mesh/mesh_diffusion.h"
+#include <numbers>
 
 namespace pel {
 namespace {
@@ -11,11 +10,11 @@ namespace {
 cl::Program program(const MeshTopology& topology, const SlotData& data, const Rows& rows,
                     PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT) {
     return topology.device().programs().get("mesh/curvature_diffuse.cl",
-                                            {{"PEL_MESH_STRIDE", std::to_string(data.stride)},
+                                            {{"PEL_MESH_STRIDE", data.stride},
                                              {"PEL_MESH_LISTED", listed(rows)},
-                                             {"DIFFUSE_AREA", std::to_string(weights == PEL_SMOOTHING_AREA)},
+                                             {"DIFFUSE_AREA", weights == PEL_SMOOTHING_AREA},
                                              {"PEL_MESH_RUNS", haveRuns(topology)},
-                                             {"PEL_WIDTH", std::to_string(width(topology.device()))}});
+                                             {"PEL_WIDTH", width(topology.device())}});
 }
 
 // Weights, limited to a largest rate (0: no limit). Returns the memory that holds them.
@@ -28,20 +27,19 @@ const cl::Memory& makeWeights(MeshTopology& topology, const SlotData& data, PelS
     const cl::Memory factors = area ? scratch(MeshTopology::scratchFactors, slotBytes) : rates;
     cl::Launch launch(program(topology, data, rows, kind), "diffuse_weights");
     ringArguments(topology, launch, rows);
-    launch.arg(data.positions.memory).arg(data.positions.layout.offset);
-    launch.arg(data.normals.memory).arg(data.normals.layout.offset);
-    launch.arg(limit).arg(crease2).arg(weights).arg(factors);
+    launch.args(data.positions.memory, data.positions.layout.offset, data.normals.memory,
+                data.normals.layout.offset, limit, crease2, weights, factors);
     launchRows(topology, launch, rows, width(topology.device()));
     if (area) {
         cl::Launch balance(program(topology, data, rows, kind), "diffuse_balance");
         ringArguments(topology, balance, rows);
-        balance.arg(weights).arg(factors).arg(rates);
+        balance.args(weights, factors, rates);
         launchRows(topology, balance, rows, width(topology.device()));
     }
     if (area && limit > 0) {
         cl::Launch slow(program(topology, data, rows, kind), "diffuse_limit");
         ringArguments(topology, slow, rows);
-        slow.arg(limit).arg(weights).arg(rates);
+        slow.args(limit, weights, rates);
         launchRows(topology, slow, rows, width(topology.device()));
     }
     return weights;
@@ -77,7 +75,7 @@ void smoothUniform(MeshTopology& topology, const cl::Defines& defines, uint32_t 
         variant["PEL_MESH_LISTED"] = listed(here);
         cl::Launch smooth(topology.device().programs().get("mesh/curvature.cl", variant), "curvature_smooth");
         ringArguments(topology, smooth, here);
-        smooth.arg(values.planeStride).arg(values.from).arg(values.to);
+        smooth.args(values.planeStride, values.from, values.to);
         launchRows(topology, smooth, here, width(topology.device()), values.planes);
         values.advance();
     }
@@ -120,13 +118,49 @@ void smoothToRadius(MeshTopology& topology, const SlotData& data, const Diffusio
         const Rows here = rows ? rows(stage) : Rows{};
         cl::Launch launch(program(topology, data, here), "diffuse_stage");
         ringArguments(topology, launch, here);
-        launch.arg(weights).arg(values.planeStride);
-        launch.arg(values.from).arg(stage == 0 ? values.from : values.before).arg(values.to).arg(sum);
-        launch.arg(int(stage == 0)).arg(diffusion.coefficients[0]).arg(diffusion.coefficients[stage + 1]);
+        launch.args(weights, values.planeStride, values.from, stage == 0 ? values.from : values.before,
+                    values.to, sum, int(stage == 0), diffusion.coefficients[0],
+                    diffusion.coefficients[stage + 1]);
         launchRows(topology, launch, here, width(topology.device()), values.planes);
         values.advance();
     }
     values.from = sum;
+}
+
+namespace {
+
+// erfc of this is 2e-4.
+constexpr double reach = 2.63;
+
+}  // namespace
+
+double stagesOfSpan(double span) {
+    return std::ceil(1 + reach * std::sqrt(2 * span));
+}
+
+double spanOfStages(uint32_t stages) {
+    const double wide = (stages > 1 ? stages - 1.0 : 0.5) / reach;
+    return 0.5 * wide * wide;
+}
+
+std::vector<float> heatCoefficients(uint32_t stages, double span, double correction) {
+    // Cosine sums over Chebyshev points, twice as many as there are terms. The aliasing error is then far
+    // below the truncation error.
+    const size_t points = 2 * (size_t(stages) + 8);
+    std::vector<double> cosines(4 * points), terms(stages + 1);
+    for (size_t i = 0; i < cosines.size(); ++i)
+        cosines[i] = std::cos(std::numbers::pi * double(i) / double(2 * points));
+    for (size_t j = 0; j < points; ++j) {
+        const double x = 1 - cosines[2 * j + 1],
+                     value = std::exp(-span * (x + correction * x * x)) / double(points);
+        for (size_t k = 0; k <= stages; ++k)
+            terms[k] += (k ? 2 : 1) * value * cosines[(2 * j + 1) * k % cosines.size()];
+    }
+    double total = 0;
+    for (double term : terms) total += term;
+    std::vector<float> coefficients;
+    for (double term : terms) coefficients.push_back(float(term / total));
+    return coefficients;
 }
 
 }  // namespace pel

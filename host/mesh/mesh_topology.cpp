@@ -1,7 +1,6 @@
 #include "mesh/mesh_topology.h"
 
 #include "mesh/mesh_adjacency.h"
-#include "mesh/mesh_weld.h"
 
 namespace pel {
 

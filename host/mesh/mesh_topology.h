@@ -1,8 +1,11 @@
 // The analysis of a mesh's indices, made once and kept on the device; and the scratch memory of the passes
 // over it.
 #pragma once
+#include <pellucid/pellucid.h>
+#include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "core/buffer.h"
 #include "shared/mesh.h"
@@ -88,5 +91,27 @@ class MeshTopology final : public Object {
         size_t bytes = 0;
     } scratch_[scratchCount];
 };
+
+// Welding: which of the caller's vertices are at one place, and become one vertex of the topology.
+struct MeshWeld {
+    std::vector<uint32_t> slotOf;  // per vertex; empty when slots are the vertices in their order
+    // Vertices of each slot, ascending; empty in the same case.
+    std::vector<uint32_t> memberOffsets;  // slots + 1
+    std::vector<uint32_t> members;        // vertices
+    uint32_t slots = 0;
+};
+
+// Gives slot s the number numbers[s].
+void renumberSlots(MeshWeld& weld, std::vector<uint32_t> numbers);
+
+// Exact: equal coordinates (-0 equals 0). Tolerance: a vertex joins the first earlier vertex within the
+// tolerance that did not itself join another; chains do not grow. NaN and Inf join nothing. `progress` gets a
+// fraction in [0, 1] and may throw.
+MeshWeld weldVertices(const PelMeshTopologyDesc& desc, const std::function<void(double)>& progress);
+
+// desc's indices, with triangles reversed as pelMeshOrient says. `normals`: xyz per vertex, normalStride
+// bytes apart, or NULL.
+std::vector<uint32_t> orientTriangles(const PelMeshTopologyDesc& desc, const float* normals,
+                                      uint32_t normalStride, PelMeshOrientation& found);
 
 }  // namespace pel

@@ -56,11 +56,8 @@ std::vector<char> MeshTopology::save() const {
     header.report = report_;
     size_t total = 0;
     for (int a = 0; a < 6; ++a) {
-        size_t bytes = 0;
         if (*arrays[a])
-            cl::check(clGetMemObjectInfo(arrays[a]->get(), CL_MEM_SIZE, sizeof bytes, &bytes, nullptr),
-                      "clGetMemObjectInfo");
-        header.words[a] = uint32_t(bytes / sizeof(uint32_t));
+            header.words[a] = uint32_t(cl::info<size_t>(arrays[a]->get(), CL_MEM_SIZE) / sizeof(uint32_t));
         total += header.words[a];
     }
     std::vector<uint32_t> words(total);

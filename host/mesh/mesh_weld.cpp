@@ -1,4 +1,4 @@
-#include "mesh/mesh_weld.h"
+#include "mesh/mesh_topology.h"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "mesh/uv_scale.h"
+#include "mesh/mesh_passes.h"
 
 #include <array>
 #include <cmath>
@@ -20,9 +20,8 @@ float meshUvScale(MeshTopology& topology, const VertexView& positions, const Ver
     const cl::Memory& memory =
         topology.scratch(MeshTopology::scratchReduce, PEL_UV_SCALE_ITEMS * sizeof(UvScaleShare));
 
-    cl::Launch largest(program, "uv_scale_largest");
-    largest.arg(topology.triangles()).arg(topology.indices());
-    largest.arg(positions.memory).arg(positions.layout).arg(uvs.memory).arg(uvs.layout).arg(memory);
+    cl::Launch largest(program, "uv_scale_largest", topology.triangles(), topology.indices(),
+                       positions.memory, positions.layout, uvs.memory, uvs.layout, memory);
     device.launch(largest, range);
     std::vector<std::array<float, 2>> maxima(PEL_UV_SCALE_ITEMS);
     device.read(memory.get(), 0, maxima.size() * sizeof maxima[0], maxima.data(), true);
@@ -36,10 +35,9 @@ float meshUvScale(MeshTopology& topology, const VertexView& positions, const Ver
                         " triangles the longest edge is ", std::sqrt(length2), " and the longest UV edge ",
                         std::sqrt(uv2));
 
-    cl::Launch sum(program, "uv_scale_sum");
-    sum.arg(topology.triangles()).arg(topology.indices());
-    sum.arg(positions.memory).arg(positions.layout).arg(uvs.memory).arg(uvs.layout);
-    sum.arg(length2 * smallestPart * smallestPart).arg(uv2 * smallestPart * smallestPart).arg(memory);
+    cl::Launch sum(program, "uv_scale_sum", topology.triangles(), topology.indices(), positions.memory,
+                   positions.layout, uvs.memory, uvs.layout, length2 * smallestPart * smallestPart,
+                   uv2 * smallestPart * smallestPart, memory);
     device.launch(sum, range);
     std::vector<UvScaleShare> shares(PEL_UV_SCALE_ITEMS);
     device.read(memory.get(), 0, shares.size() * sizeof shares[0], shares.data(), true);

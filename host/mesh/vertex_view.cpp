@@ -1,6 +1,5 @@
 #include "mesh/vertex_view.h"
 
-#include "core/about.h"
 #include "core/handle_table.h"
 
 namespace pel {

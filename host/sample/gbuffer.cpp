@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "sample/trace.h"
 #include "sample/waves.h"
 
 namespace pellucid::sample {

@@ -1,15 +1,31 @@
 // Renders what a deferred renderer hands to Pellucid: one sample through each pixel's centre.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "sample/camera.h"
-#include "sample/image.h"
 #include "sample/look.h"
 #include "sample/scene.h"
 
 namespace pellucid::sample {
+
+// Float images in planes: value(c, x, y) at data[(c * height + y) * width + x], row 0 on top.
+struct Image {
+    int width = 0, height = 0, channels = 0;
+    std::vector<float> data;
+
+    Image() = default;
+    Image(int w, int h, int c, float value = 0)
+        : width(w), height(h), channels(c), data(size_t(w) * size_t(h) * size_t(c), value) {}
+
+    size_t planeSize() const { return size_t(width) * size_t(height); }
+    float* plane(int c) { return data.data() + planeSize() * size_t(c); }
+    const float* plane(int c) const { return data.data() + planeSize() * size_t(c); }
+    float& at(int c, int x, int y) { return plane(c)[size_t(y) * size_t(width) + size_t(x)]; }
+    float at(int c, int x, int y) const { return plane(c)[size_t(y) * size_t(width) + size_t(x)]; }
+};
 
 // Fine relief and colour that a head mesh lacks, from random fields in world space.
 struct SkinDetail {

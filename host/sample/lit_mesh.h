@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <functional>
+#include <pellucid/pellucid.hpp>
 #include <span>
 #include <vector>
 
@@ -70,5 +71,13 @@ struct LitMeshOptions {
 // `progress`: told a fraction, and may throw. Throws std::runtime_error beyond mostTriangles.
 LitMesh lightMesh(const Scene& scene, const Lighting& lighting, const LitMeshOptions& options,
                   const std::function<void(double)>& progress = {});
+
+// What light leaves a lit mesh after scattering under its surface (docs/mathematics.md, section 9), by the
+// library.
+
+// RGB per point. `points`: xyz each; none give none. `desc` says how: profile, radius, unit, cut and
+// tolerance; mesh, points and result are filled in here.
+std::vector<float> scatteredAt(const Device& device, const LitMesh& lit, const std::vector<float>& points,
+                               PelSurfaceIntegralDesc desc);
 
 }  // namespace pellucid::sample

@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "sample/trace.h"
-
 namespace pellucid::sample {
 
 namespace {

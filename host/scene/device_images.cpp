@@ -1,4 +1,4 @@
-#include "scene/device_images.h"
+#include "scene/scene_frame.h"
 
 namespace pellucid::io {
 namespace {

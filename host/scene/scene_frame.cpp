@@ -7,12 +7,10 @@
 
 #include "io/choice_keys.h"
 #include "io/file_error.h"
-#include "io/image/mip_chain.h"
 #include "io/lut/lut_file.h"
 #include "io/lut/profile_file.h"
 
 namespace pellucid::io {
-
 namespace {
 
 // Equal requests give equal bits, so that the description is the key. Its structures have no padding.
@@ -336,9 +334,9 @@ PelImageDesc SceneFrame::measureCurvature(const SceneFile& scene) {
     const PelImageDesc positions = image(PEL_SLOT_POSITION), ids = image(PEL_SLOT_MATERIAL);
     const PelImageDesc depth = positions.buffer ? pelImageDescDefaults() : image(PEL_SLOT_DEPTH);
     if (!positions.buffer && !depth.buffer)
-        throw FileError(scene.source,
-                        "[channels] curvature = \"screen\" is measured from positions or depth; "
-                        "name their channels");
+        throw FileError(
+            scene.source,
+            "[channels] curvature = \"screen\" is measured from positions or depth; name their channels");
     PelScreenCurvatureParams params = pelScreenCurvatureParamsDefaults();
     std::copy_n(scene.camera.inverseViewProjection, 16, params.inverseViewProjection);
     pictures_.emplace_back(device_, gbuffer_->pixelCount() * sizeof(float));
@@ -374,6 +372,49 @@ void writeThickness(const std::string& path, int width, int height, const std::v
     image.height = height;
     image.addInterleaved(std::vector<std::string>{"Thickness.V"}, lengths);
     writeExr(path, image);
+}
+
+namespace {
+
+// A black image with these channels, of the smallest size that the kernels treat like a frame.
+Image blank(const std::set<std::string>& channels, int height = 2) {
+    Image image;
+    image.width = 16;
+    image.height = height;
+    for (const std::string& name : channels)
+        if (!name.empty()) image.addInterleaved(std::vector{name}, std::vector<float>(image.pixelCount()));
+    return image;
+}
+
+Image blankGBuffer(const SceneFile& scene) {
+    std::set<std::string> channels;
+    for (size_t slot = 0; slot < scene.channels.size(); ++slot)
+        if (slot != PEL_SLOT_CURVATURE || scene.channels[slot] != std::vector<std::string>{"screen"})
+            channels.insert(scene.channels[slot].begin(), scene.channels[slot].end());
+    for (const SceneLight& light : scene.lights) channels.insert(light.wideShadow);
+    return blank(channels);
+}
+
+ShadowMaps blankMaps(const SceneFile& scene) {
+    ShadowMaps maps;
+    for (const auto& [file, map] : shadowMapsOf(scene)) {
+        std::set<std::string> names = namesOf(map.groups);
+        if (names.erase("")) names.insert("Z");
+        maps[file] = blank(names, map.cube ? 6 * 16 : 2);
+    }
+    return maps;
+}
+
+}  // namespace
+
+SceneFrame prepareFrame(const Device& device, const SceneFile& scene, LutStore& luts,
+                        const PelShaderOptions& options, const std::vector<PelImageSlot>& outputs) {
+    return {device, blankGBuffer(scene), scene, luts, blankMaps(scene), options, outputs, true};
+}
+
+void buildPrograms(const Device& device, const SceneFile& scene, LutStore& luts,
+                   const PelShaderOptions& options, const std::vector<PelImageSlot>& outputs) {
+    prepareFrame(device, scene, luts, options, outputs);
 }
 
 }  // namespace pellucid::io

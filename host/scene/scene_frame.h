@@ -1,6 +1,7 @@
 // Shades a G-buffer as described by a scene file, for `pellucid shade`, the demo and the Python package.
 #pragma once
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -9,9 +10,62 @@
 #include "io/image/image_file.h"
 #include "io/scene/scene_file.h"
 #include "pellucid/pellucid.hpp"
-#include "scene/device_images.h"
 
 namespace pellucid::io {
+
+// Channels that become one image with that many components. "" is the only channel of a file.
+using ChannelGroup = std::vector<std::string>;
+
+// Format of an image by its number of components minus one.
+inline constexpr PelFormat groupFormats[] = {PEL_FORMAT_R32F, PEL_FORMAT_RG32F, PEL_FORMAT_RGB32F,
+                                             PEL_FORMAT_RGBA32F};
+
+// Maps a buffer while this object lives.
+class MappedBuffer {
+  public:
+    explicit MappedBuffer(Buffer buffer)
+        : buffer_(std::move(buffer)), at_(static_cast<float*>(buffer_.map())) {}
+    MappedBuffer(MappedBuffer&& other) noexcept = default;
+    ~MappedBuffer() {
+        if (buffer_) pelBufferUnmap(buffer_.get());
+    }
+    float* at() const { return at_; }
+
+  private:
+    Buffer buffer_;
+    float* at_;
+};
+
+class DeviceImages {
+  public:
+    explicit DeviceImages(const Device& device) : device_(device) {}
+
+    // Reads the groups whose channels exist in the file. The returned image lists all channels and has no
+    // pixels. Throws as readImage() does.
+    Image read(const std::string& path, const std::set<ChannelGroup>& groups);
+    // `image` was returned by read(). nullptr: these channels were not read.
+    const OwnedImage* find(const Image& image, const ChannelGroup& channels) const;
+
+  private:
+    Device device_;
+    std::map<std::pair<std::string, ChannelGroup>, OwnedImage> images_;  // by file
+};
+
+// The channel groups that a scene reads from its G-buffer.
+std::set<ChannelGroup> gbufferGroups(const SceneFile& scene);
+// The names in all groups; "" among them where a file's only channel is.
+std::set<std::string> namesOf(const std::set<ChannelGroup>& groups);
+
+// Interleaved channels of an image whose pixels are in host or device memory.
+class PixelValues {
+  public:
+    PixelValues(const Image& image, const ChannelGroup& channels, const DeviceImages* images);
+    const float* at() const { return mapped_ ? mapped_->at() : own_.data(); }
+
+  private:
+    std::vector<float> own_;
+    std::optional<MappedBuffer> mapped_;
+};
 
 // The look-up tables of scenes: each distinct one is read or integrated once.
 class LutStore {
@@ -49,7 +103,7 @@ class SceneFrame {
     // Uploads and sets the images of the scene and commits. `outputs`: slots to write besides radiance.
     // `shadowMaps`: maps that are already in memory, by their names in the scene; others are read from files.
     // The G-buffer must outlive the last update(). `buildOnly`: builds programs with progress instead of
-    // committing; show() must follow (scene_programs.h). Throws FileError if a channel is missing.
+    // committing; show() must follow (prepareFrame()). Throws FileError if a channel is missing.
     SceneFrame(const Device& device, const Image& gbuffer, const SceneFile& scene, LutStore& luts,
                const ShadowMaps& shadowMaps = {},
                const PelShaderOptions& options = pelShaderOptionsDefaults(),
@@ -115,5 +169,17 @@ std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene,
 // Writes RGB radiance as R, G, B of a float EXR, lengths as Thickness.V.
 void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance);
 void writeThickness(const std::string& path, int width, int height, const std::vector<float>& lengths);
+
+// A frame without its G-buffer and shadow maps, which SceneFrame::show() supplies. Builds the programs and
+// launches each kernel on an image of 16 x 2 pixels, so that compilers run before the first frame, and
+// reports progress to the device. Reads the files of the scene except G-buffer and shadow maps; look-up
+// tables are kept in `luts`. Throws as SceneFrame does.
+SceneFrame prepareFrame(const Device& device, const SceneFile& scene, LutStore& luts,
+                        const PelShaderOptions& options = pelShaderOptionsDefaults(),
+                        const std::vector<PelImageSlot>& outputs = {});
+// Fills the driver's cache of programs, and `luts`.
+void buildPrograms(const Device& device, const SceneFile& scene, LutStore& luts,
+                   const PelShaderOptions& options = pelShaderOptionsDefaults(),
+                   const std::vector<PelImageSlot>& outputs = {});
 
 }  // namespace pellucid::io

@@ -77,11 +77,10 @@ std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene, 
             if (std::isfinite(v[0]) && std::abs(v[0]) > std::abs(furthest)) furthest = v[0];
         });
         if (std::abs(furthest) > 1.001f) {
-            found.push_back(
-                "the depth channel reaches " + shown(furthest) + ", and device depth " +
-                (furthest > 0 ? "ends at 1" : "is -1 or more") +
-                ": it looks like a distance along the view; name a position channel, or write the depth "
-                "that the projection gives");
+            found.push_back("the depth channel reaches " + shown(furthest) + ", and device depth " +
+                            (furthest > 0 ? "ends at 1" : "is -1 or more") +
+                            ": it looks like a distance along the view; name a position channel, or write "
+                            "the depth that the projection gives");
             return found;
         }
     }
@@ -93,14 +92,13 @@ std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene, 
         const float reach = findProfile(m.profile).profile.info().reach;
         // An object of skin is not smaller than a fingertip, nor larger than a few people.
         if (size > 2.3f * reach && size < 500 * reach) continue;
-        found.push_back(
-            "what is seen is " + shown(size) +
-            " mm long with unit_mm = " + shown(scene.options.millimetresPerUnit) + ", and light reaches " +
-            shown(reach) + " mm far in the profile of material " + std::to_string(m.id) +
-            ": unit_mm says how many millimetres a unit of the positions is" +
-            (fromDepth ? ", or the depth is not what inverse_view_projection takes, such as a distance "
-                         "along the view"
-                       : ""));
+        found.push_back("what is seen is " + shown(size) + " mm long with unit_mm = " +
+                        shown(scene.options.millimetresPerUnit) + ", and light reaches " + shown(reach) +
+                        " mm far in the profile of material " + std::to_string(m.id) +
+                        ": unit_mm says how many millimetres a unit of the positions is" +
+                        (fromDepth ? ", or the depth is not what inverse_view_projection takes, such as a "
+                                     "distance along the view"
+                                   : ""));
     }
     return found;
 }

@@ -4,7 +4,7 @@
 
 #include "core/launch_policy.h"
 #include "shading/launch_ranges.h"
-#include "shading/passes.h"
+#include "shading/pass.h"
 #include "shading/scratch_image.h"
 
 namespace pel {
@@ -29,9 +29,9 @@ class CubeNodes final : public Pass {
 
     std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
         return {{{"shading/ambient_cube.cl"},
-                 {{"PEL_GROUP", text(launchPolicy(device).texels)},
+                 {{"PEL_GROUP", launchPolicy(device).texels},
                   {"PEL_WIDTH", "1"},
-                  {"PEL_FORMAT_CUBE", text(formatCode(plan.state.*Faces, 1))}}}};
+                  {"PEL_FORMAT_CUBE", formatCode(plan.state.*Faces, 1)}}}};
     }
 
     void enqueueFrame(PassWork& work) const override {
@@ -39,15 +39,9 @@ class CubeNodes final : public Pass {
         const cl_uint size = edgeOf(faces);
         // Bytes from one face to the next.
         const uint64_t step = faces.height > faces.width ? size * faces.rowStride : size * faces.pixelStride;
-        cl::Launch launch(program(), "ambient_cube");
-        launch.arg(faces.buffer->memory())
-            .arg(cl_ulong(faces.byteOffset))
-            .arg(cl_ulong(step))
-            .arg(cl_ulong(faces.rowStride));
-        launch.arg(cl_ulong(faces.planeStride))
-            .arg(cl_uint(faces.pixelStride))
-            .arg(size)
-            .arg(nodes_->memory());
+        cl::Launch launch(program(), "ambient_cube", faces.buffer->memory(), cl_ulong(faces.byteOffset),
+                          cl_ulong(step), cl_ulong(faces.rowStride), cl_ulong(faces.planeStride),
+                          cl_uint(faces.pixelStride), size, nodes_->memory());
         work.launch(launch, {{size + size_t(2), 6 * (size + size_t(2)), 1},
                              {launchPolicy(work.device).texels, 1, 1}});
     }

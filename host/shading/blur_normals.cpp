@@ -2,8 +2,8 @@
 #include <cstddef>
 
 #include "shading/launch_ranges.h"
-#include "shading/passes.h"
-#include "shading/scratch_planes.h"
+#include "shading/pass.h"
+#include "shading/scratch_image.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
@@ -34,9 +34,8 @@ class BlurNormals final : public Pass {
     std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
         const uint32_t lanes = device.info().mathWidth;
         cl::Defines defines = surfaceDefines(device, plan.state, lanes);
-        defines["PEL_FEATURES"] = text(0);
-        defines["PEL_FORMAT_NORMAL_SHADING"] =
-            text(formatCode(plan.state.images[PEL_SLOT_NORMAL_SHADING], lanes));
+        defines["PEL_FEATURES"] = 0;
+        defines["PEL_FORMAT_NORMAL_SHADING"] = formatCode(plan.state.images[PEL_SLOT_NORMAL_SHADING], lanes);
         return {{{"shading/blur_normals.cl"}, defines}};
     }
 
@@ -47,13 +46,11 @@ class BlurNormals final : public Pass {
 
     void enqueueAround(PassWork& work) override {
         const auto& images = work.plan.state.images;
-        cl::Launch launch(program(), "prepare_normals");
-        launch.arg(work.constants.frameMemory()).arg(work.plan.tileLists);
+        cl::Launch launch(program(), "prepare_normals", work.constants.frameMemory(), work.plan.tileLists);
         for (PelImageSlot slot :
              {PEL_SLOT_MATERIAL, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_POSITION, PEL_SLOT_DEPTH})
-            launch.arg(memoryOf(images[slot]));
-        launch.arg(normals_.memory()).arg(positions_->memory()).arg(tags_->memory());
-        launch.arg(cl_uint(work.plan.scratchPlane));
+            launch.args(memoryOf(images[slot]), normals_.memory(), positions_->memory(), tags_->memory(),
+                        cl_uint(work.plan.scratchPlane));
         work.launch(launch, tileRange(work.device, work.tiles()));
         blur(work, false);
     }
@@ -63,13 +60,10 @@ class BlurNormals final : public Pass {
     void blur(PassWork& work, bool alongY) const {
         const cl::Memory &from = alongY ? between_->memory() : normals_.memory(),
                          &to = alongY ? normals_.memory() : between_->memory();
-        cl::Launch launch(program(), "blur_normals");
-        launch.arg(work.constants.frameMemory()).arg(work.constants.materials()).arg(work.plan.tileLists);
-        launch.arg(memoryOf(work.plan.state.images[PEL_SLOT_MATERIAL]))
-            .arg(from)
-            .arg(positions_->memory())
-            .arg(tags_->memory());
-        launch.arg(to).arg(cl_uint(work.plan.scratchPlane)).arg(cl_uint(alongY));
+        cl::Launch launch(program(), "blur_normals", work.constants.frameMemory(), work.constants.materials(),
+                          work.plan.tileLists, memoryOf(work.plan.state.images[PEL_SLOT_MATERIAL]), from,
+                          positions_->memory(), tags_->memory(), to, cl_uint(work.plan.scratchPlane),
+                          cl_uint(alongY));
         work.launch(launch, tileRange(work.device, work.tiles()));
     }
 

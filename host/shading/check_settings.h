@@ -16,7 +16,7 @@ void checkScatterControls(const char* structure, uint32_t taps, float albedoBefo
 void checkScatteredTexture(const ImageView& texture);
 void checkIrisTexture(const ImageView& texture);
 void checkLight(const PelLight& light, uint32_t index);
-// A light's shadow map at commit: its form, its images and the fields that they need (check_shadow_map.cpp).
+// A light's shadow map at commit: its form, its images and the fields that they need.
 void checkLightMap(const ShaderLight& light, uint32_t index);
 void checkAmbient(const PelAmbient& ambient);
 // Of six faces; `what` names it.

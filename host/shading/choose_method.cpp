@@ -1,8 +1,8 @@
-#include "shading/choose_method.h"
+#include "shading/features.h"
 
 #include <algorithm>
 
-#include "shading/features.h"
+#include "shading/image_slots.h"
 
 namespace pel {
 namespace {
@@ -54,9 +54,7 @@ std::string chooseMethods(ShaderState& state, uint32_t methods, uint64_t tooMany
             if (!why.empty())
                 say("material ", id, " scatters by ", diskTapsForBlocks, " taps on a disk, for ", why,
                     ": without, it would scatter over the whole profile, and with what the lights' shadow "
-                    "maps "
-                    "show "
-                    "beside it");
+                    "maps show beside it");
         } else if (tooMany) {
             say("material ", id, " scatters by its tables, for PelShaderOptions.scratchBudget is ",
                 state.options.scratchBudget,
@@ -64,13 +62,11 @@ std::string chooseMethods(ShaderState& state, uint32_t methods, uint64_t tooMany
         } else if (!places) {
             say("material ", id,
                 " scatters by its tables, for there are neither positions nor depth: with them it would "
-                "scatter on the "
-                "screen, which is nearer to light");
+                "scatter on the screen, which is nearer to light");
         } else {
             say("material ", id,
                 " scatters by its tables, for the shadow image of a light is wide: with a shadow map in its "
-                "place, or "
-                "irradiance, it would scatter on the screen, which is nearer to light");
+                "place, or irradiance, it would scatter on the screen, which is nearer to light");
         }
     }
     // What has nothing to scatter by takes the same light and the same shadows as what does.
@@ -81,6 +77,47 @@ std::string chooseMethods(ShaderState& state, uint32_t methods, uint64_t tooMany
         for (ShaderLight& light : state.lights)
             if (light.images[PEL_LIGHT_SHADOW_MAP]) light.images[PEL_LIGHT_WIDE_SHADOW] = ImageView();
     return all;
+}
+
+namespace {
+
+bool byTaps(const PelMaterial& m) {
+    return m.scattering == PEL_SCATTERING_SEPARABLE ||
+           (m.scattering == PEL_SCATTERING_SCREEN && m.scatterTaps);
+}
+
+void checkMaterial(uint32_t id, const ShaderMaterial& material, const ShaderState& state) {
+    const PelMaterial& m = material.params;
+    if (m.thinThickness > 0 && (!material.profile || !readsIrradiance(material)))
+        invalidArgument("material ", id, " has a thinThickness of ", m.thinThickness, " and ",
+                        material.profile ? "takes its light from tables" : "no profile",
+                        "; it needs a profile and another scattering than preintegrated");
+    if (m.thinThickness > 0 && state.images[PEL_SLOT_IRRADIANCE] && !state.images[PEL_SLOT_IRRADIANCE_BACK])
+        invalidArgument("material ", id, " has a thinThickness of ", m.thinThickness,
+                        ", and there is an irradiance image, and no back irradiance image: the light of the "
+                        "other side is not known");
+    if (m.scattering == PEL_SCATTERING_TEXTURE && (!material.scatteredTexture || !state.images[PEL_SLOT_UV]))
+        invalidArgument("material ", id, " takes light that was scattered in its texture, and there is no ",
+                        material.scatteredTexture
+                            ? "UV image to sample it by"
+                            : "such texture: pelShaderSetScatteredTexture gives it one");
+    if (!readsIrradiance(material) || m.scattering == PEL_SCATTERING_NONE || byTaps(m)) return;
+    if (m.borderColor[0] > 0 || m.borderColor[1] > 0 || m.borderColor[2] > 0)
+        fail(PEL_ERROR_UNSUPPORTED, "material ", id, " has a borderColor and scatters by \"",
+             scatteringName(m.scattering),
+             "\"; separable, and screen with scatterTaps of 8 to 256, let light flow over borders");
+    if (const ImageView& weight = state.images[PEL_SLOT_SCATTER_WEIGHT];
+        weight && weight.info().components > 1 && m.scattering != PEL_SCATTERING_TEXTURE)
+        fail(PEL_ERROR_UNSUPPORTED,
+             "the scatter weight image has a second component, the radius, and material ", id,
+             " scatters by \"", scatteringName(m.scattering),
+             "\"; separable, and screen with scatterTaps of 8 to 256, take it");
+}
+
+}  // namespace
+
+void checkScattering(const ShaderState& state) {
+    for (const auto& [id, material] : state.materials) checkMaterial(id, material, state);
 }
 
 }  // namespace pel

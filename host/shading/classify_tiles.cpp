@@ -1,5 +1,5 @@
 // Lists of the tiles with a material, and of the tiles of each variant of the shading kernel.
-#include "shading/passes.h"
+#include "shading/pass.h"
 #include "shading/scratch_image.h"
 #include "shading/shade_variants.h"
 #include "shading/shading_constants.h"
@@ -62,10 +62,9 @@ class ClassifyTiles final : public Pass {
         if (!listsTiles(plan)) return;
         const bool listAll = plan.variants.size() == 1 || plan.scratch;
         work.device.fill(lists_->memory().get(), 0, countBytes, 0);
-        cl::Launch launch(program(), "classify_tiles");
-        launch.arg(work.constants.frameMemory()).arg(work.constants.materials());
-        launch.arg(plan.state.images[PEL_SLOT_MATERIAL].buffer->memory());
-        launch.arg(lists_->memory()).arg(cl_uint(plan.variants.size())).arg(cl_uint(listAll));
+        cl::Launch launch(program(), "classify_tiles", work.constants.frameMemory(),
+                          work.constants.materials(), plan.state.images[PEL_SLOT_MATERIAL].buffer->memory(),
+                          lists_->memory(), cl_uint(plan.variants.size()), cl_uint(listAll));
         work.launch(launch, classifyRange(work.device, work.tiles()));
     }
 

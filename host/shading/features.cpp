@@ -4,13 +4,10 @@
 
 #include "shading/check_settings.h"
 #include "shading/launch_ranges.h"
+#include "shared/light_space.h"
 
 namespace pel {
 namespace {
-
-bool black(const float (&c)[3]) {
-    return c[0] == 0 && c[1] == 0 && c[2] == 0;
-}
 
 void need(bool present, const char* what, const char* why) {
     if (!present) invalidArgument("the ", what, " is needed ", why, ", and not set");
@@ -36,8 +33,7 @@ void checkSizes(const ShaderState& state) {
         if (overlapsElsewhere(target, view))
             invalidArgument(
                 "the radiance image overlaps the ", what,
-                " image in memory, and not pixel on pixel: pixels would be overwritten before they are "
-                "read");
+                " image in memory, and not pixel on pixel: pixels would be overwritten before they are read");
     };
     for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot) check(state.images[slot], slotName(slot), slot);
     const auto checkApart = [&](const ImageView& view, const std::string& what) {
@@ -52,9 +48,8 @@ void checkSizes(const ShaderState& state) {
         if (material.eye) checkApart(material.eye->iris, text("iris texture of material ", id));
     for (size_t i = 0; i < state.lights.size(); ++i) {
         check(state.lights[i].images[PEL_LIGHT_WIDE_SHADOW], text("wide shadow ", i));
-        for (int slot = PEL_LIGHT_SHADOW_MAP; slot < PEL_LIGHT_SLOT_COUNT; ++slot) {
+        for (int slot = PEL_LIGHT_SHADOW_MAP; slot < PEL_LIGHT_SLOT_COUNT; ++slot)
             checkApart(state.lights[i].images[slot], text(lightSlotName(PelLightSlot(slot)), " ", i));
-        }
     }
 }
 
@@ -148,8 +143,8 @@ uint32_t formFeatures(const PelLight& l) {
 }
 
 bool isBlack(const PelAmbient& a) {
-    return black(a.constant) &&
-           std::all_of(std::begin(a.sh), std::end(a.sh), [](auto& c) { return black(c); });
+    return isBlack(a.constant) &&
+           std::all_of(std::begin(a.sh), std::end(a.sh), [](auto& c) { return isBlack(c); });
 }
 
 uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material) {
@@ -165,13 +160,13 @@ uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material)
         if (tables && material.curvatureLut && images[PEL_SLOT_CURVATURE])
             needs |= PEL_FEATURE_DIRECT_SCATTER;
         if (tables && material.shadowLut && wide) needs |= PEL_FEATURE_SHADOW_LUT;
-        if (!black(m.deepScatterColor)) {
+        if (!isBlack(m.deepScatterColor)) {
             if (images[PEL_SLOT_THICKNESS])
                 needs |= PEL_FEATURE_DEEP_SCATTER;
             else if (map && m.thicknessTaps)
                 needs |= PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS;
         }
-        if (tables && material.transmission && m.transmission > 0 && black(m.deepScatterColor)) {
+        if (tables && material.transmission && m.transmission > 0 && isBlack(m.deepScatterColor)) {
             if (images[PEL_SLOT_THICKNESS])
                 needs |= PEL_FEATURE_TRANSMISSION;
             else if (map && m.thicknessTaps && (images[PEL_SLOT_POSITION] || images[PEL_SLOT_DEPTH]))
@@ -182,7 +177,7 @@ uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material)
     }
     if (material.eye) needs |= PEL_FEATURE_EYE | (state.reflectionCube ? PEL_FEATURE_REFLECTION_CUBE : 0);
     const bool ambient = !isBlack(state.ambient) || state.ambientCube;
-    if (ambient && images[PEL_SLOT_THICKNESS] && m.deepScatterAmbient > 0 && !black(m.deepScatterColor))
+    if (ambient && images[PEL_SLOT_THICKNESS] && m.deepScatterAmbient > 0 && !isBlack(m.deepScatterColor))
         needs |= PEL_FEATURE_AMBIENT_SCATTER;
     return needs;
 }
@@ -230,7 +225,7 @@ uint32_t deriveFeatures(const ShaderState& state) {
             if (!material.normalMap.empty())
                 features |= PEL_FEATURE_NORMAL_MAP;
             else if (state.options.blurNormals &&
-                     (!readsIrradiance(material) || !black(material.params.deepScatterColor)))
+                     (!readsIrradiance(material) || !isBlack(material.params.deepScatterColor)))
                 features |= PEL_FEATURE_BLUR_NORMALS;
         }
     if (features & PEL_FEATURE_NORMAL_MAP) {
@@ -247,6 +242,24 @@ uint32_t deriveFeatures(const ShaderState& state) {
     if (features & PEL_FEATURE_EYE) need(position, what, "by eyes");
     if (positional) need(position, what, "by point and spot lights");
     return features;
+}
+
+bool shines(const ShaderLight& light) {
+    return light.images[PEL_LIGHT_SHADOW_MAP] && !isBlack(light.params.color);
+}
+
+uint32_t mapsOf(const ShaderLight& light) {
+    return isCube(light.params) ? 6 : cascadesOf(light);
+}
+
+bool lightIsMapped(const ShaderState& state) {
+    uint32_t maps = 0;
+    for (const ShaderLight& light : state.lights) {
+        if (isBlack(light.params.color)) continue;
+        if (!shines(light)) return false;
+        maps += mapsOf(light);
+    }
+    return maps > 0 && maps <= PEL_LIGHT_MAPS && isBlack(state.ambient) && !state.ambientCube;
 }
 
 }  // namespace pel

@@ -27,7 +27,31 @@ inline bool readsIrradiance(const ShaderMaterial& material) {
 bool makesIrradiance(const ShaderState& state);
 // Whether light from behind thin sheets is made: where the host gives it, it is added later.
 bool makesLightFromBehind(const ShaderState& state, uint32_t features);
+inline bool isBlack(const float (&color)[3]) {
+    return color[0] == 0 && color[1] == 0 && color[2] == 0;
+}
 // Whether PelAmbient gives no light; there may still be a cube map.
 bool isBlack(const PelAmbient& ambient);
+
+// Whether a light has a shadow map and a colour, so that its light may be summed over the map
+// (docs/mathematics.md, section 10, "Light space").
+bool shines(const ShaderLight& light);
+// How many maps that is: cascades and faces of cubes one by one.
+uint32_t mapsOf(const ShaderLight& light);
+// Whether maps hold all light: every light that has a colour has one, there are some and not too many, and
+// there is no ambient light.
+bool lightIsMapped(const ShaderState& state);
+
+// Puts a method in the place of auto in each material's params, and takes away the wide shadow images that
+// sharp shadows from maps replace. `methods`: bit i: the build has the PelScattering i. Returns sentences,
+// one a line, about what auto had to do without. `tooMany`: bytes that scattering on the screen takes, where
+// they are more than PelShaderOptions.scratchBudget; else 0.
+std::string chooseMethods(ShaderState& state, uint32_t methods, uint64_t tooMany);
+
+// Throws if a control cannot be honoured.
+void checkScattering(const ShaderState& state);
+
+// Ambient light on each iris, and the table of each eye that brought none; eyes of one shape share them.
+void prepareEyes(const Ref<Device>& device, std::map<uint32_t, ShaderMaterial>& materials);
 
 }  // namespace pel

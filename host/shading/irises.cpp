@@ -1,15 +1,14 @@
 // The irises of all eyes in one buffer, in the form that shading samples (kernels/eye/iris_texels.cl). The
 // first execution after a commit makes them.
-#include "shading/irises.h"
+#include "shading/features.h"
 
 #include <utility>
 
 #include "core/handle_table.h"
 #include "core/launch_policy.h"
-#include "eye/eye_constants.h"
-#include "eye/eye_lut.h"
+#include "eye/eye.h"
 #include "shading/launch_ranges.h"
-#include "shading/passes.h"
+#include "shading/pass.h"
 #include "shading/scratch_image.h"
 
 namespace pel {
@@ -39,9 +38,9 @@ class Irises final : public Pass {
         for (const auto& [id, material] : plan.state.materials)
             if (material.eye)
                 keys.push_back({{"eye/iris_texels.cl"},
-                                {{"PEL_GROUP", text(launchPolicy(device).texels)},
+                                {{"PEL_GROUP", launchPolicy(device).texels},
                                  {"PEL_WIDTH", "1"},
-                                 {"PEL_FORMAT_IRIS", text(formatCode(material.eye->iris, 1))}}});
+                                 {"PEL_FORMAT_IRIS", formatCode(material.eye->iris, 1)}}});
         return keys;
     }
 
@@ -59,18 +58,17 @@ class Irises final : public Pass {
             if (!material.eye) continue;
             const ImageView& image = material.eye->iris;
             const cl_uint side = irisTexels(*material.eye);
-            cl::Launch launch(program(eye), "iris_texels");
-            launch.arg(memoryOf(image)).arg(cl_ulong(image.byteOffset)).arg(cl_ulong(image.rowStride));
-            launch.arg(cl_ulong(image.planeStride)).arg(cl_uint(image.pixelStride)).arg(side);
-            launch.arg(cl_uint(material.eye->params.irisSeed)).arg(first).arg(texels_->memory());
+            cl::Launch launch(program(eye), "iris_texels", memoryOf(image), cl_ulong(image.byteOffset),
+                              cl_ulong(image.rowStride), cl_ulong(image.planeStride),
+                              cl_uint(image.pixelStride), side, cl_uint(material.eye->params.irisSeed), first,
+                              texels_->memory());
             const auto square = [&](size_t texels) {
                 return work.codeAlone ? cl::Range{{1, 1, 1}, {group, 1, 1}}
                                       : cl::Range{{texels, texels, 1}, {group, 1, 1}};
             };
             work.launch(launch, square(side + size_t(1)));
             for (cl_uint level = 1; level < irisLevels(side); ++level) {
-                cl::Launch halve(program(eye), "iris_level");
-                halve.arg(side).arg(level).arg(first).arg(texels_->memory());
+                cl::Launch halve(program(eye), "iris_level", side, level, first, texels_->memory());
                 work.launch(halve, square((side >> level) + size_t(1)));
             }
             ++eye;
@@ -82,10 +80,6 @@ class Irises final : public Pass {
     Ref<Buffer> texels_;
     mutable bool pending_ = false;  // until the first execution after a commit
 };
-
-}  // namespace
-
-namespace {
 
 Ref<Lut> causticsOf(const Ref<Device>& device, const ShaderEye& eye) {
     PelEyeLutDesc desc = pelEyeLutDescOf(&eye.params);

@@ -3,9 +3,8 @@
 // slot of the plan.
 #include "shading/features.h"
 #include "shading/launch_ranges.h"
-#include "shading/passes.h"
-#include "shading/scene_arguments.h"
-#include "shading/scratch_planes.h"
+#include "shading/pass.h"
+#include "shading/scratch_image.h"
 #include "shading/shade_variants.h"
 #include "shared/features.h"
 
@@ -24,8 +23,8 @@ class Irradiance final : public Pass {
         cl::Defines defines = sceneDefines(
             device, plan.state,
             plan.features & (PEL_FEATURE_SHADOW | PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_CUBE));
-        defines["PEL_THIN"] = text(int(makesLightFromBehind(plan.state, plan.features)));
-        defines["PEL_PASS_GROUP"] = text(tileGroup(device));
+        defines["PEL_THIN"] = int(makesLightFromBehind(plan.state, plan.features));
+        defines["PEL_PASS_GROUP"] = tileGroup(device);
         return {{{"shading/irradiance.cl"}, defines}};
     }
 
@@ -37,7 +36,7 @@ class Irradiance final : public Pass {
     void enqueue(PassWork& work) override {
         cl::Launch launch(program(), "make_irradiance");
         sceneArguments(launch, work);
-        launch.arg(planes_.memory()).arg(cl_uint(work.plan.scratchPlane));
+        launch.args(planes_.memory(), cl_uint(work.plan.scratchPlane));
         work.launch(launch, tileRange(work.device, work.tiles()));
     }
 

@@ -32,8 +32,8 @@ PelImageSlot geometricNormalSlot(const ShaderState& state) {
 
 cl::Defines surfaceDefines(const Device& device, const ShaderState& state, uint32_t lanes) {
     const auto code = [&](PelImageSlot slot) { return text(formatCode(state.images[slot], lanes)); };
-    return {{"PEL_PASS_GROUP", text(tileGroup(device))},
-            {"PEL_WIDTH", text(lanes)},
+    return {{"PEL_PASS_GROUP", tileGroup(device)},
+            {"PEL_WIDTH", lanes},
             {"PEL_FORMAT_MATERIAL", code(PEL_SLOT_MATERIAL)},
             {"PEL_FORMAT_POSITION", code(PEL_SLOT_POSITION)},
             {"PEL_FORMAT_DEPTH", state.images[PEL_SLOT_POSITION] ? text(0) : code(PEL_SLOT_DEPTH)}};

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "shading/launch_ranges.h"
-#include "shading/passes.h"
-#include "shading/scratch_planes.h"
+#include "shading/pass.h"
+#include "shading/scratch_image.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
@@ -56,16 +56,16 @@ class NormalMap final : public Pass {
         const ImageView& tangent = plan.state.images[PEL_SLOT_TANGENT];
         const PelImageSlot normal = geometricNormalSlot(plan.state);
         cl::Defines defines = surfaceDefines(device, plan.state, 1);
-        defines["PEL_FEATURES"] = defines["PEL_FORMAT_POSITION"] = defines["PEL_FORMAT_DEPTH"] = text(0);
+        defines["PEL_FEATURES"] = defines["PEL_FORMAT_POSITION"] = defines["PEL_FORMAT_DEPTH"] = 0;
         defines["PEL_FORMAT_NORMAL"] = code(normal);
-        defines["PEL_NORMAL_SLOT"] = text(int(normal));
+        defines["PEL_NORMAL_SLOT"] = int(normal);
         defines["PEL_FORMAT_UV"] = code(PEL_SLOT_UV);
         defines["PEL_FORMAT_UV_GRADIENT"] = code(PEL_SLOT_UV_GRADIENT);
         defines["PEL_FORMAT_TANGENT"] = code(PEL_SLOT_TANGENT);
-        defines["PEL_TANGENT_COMPONENTS"] = text(tangent.info().components);
-        defines["PEL_TANGENT_UNORM"] = text(
-            int(tangent.info().kind == FormatKind::UNORM || tangent.info().kind == FormatKind::OCTAHEDRAL));
-        defines["PEL_FORMAT_NORMAL_MAP"] = text(formatCode(plan.state.materials.at(ids_[0]).normalMap[0], 1));
+        defines["PEL_TANGENT_COMPONENTS"] = tangent.info().components;
+        defines["PEL_TANGENT_UNORM"] =
+            int(tangent.info().kind == FormatKind::UNORM || tangent.info().kind == FormatKind::OCTAHEDRAL);
+        defines["PEL_FORMAT_NORMAL_MAP"] = formatCode(plan.state.materials.at(ids_[0]).normalMap[0], 1);
         return {{{"shading/normal_map.cl"}, defines}};
     }
 
@@ -88,13 +88,13 @@ class NormalMap final : public Pass {
     void enqueue(PassWork& work) override {
         const ShaderState& state = work.plan.state;
         for (size_t k = 0; k < ids_.size(); ++k) {
-            cl::Launch launch(program(), "normal_map");
-            launch.arg(work.constants.frameMemory()).arg(work.constants.materials()).arg(work.plan.tileLists);
+            cl::Launch launch(program(), "normal_map", work.constants.frameMemory(),
+                              work.constants.materials(), work.plan.tileLists);
             for (PelImageSlot slot : {PEL_SLOT_MATERIAL, geometricNormalSlot(state), PEL_SLOT_UV,
                                       PEL_SLOT_UV_GRADIENT, PEL_SLOT_TANGENT})
-                launch.arg(memoryOf(state.images[slot]));
-            launch.arg(constants_[k].memory()).arg(memoryOf(state.materials.at(ids_[k]).normalMap[0]));
-            launch.arg(memoryOf(state.images[PEL_SLOT_NORMAL_BLURRED])).arg(cl_uint(work.plan.scratchPlane));
+                launch.args(memoryOf(state.images[slot]), constants_[k].memory(),
+                            memoryOf(state.materials.at(ids_[k]).normalMap[0]),
+                            memoryOf(state.images[PEL_SLOT_NORMAL_BLURRED]), cl_uint(work.plan.scratchPlane));
             work.launch(launch, tileRange(work.device, work.tiles()));
         }
     }

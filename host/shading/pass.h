@@ -1,6 +1,6 @@
 // A pass of shading: the host side of one kernel file. The shader keeps the needed passes of a list in order
 // and calls the same functions of each. Passes exchange data only through the plan, so other folders may add
-// passes: the list comes from host/api/shading_passes.cpp.
+// passes: the list comes from host/api/shader.cpp.
 #pragma once
 #include <memory>
 
@@ -88,5 +88,9 @@ template <class P>
 constexpr PassKind passKind(uint32_t methods = 0) {
     return {P::needed, [] { return std::unique_ptr<Pass>(std::make_unique<P>()); }, methods};
 }
+
+// The passes of this folder, each in a file beside its kernel's.
+extern const PassKind ambientCubePass, classifyTilesPass, blurNormalsPass, normalMapPass, shadowBoundsPass,
+    wideShadowPass, irradiancePass, reflectionCubePass, irisesPass, tapCellsPass, shadePass;
 
 }  // namespace pel

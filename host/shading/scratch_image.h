@@ -1,6 +1,9 @@
 // Images that passes make.
 #pragma once
+#include "core/device.h"
 #include "core/image_view.h"
+#include "shading/shader_plan.h"
+#include "shared/shade_passes.h"
 
 namespace pel {
 
@@ -17,5 +20,40 @@ ImageView scratchImage(const Ref<Buffer>& buffer, const ImageView& frame, PelFor
 // Rewrites the start of a PelShadeImage at `at` in `memory`: to where the image would begin if it also had
 // the rows before `row`.
 void moveImage(Device& device, cl_mem memory, size_t at, const ImageView& view, uint32_t row);
+
+// A buffer that is written again only if its bytes differ.
+class CachedUpload {
+  public:
+    // Returns the bytes sent.
+    size_t update(Device& device, const void* bytes, size_t count);
+    const cl::Memory& memory() const { return memory_; }
+    size_t bytes() const { return bytes_.size(); }
+
+  private:
+    std::vector<unsigned char> bytes_;
+    cl::Memory memory_;
+};
+
+// Images of three floats per pixel that a pass makes in a slot: planes, with a guard before and after each.
+class ShadingConstants;
+
+constexpr size_t planeGuardBytes = 2 * PEL_PLANE_GUARD * sizeof(float);
+// Of one plane of a value per pixel of a band, with its guards.
+size_t scratchPlaneBytes(const ShaderPlan& plan);
+
+class ScratchPlanes {
+  public:
+    explicit ScratchPlanes(PelImageSlot slot) : slot_(slot) {}
+    // And puts them into their slot.
+    void allocate(const Ref<Device>& device, ShaderPlan& plan);
+    // Pass::moveScratch; not if another pass has replaced the slot.
+    void move(Device& device, const ShaderPlan& plan, const ShadingConstants& constants, uint32_t row) const;
+    const cl::Memory& memory() const { return buffer_->memory(); }
+    size_t bytes() const { return buffer_ ? buffer_->bytes() : 0; }
+
+  private:
+    PelImageSlot slot_;
+    Ref<Buffer> buffer_;
+};
 
 }  // namespace pel

@@ -58,20 +58,18 @@ void screenCurvature(Device& device, const PelScreenCurvatureParams& params,
     if (images.ids) frame.ids = describeImage(images.ids);
     frame.curvature = describeImage(images.curvature);
     const size_t group = launchPolicy(device).texels;
-    cl::Launch launch(
-        device.programs().get("shading/screen_curvature.cl",
-                              {{"PEL_SCREEN_GROUP", text(group)},
-                               {"PEL_FORMAT_NORMAL", text(formatCode(images.normals, lanes))},
-                               {"PEL_FORMAT_POSITION", text(formatCode(images.positions, lanes))},
-                               {"PEL_FORMAT_DEPTH", text(formatCode(images.depth, lanes))},
-                               {"PEL_FORMAT_IDS", text(formatCode(images.ids, lanes))},
-                               {"PEL_FORMAT_CURVATURE", text(formatCode(images.curvature, lanes))}}),
-        "screen_curvature");
+    cl::Launch launch(device.programs().get("shading/screen_curvature.cl",
+                                            {{"PEL_SCREEN_GROUP", group},
+                                             {"PEL_FORMAT_NORMAL", formatCode(images.normals, lanes)},
+                                             {"PEL_FORMAT_POSITION", formatCode(images.positions, lanes)},
+                                             {"PEL_FORMAT_DEPTH", formatCode(images.depth, lanes)},
+                                             {"PEL_FORMAT_IDS", formatCode(images.ids, lanes)},
+                                             {"PEL_FORMAT_CURVATURE", formatCode(images.curvature, lanes)}}),
+                      "screen_curvature");
     // Copied now: the queue may be busy and is not used for this.
     const cl::Memory memory = device.allocate(sizeof frame, &frame);
-    launch.arg(memory).arg(images.normals.buffer->memory()).arg(where.buffer->memory());
-    launch.arg(images.ids ? images.ids.buffer->memory() : cl::Memory())
-        .arg(images.curvature.buffer->memory());
+    launch.args(memory, images.normals.buffer->memory(), where.buffer->memory(),
+                images.ids ? images.ids.buffer->memory() : cl::Memory(), images.curvature.buffer->memory());
     const size_t across = (frame.width + lanes - 1) / lanes;
     device.launch(launch, {{across * frame.height, 1, 1}, {group, 1, 1}});
 }

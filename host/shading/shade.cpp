@@ -2,8 +2,7 @@
 // images.
 #include "shared/shade.h"
 #include "shading/launch_ranges.h"
-#include "shading/passes.h"
-#include "shading/scene_arguments.h"
+#include "shading/pass.h"
 #include "shading/shade_variants.h"
 
 namespace pel {
@@ -45,8 +44,8 @@ class Shade final : public Pass {
         cl::Launch launch(program(variant), "shade");
         sceneArguments(launch, work);
         const uint32_t list = plan.variants.size() > 1 ? 1 + variant : 0;
-        launch.arg(cl_uint(part)).arg(cl_uint(parts));
-        launch.arg(cl_uint(plan.state.options.tileLists == PEL_TILES_NO_LIST ? PEL_EVERY_TILE : list));
+        launch.args(cl_uint(part), cl_uint(parts),
+                    cl_uint(plan.state.options.tileLists == PEL_TILES_NO_LIST ? PEL_EVERY_TILE : list));
         // Groups take tiles in turn, so the host need not know their number.
         work.launch(launch, tileRange(work.device, work.tiles()));
     }

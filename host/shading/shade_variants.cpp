@@ -8,6 +8,8 @@
 #include "shading/features.h"
 #include "shading/image_slots.h"
 #include "shading/launch_ranges.h"
+#include "shading/scratch_image.h"
+#include "shading/shading_constants.h"
 #include "shading/tap_cells.h"
 #include "shared/features.h"
 #include "shared/shade.h"
@@ -58,30 +60,30 @@ cl::Defines sceneDefines(const Device& device, const ShaderState& state, uint32_
         content = light.params.shadowContent;
     }
     if (!(features & PEL_BIT_THICKNESS_TAPS)) map = content = 0;
-    cl::Defines defines{{"PEL_FEATURES", std::to_string(features)},
-                        {"PEL_FORMAT_WIDE_SHADOW", std::to_string(wide)},
-                        {"PEL_FORMAT_SHADOW_MAP", std::to_string(map)},
-                        {"PEL_SHADOW_CONTENT", std::to_string(content)}};
+    cl::Defines defines{{"PEL_FEATURES", features},
+                        {"PEL_FORMAT_WIDE_SHADOW", wide},
+                        {"PEL_FORMAT_SHADOW_MAP", map},
+                        {"PEL_SHADOW_CONTENT", content}};
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot) {
         if (imageSlot(slot).role == SlotRole::PASS) continue;
         const uint32_t code =
             slotIsRead(state, slot, features) ? formatCode(state.images[slot], device.info().mathWidth) : 0;
-        defines[imageSlot(slot).define] = std::to_string(code);
+        defines[imageSlot(slot).define] = code;
     }
     return defines;
 }
 
 cl::ProgramKey shadeKey(const Device& device, const ShaderState& state, uint32_t features) {
     cl::ProgramKey key{{"shading/shade.cl"}, sceneDefines(device, state, features & PEL_BITS_OF_KERNEL)};
-    key.defines["PEL_SHADE_GROUP"] = std::to_string(tileGroup(device));
-    key.defines["PEL_CLASSIFY_GROUP"] = std::to_string(classifyGroup(device));
-    key.defines["PEL_CLASSIFY_RUN"] = std::to_string(classifyRun(device));
+    key.defines["PEL_SHADE_GROUP"] = tileGroup(device);
+    key.defines["PEL_CLASSIFY_GROUP"] = classifyGroup(device);
+    key.defines["PEL_CLASSIFY_RUN"] = classifyRun(device);
     // One program, because a driver's cost per program is what a first frame waits for.
     if (state.images[PEL_SLOT_MATERIAL]) key.files.push_back("shading/classify_tiles.cl");
     if (usesCells(state, features)) {
         key.files.push_back("shading/tap_cells.cl");
-        key.defines["PEL_CELLS_GROUP"] = std::to_string(launchPolicy(device).texels);
-        key.defines["PEL_CELLS_RUN"] = std::to_string(cellsRun(device));
+        key.defines["PEL_CELLS_GROUP"] = launchPolicy(device).texels;
+        key.defines["PEL_CELLS_RUN"] = cellsRun(device);
     }
     return key;
 }
@@ -120,6 +122,17 @@ std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t feature
     if (partial.size() > most) partial.erase(partial.begin(), partial.end() - ptrdiff_t(most));
     variants.insert(variants.end(), partial.begin(), partial.end());
     return variants;
+}
+
+void sceneArguments(cl::Launch& launch, const PassWork& work) {
+    const ShadingConstants& constants = work.constants;
+    launch.args(constants.frameMemory(), constants.materials(), constants.lights(), constants.luts(),
+                work.plan.tileLists, work.plan.counters, work.plan.ambientNodes, constants.eyes(),
+                work.plan.irises, work.plan.reflectionNodes, work.plan.tapCells);
+    for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
+        if (imageSlot(slot).role != SlotRole::PASS) launch.arg(memoryOf(work.plan.state.images[slot]));
+    const auto& lights = constants.lightBuffers();
+    for (size_t i = 0; i < PEL_LIGHT_BUFFERS; ++i) launch.arg(i < lights.size() ? lights[i] : cl::Memory());
 }
 
 }  // namespace pel

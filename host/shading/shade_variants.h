@@ -1,5 +1,6 @@
 // The variants of the shading kernel: smaller ones for tiles whose materials need fewer features.
 #pragma once
+#include "shading/pass.h"
 #include "shading/shader_plan.h"
 
 namespace pel {
@@ -14,5 +15,8 @@ cl::ProgramKey shadeKey(const Device& device, const ShaderState& state, uint32_t
 
 // Work-items of the classification of tiles.
 cl::Range classifyRange(const Device& device, size_t tiles);
+
+// The first arguments of kernels with a Scene: SCENE_ARGUMENTS of shading/scene.clh.
+void sceneArguments(cl::Launch& launch, const PassWork& work);
 
 }  // namespace pel

@@ -4,12 +4,9 @@
 #include <algorithm>
 #include <mutex>
 
-#include "cl/build_share.h"
-#include "shading/choose_method.h"
+#include "cl/launch.h"
 #include "shading/features.h"
 #include "shading/image_slots.h"
-#include "shading/irises.h"
-#include "shading/scatter_controls.h"
 #include "shading/shade_variants.h"
 
 namespace pel {

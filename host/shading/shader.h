@@ -50,6 +50,8 @@ class Shader final : public Object {
     ~Shader() override = default;
     void allocate(uint32_t mostRows);
     ShaderMaterial& materialFor(uint32_t id, const char* what);
+    template <class Check>
+    void setView(ImageView& to, const PelImageDesc* image, const char* name, const Check& check);
     uint32_t methods() const;
     void checkMethods(const ShaderState& state) const;
     void finishPlan();

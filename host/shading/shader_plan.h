@@ -40,7 +40,7 @@ struct ShaderPlan {
     cl::Memory reflectionNodes;  // of the cube that eyes reflect
     cl::Memory irises;           // texels of all eyes' irises
     cl::Memory tapCells;         // what thickness taps read, at nodes (tap_cells.h)
-    uint32_t scratchPlane = 0;   // floats from plane to plane of images that passes make (scratch_planes.h)
+    uint32_t scratchPlane = 0;   // floats from plane to plane of images that passes make (scratch_image.h)
     ImageView arriving;          // irradiance before it is scattered, where a pass needs it later
     std::vector<FilteredLight> filteredLights;
     std::vector<BoundedMap> boundedMaps;

@@ -3,7 +3,7 @@
 
 #include "core/handle_table.h"
 #include "core/struct_size.h"
-#include "eye/check_eye.h"
+#include "eye/eye.h"
 #include "shading/check_settings.h"
 #include "shading/shader.h"
 #include "shared/shade_passes.h"
@@ -19,16 +19,22 @@ void Shader::setOptions(const PelShaderOptions& options) {
     committed_ = false;
 }
 
+// Sets an image that `check` accepts; NULL: none.
+template <class Check>
+void Shader::setView(ImageView& to, const PelImageDesc* image, const char* name, const Check& check) {
+    ImageView view;
+    if (image) {
+        view = makeImageView(image, *device_, name);
+        check(view);
+    }
+    to = view;
+    committed_ = false;
+}
+
 void Shader::setImage(PelImageSlot slot, const PelImageDesc* image) {
     if (uint32_t(slot) >= PEL_SLOT_COUNT)
         invalidArgument("image slot ", int(slot), " is none of PelImageSlot");
-    ImageView view;
-    if (image) {
-        view = makeImageView(image, *device_, slotName(slot));
-        checkImage(slot, view);
-    }
-    state_.images[slot] = view;
-    committed_ = false;
+    setView(state_.images[slot], image, slotName(slot), [&](const ImageView& v) { checkImage(slot, v); });
 }
 
 void Shader::setMaterial(uint32_t id, const PelMaterial* material, Lut* curvatureLut, Lut* shadowLut) {
@@ -88,14 +94,8 @@ void Shader::setNormalMap(uint32_t id, const PelImageDesc* levels, uint32_t coun
 }
 
 void Shader::setScatteredTexture(uint32_t id, const PelImageDesc* texture) {
-    ShaderMaterial& material = materialFor(id, "scattered texture");
-    ImageView view;
-    if (texture) {
-        view = makeImageView(texture, *device_, "scattered texture");
-        checkScatteredTexture(view);
-    }
-    material.scatteredTexture = view;
-    committed_ = false;
+    setView(materialFor(id, "scattered texture").scatteredTexture, texture, "scattered texture",
+            checkScatteredTexture);
 }
 
 void Shader::setEye(uint32_t id, const PelEye* eye, Lut* caustics) {
@@ -132,13 +132,7 @@ void Shader::setIrisTexture(uint32_t id, const PelImageDesc* texture) {
     ShaderMaterial& material = materialFor(id, "iris");
     if (!material.eye)
         invalidArgument("material ", id, " is no eye: pelShaderSetEye comes before its iris texture");
-    ImageView view;
-    if (texture) {
-        view = makeImageView(texture, *device_, "iris texture");
-        checkIrisTexture(view);
-    }
-    material.eye->iris = view;
-    committed_ = false;
+    setView(material.eye->iris, texture, "iris texture", checkIrisTexture);
 }
 
 void Shader::setLights(const PelLight* lights, uint32_t count) {
@@ -163,14 +157,9 @@ void Shader::setLightImage(uint32_t light, PelLightSlot slot, const PelImageDesc
                         " was named; pelShaderSetLights comes first");
     if (uint32_t(slot) >= PEL_LIGHT_SLOT_COUNT)
         invalidArgument("light image slot ", int(slot), " is none of PelLightSlot");
-    ImageView view;
-    if (image) {
-        const std::string name = text(lightSlotName(slot), " (light ", light, ")");
-        view = makeImageView(image, *device_, name.c_str());
-        checkLightImage(slot, view, name.c_str());
-    }
-    state_.lights[light].images[slot] = view;
-    committed_ = false;
+    const std::string name = text(lightSlotName(slot), " (light ", light, ")");
+    setView(state_.lights[light].images[slot], image, name.c_str(),
+            [&](const ImageView& view) { checkLightImage(slot, view, name.c_str()); });
 }
 
 void Shader::setAmbient(const PelAmbient& ambient) {
@@ -180,23 +169,13 @@ void Shader::setAmbient(const PelAmbient& ambient) {
 }
 
 void Shader::setAmbientCube(const PelImageDesc* faces) {
-    ImageView view;
-    if (faces) {
-        view = makeImageView(faces, *device_, "ambient cube");
-        checkCube(view, "ambient cube");
-    }
-    state_.ambientCube = view;
-    committed_ = false;
+    setView(state_.ambientCube, faces, "ambient cube",
+            [](const ImageView& v) { checkCube(v, "ambient cube"); });
 }
 
 void Shader::setReflectionCube(const PelImageDesc* faces) {
-    ImageView view;
-    if (faces) {
-        view = makeImageView(faces, *device_, "reflection cube");
-        checkCube(view, "reflection cube");
-    }
-    state_.reflectionCube = view;
-    committed_ = false;
+    setView(state_.reflectionCube, faces, "reflection cube",
+            [](const ImageView& v) { checkCube(v, "reflection cube"); });
 }
 
 const PelMaterial& Shader::material(uint32_t id) const {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/image_view.h"
-#include "eye/eye_constants.h"
+#include "eye/eye.h"
 #include "lut/lut.h"
 #include "lut/profile.h"
 
@@ -14,7 +14,7 @@ namespace pel {
 
 // The eye around a material that is its sclera.
 struct ShaderEye {
-    PelEye params{};  // checked, with its defaults filled in (eye/check_eye.h)
+    PelEye params{};  // checked, with its defaults filled in (eye/eye.h)
     Ref<Profile> irisProfile;
     Ref<Lut> caustics;  // the caller's, or made at commit
     bool ownCaustics = false;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "eye/eye_constants.h"
+#include "eye/eye.h"
 #include "shading/features.h"
 #include "shading/material.h"
 #include "shading/tap_cells.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lut/lut.h"
-#include "shading/cached_upload.h"
+#include "shading/scratch_image.h"
 #include "shared/eye.h"
 #include "shared/shade.h"
 

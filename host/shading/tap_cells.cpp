@@ -5,7 +5,7 @@
 
 #include "core/launch_policy.h"
 #include "shading/features.h"
-#include "shading/passes.h"
+#include "shading/pass.h"
 #include "shading/scratch_image.h"
 #include "shading/shade_variants.h"
 #include "shading/shading_constants.h"
@@ -65,10 +65,9 @@ class TapCells final : public Pass {
         for (const MapCells& map : maps_) {
             const ShaderLight& light = plan.state.lights[map.light];
             const auto launch = [&](const char* kernel, bool readsMap, uint64_t items) {
-                cl::Launch one(program(), kernel);
-                one.arg(work.constants.frameMemory()).arg(work.constants.lights());
-                one.arg(lists ? plan.tileLists : cl::Memory());
-                one.arg(cl_uint(map.light)).arg(cl_uint(map.cascade)).arg(cl_uint(map.disk));
+                cl::Launch one(program(), kernel, work.constants.frameMemory(), work.constants.lights(),
+                               lists ? plan.tileLists : cl::Memory(), cl_uint(map.light),
+                               cl_uint(map.cascade), cl_uint(map.disk));
                 if (readsMap) one.arg(memoryOf(*shadowCascade(light, map.cascade).map));
                 one.arg(cells_->memory());
                 work.launch(one, {{size_t(items), 1, 1}, {launchPolicy(work.device).texels, 1, 1}});

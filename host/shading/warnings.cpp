@@ -4,7 +4,6 @@
 
 #include "shading/features.h"
 #include "shading/image_slots.h"
-#include "shading/mapped_lights.h"
 #include "shading/material.h"
 
 namespace pel {
@@ -34,10 +33,6 @@ MapLengths lengthsOf(const PelLight& l, const ImageView& map) {
 // holds no such body.
 constexpr double leastReaches = 2;
 
-bool isBlackColor(const float (&c)[3]) {
-    return c[0] == 0 && c[1] == 0 && c[2] == 0;
-}
-
 // What is set and does nothing by the method that the material takes; "" if nothing is.
 std::string withoutEffect(const ShaderMaterial& material) {
     const PelMaterial &m = material.params, &given = material.given;
@@ -50,7 +45,7 @@ std::string withoutEffect(const ShaderMaterial& material) {
             given.scattering != PEL_SCATTERING_SCREEN,
         "scatterTaps");
     const bool stays = tables || m.scattering == PEL_SCATTERING_NONE;
-    add(stays && !isBlackColor(m.borderColor), "borderColor");
+    add(stays && !isBlack(m.borderColor), "borderColor");
     add(stays && m.albedoBefore > 0, "albedoBefore");
     return names;
 }
@@ -81,12 +76,10 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
         }
     for (const auto& [id, material] : state.materials) {
         const PelMaterial& m = material.params;
-        if (!isBlackColor(m.deepScatterColor) && !state.lights.empty() && !thickness &&
-            !(map && m.thicknessTaps))
+        if (!isBlack(m.deepScatterColor) && !state.lights.empty() && !thickness && !(map && m.thicknessTaps))
             warn("material ", id,
                  " has a deepScatterColor without effect: there is neither a thickness image nor a light "
-                 "with a "
-                 "shadow map and thicknessTaps above 0");
+                 "with a shadow map and thicknessTaps above 0");
         if (material.curvatureLut && !state.lights.empty() && !state.images[PEL_SLOT_CURVATURE])
             warn("material ", id, " has a curvature table without effect: there is no curvature image");
         if (const std::string idle = withoutEffect(material); !idle.empty())
@@ -94,11 +87,9 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
                  scatteringName(m.scattering), "\" (docs/guide/methods.md, \"Controls\")");
         if (m.scattering == PEL_SCATTERING_LIGHT && !lightIsMapped(state))
             warn("material ", id,
-                 " scatters by \"light\", and shadow maps do not hold all light: what lights "
-                 "without a map "
+                 " scatters by \"light\", and shadow maps do not hold all light: what lights without a map "
                  "and ambient light give is summed over the screen, as by screen; a shadow map for every "
-                 "light and no "
-                 "ambient light would be right");
+                 "light and no ambient light would be right");
         if (!material.profile) continue;
         const bool byMap = (features & PEL_FEATURE_TRANSMISSION) && !thickness && m.transmission != 0;
         const bool summed = m.scattering == PEL_SCATTERING_SCREEN || m.scattering == PEL_SCATTERING_LIGHT;

@@ -1,16 +1,18 @@
 // Wide shadows from shadow maps, for lights whose wide shadow the caller did not give.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "core/launch_policy.h"
 #include "shading/features.h"
 #include "shading/launch_ranges.h"
-#include "shading/passes.h"
+#include "shading/pass.h"
 #include "shading/scratch_image.h"
 #include "shading/shading_constants.h"
 #include "shading/wide_shadow_constants.h"
 #include "shading/wide_shadow_program.h"
 #include "shared/features.h"
+#include "shared/shade_passes.h"
 
 namespace pel {
 
@@ -27,17 +29,17 @@ cl::ProgramKey wideShadowKey(const Device& device, const ShaderPlan& plan) {
         bits |= formFeatures(light.params) & (PEL_BIT_SHADOW_CUBE | PEL_BIT_SHADOW_CASCADES);
     }
     cl::Defines defines = surfaceDefines(device, plan.state, lanes);
-    defines["PEL_FEATURES"] = text(bits);
-    defines["PEL_FORMAT_NORMAL"] = text(formatCode(plan.state.images[normal], lanes));
-    defines["PEL_NORMAL_SLOT"] = text(int(normal));
-    defines["PEL_FORMAT_SHADOW_MAP"] = text(map);
-    defines["PEL_SHADOW_CONTENT"] = text(content);
-    defines["PEL_BOUNDS"] = text(int(!plan.boundedMaps.empty()));
-    defines["PEL_THIN"] = text(int(makesLightFromBehind(plan.state, plan.features)));
+    defines["PEL_FEATURES"] = bits;
+    defines["PEL_FORMAT_NORMAL"] = formatCode(plan.state.images[normal], lanes);
+    defines["PEL_NORMAL_SLOT"] = int(normal);
+    defines["PEL_FORMAT_SHADOW_MAP"] = map;
+    defines["PEL_SHADOW_CONTENT"] = content;
+    defines["PEL_BOUNDS"] = int(!plan.boundedMaps.empty());
+    defines["PEL_THIN"] = int(makesLightFromBehind(plan.state, plan.features));
     cl::ProgramKey key{{"shading/wide_shadow.cl"}, defines};
     if (!plan.boundedMaps.empty()) {
         key.files.push_back("shading/shadow_bounds.cl");
-        key.defines["PEL_BOUNDS_GROUP"] = text(launchPolicy(device).texels);
+        key.defines["PEL_BOUNDS_GROUP"] = launchPolicy(device).texels;
     }
     return key;
 }
@@ -120,16 +122,14 @@ class WideShadow final : public Pass {
     void filter(PassWork& work, const FilteredLight& filtered, cl_uint pixels) const {
         const ShaderPlan& plan = work.plan;
         const ShaderLight& light = plan.state.lights[filtered.index];
-        cl::Launch launch(program(), "wide_shadow");
-        launch.arg(work.constants.frameMemory()).arg(work.constants.materials()).arg(work.constants.lights());
-        launch.arg(plan.tileLists).arg(plan.counters);
+        cl::Launch launch(program(), "wide_shadow", work.constants.frameMemory(), work.constants.materials(),
+                          work.constants.lights(), plan.tileLists, plan.counters);
         for (PelImageSlot slot :
              {PEL_SLOT_MATERIAL, geometricNormalSlot(plan.state), PEL_SLOT_POSITION, PEL_SLOT_DEPTH})
-            launch.arg(memoryOf(plan.state.images[slot]));
-        launch.arg(filtered.constants).arg(cl_uint(filtered.index));
+            launch.args(memoryOf(plan.state.images[slot]), filtered.constants, cl_uint(filtered.index));
         for (uint32_t i = 0; i < PEL_CASCADES; ++i)
-            launch.arg(i < cascadesOf(light) ? memoryOf(*shadowCascade(light, i).map) : cl::Memory());
-        launch.arg(plan.bounds).arg(images_->memory()).arg(pixels);
+            launch.args(i < cascadesOf(light) ? memoryOf(*shadowCascade(light, i).map) : cl::Memory(),
+                        plan.bounds, images_->memory(), pixels);
         work.launch(launch, tileRange(work.device, work.tiles()));
     }
 
@@ -140,5 +140,134 @@ class WideShadow final : public Pass {
 }  // namespace
 
 constinit const PassKind wideShadowPass = passKind<WideShadow>();
+
+PelWideShadow describeWideShadow(const ShaderLight& light, uint32_t index, uint32_t cascade) {
+    const PelLight& l = light.params;
+    const ShadowCascade from = shadowCascade(light, cascade);
+    const float(&matrix)[16] = *from.worldToShadow;
+    PelWideShadow to{};
+    std::copy_n(matrix, 16, to.worldToShadow);
+    to.projection = l.shadowProjection;
+    to.depthA = l.shadowDepthA;
+    to.depthB = l.shadowDepthB;
+    to.depthRange = from.depthRange;
+    to.exponent = float(l.shadowExponent / std::log(2.0));
+    if (l.shadowExponent != 0) to.perExponent = float(std::log(2.0) / l.shadowExponent);
+    to.minDeviation = l.shadowMinDeviation;
+    to.bleeding = l.shadowBleeding;
+    to.bias = l.shadowBias;
+    to.softness = l.shadowSoftness;
+    to.coneSlope = l.shadowConeSlope;
+    to.maxTexels = float(l.shadowFilterTexels);
+    to.cascades = l.shadowCascades;
+    to.map = describeImage(*from.map);
+    to.out = describeImage(light.images[PEL_LIGHT_WIDE_SHADOW]);
+    if (isCube(l)) return to;
+    struct Vec {
+        double x, y, z;
+        Vec scaled(double s) const { return {x * s, y * s, z * s}; }
+        Vec minus(Vec b) const { return {x - b.x, y - b.y, z - b.z}; }
+        double dot(Vec b) const { return x * b.x + y * b.y + z * b.z; }
+        Vec cross(Vec b) const { return {y * b.z - z * b.y, z * b.x - x * b.z, x * b.y - y * b.x}; }
+        double length() const { return std::sqrt(dot(*this)); }
+        void to(float (&out)[3]) const { out[0] = float(x), out[1] = float(y), out[2] = float(z); }
+    };
+    const auto row = [&](int r) {
+        const float* m = matrix + 4 * r;
+        return Vec{m[0], m[1], m[2]};
+    };
+    const bool perspective = l.shadowProjection == PEL_SHADOW_PERSPECTIVE;
+    const double w = perspective ? row(3).length() : matrix[15];
+    // Along a ray of the light u and v do not change; across it they grow by 1 / extent per length.
+    Vec forward = perspective ? row(3).scaled(1 / w) : row(0).cross(row(1));
+    if (!perspective) {
+        const double length = forward.length(), sign = row(2).dot(forward) * w * from.depthRange < 0 ? -1 : 1;
+        forward = forward.scaled(sign / length);
+        to.zPerLength = float(row(2).dot(forward) / w);
+    }
+    const Vec right = row(0).minus(forward.scaled(row(0).dot(forward))),
+              down = row(1).minus(forward.scaled(row(1).dot(forward)));
+    const double u = right.length(), v = down.length(), skew = right.dot(down) / (u * v);
+    if (!(u > 0 && v > 0 && std::isfinite(forward.length()) && std::abs(skew) < 0.999 &&
+          (perspective || to.zPerLength != 0)))
+        invalidArgument("PelLight ", index,
+                        cascade ? text(".cascadeToShadow[", cascade - 1, "]") : ".worldToShadow",
+                        " is singular: a wide shadow cannot be filtered from its shadow map");
+    right.scaled(1 / u).to(to.right);
+    down.scaled(1 / v).to(to.down);
+    forward.to(to.forward);
+    to.extent[0] = float(std::abs(w) / u);
+    to.extent[1] = float(std::abs(w) / v);
+    to.centre[0] = float(row(0).dot(forward) / w);
+    to.centre[1] = float(row(1).dot(forward) / w);
+    return to;
+}
+
+// Bounds of the blocks of shadow maps, which decide most wide shadows without reading texels.
+namespace {
+
+// How many of the size of PEL_BOUNDS_BLOCK.
+uint32_t blocks(uint32_t texels) {
+    return (texels + PEL_BOUNDS_BLOCK - 1) / PEL_BOUNDS_BLOCK;
+}
+
+class ShadowBounds final : public Pass {
+  public:
+    static bool needed(const ShaderPlan& plan) {
+        return std::ranges::any_of(plan.filteredLights, [&](const FilteredLight& f) {
+            return isBounded(plan, plan.state.lights[f.index]);
+        });
+    }
+
+    void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
+        plan.boundedMaps.clear();
+        uint64_t floats = 0;
+        for (size_t k = 0; k < plan.filteredLights.size(); ++k) {
+            const ShaderLight& light = plan.state.lights[plan.filteredLights[k].index];
+            if (!isBounded(plan, light)) continue;
+            for (uint32_t i = 0; i < cascadesOf(light); ++i) {
+                const ImageView& map = *shadowCascade(light, i).map;
+                const uint32_t columns = blocks(map.width), rows = blocks(map.height);
+                plan.boundedMaps.push_back({uint32_t(k), i, (columns + 1) / 2 * rows, uint32_t(floats)});
+                floats += 4 * uint64_t(columns) * rows;
+            }
+        }
+        if (floats > UINT32_MAX)  // kernels count them with 32 bits
+            fail(PEL_ERROR_UNSUPPORTED, "the shadow maps that are filtered are ", plan.filteredLights.size(),
+                 " lights' and too large together: ", floats, " bounds of their depths; ", UINT32_MAX,
+                 " are the most");
+        plan.bounds = cl::Memory();
+        // One vector more, since the last row's vectors reach beyond its end.
+        resize(bounds_, device, (floats + device->info().mathWidth) * sizeof(float));
+        plan.bounds = bounds_->memory();
+    }
+    size_t bytes() const override { return bounds_ ? bounds_->bytes() : 0; }
+
+    std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
+        return {wideShadowKey(device, plan)};
+    }
+
+    void enqueueAround(PassWork& work) override {
+        for (const BoundedMap& map : work.plan.boundedMaps) {
+            const FilteredLight& filtered = work.plan.filteredLights[map.filtered];
+            const ShaderLight& light = work.plan.state.lights[filtered.index];
+            cl::Launch launch(program(), "shadow_bounds", work.constants.frameMemory(), work.plan.tileLists,
+                              filtered.constants, cl_uint(map.cascade),
+                              memoryOf(*shadowCascade(light, map.cascade).map), bounds_->memory());
+            work.launch(launch, {{map.pairs, 1, 1}, {launchPolicy(work.device).texels, 1, 1}});
+        }
+    }
+
+  private:
+    static bool isBounded(const ShaderPlan& plan, const ShaderLight& light) {
+        return !plan.state.options.disableSkipping && !isCube(light.params) && filtersWide(plan.state, light);
+    }
+
+    Ref<Buffer> bounds_;
+};
+
+}  // namespace
+
+constinit const PassKind shadowBoundsPass = passKind<ShadowBounds>();
 
 }  // namespace pel

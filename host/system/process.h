@@ -41,4 +41,12 @@ std::string becomeProgram(const std::vector<std::string>& words);
 // How many files this process can still open.
 size_t filesLeft();
 
+// nullptr and the reason if it cannot be loaded. A library stays loaded until the process ends.
+void* openLibrary(const std::string& name, std::string& why);
+// nullptr if it has no such symbol.
+void* symbolIn(void* library, const char* name);
+// The folder of the library or program that contains this address, with a separator at its end; "" if
+// unknown.
+std::string folderOf(const void* address);
+
 }  // namespace pel::system

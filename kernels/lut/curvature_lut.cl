@@ -21,22 +21,14 @@
 // serves all rows and profiles.
 //
 // Variants: PEL_WIDTH; PEL_FORM, one of PEL_FORM_ARC ... (PelCurvatureForm); PEL_GROUP, work-items in a
-// group; PEL_NODES, N; PEL_POINTS, Gauss points per mesh interval (1 to 3); PEL_COLUMNS
-// (curvature_texels.clh).
+// group; PEL_NODES, N; PEL_COLUMNS (curvature_texels.clh).
 #include "lib/lut/normal.clh"
 #include "lib/width.clh"
 #include "lut/curvature_texels.clh"
 
-#if PEL_POINTS == 1
-__constant float gaussAt[1] = {0.0f};
-__constant float gaussWeight[1] = {2.0f};
-#elif PEL_POINTS == 2
-__constant float gaussAt[2] = {-0.577350269f, 0.577350269f};
-__constant float gaussWeight[2] = {1.0f, 1.0f};
-#else
-__constant float gaussAt[3] = {-0.774596669f, 0.0f, 0.774596669f};
-__constant float gaussWeight[3] = {0.555555556f, 0.888888889f, 0.555555556f};
-#endif
+// Gauss points of a mesh interval.
+#define POINTS 2
+__constant float gaussAt[POINTS] = {-0.577350269f, 0.577350269f};
 
 // Beyond this many sigmas a Gaussian adds less than 1e-8 of its weight. A chord is at least 2/pi of its arc.
 #if PEL_FORM == PEL_FORM_ARC
@@ -187,13 +179,13 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
         const floatw frontHalf = 0.5f * fmax(fmin((floatw)(step), frontEnd - node.angle), 0.0f);
         const floatw backStart = fmax(M_PI_F - end - node.angle, 0.0f);
         const floatw backHalf = 0.5f * fmax(step - backStart, 0.0f);
-        for (int q = 0; q < PEL_POINTS; ++q) {
+        for (int q = 0; q < POINTS; ++q) {
             if (front < params.gaussians) {
                 const floatw d = fma(frontHalf, (floatw)(gaussAt[q]), frontHalf);
                 const floatw d2 = d * d;
                 const floatw sd = d * (1.0f - d2 * (1.0f / 6.0f) * (1.0f - d2 * (1.0f / 20.0f)));
                 const floatw vd = d2 * 0.5f * (1.0f - d2 * (1.0f / 12.0f));
-                const floatw weight = frontHalf * gaussWeight[q];
+                const floatw weight = frontHalf;
                 // versine of the sum of two angles
                 const floatw versine = node.versine + node.cosine * vd + node.sine * sd;
                 const floatw t = node.angle + d;
@@ -208,7 +200,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
                 const floatw d2 = d * d;
                 const floatw sd = d * (1.0f - d2 * (1.0f / 6.0f) * (1.0f - d2 * (1.0f / 20.0f)));
                 const floatw cd = 1.0f - d2 * 0.5f * (1.0f - d2 * (1.0f / 12.0f));
-                const floatw weight = backHalf * gaussWeight[q];
+                const floatw weight = backHalf;
                 const floatw cosine = node.cosine * cd - node.sine * sd;
                 const Rgb k = kernelAt(gaussians, behind, params.gaussians, radius, M_PI_F - node.angle - d,
                                        1.0f + cosine, 1);

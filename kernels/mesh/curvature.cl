@@ -1,7 +1,7 @@
 // Curvature at the vertices of a mesh and its uniform smoothing (mathematics, section 5).
 //
 // Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h). Results between
-// passes: planes of one float per slot, 1/length (lib/mesh/principal.clh), NaN if nothing could be
+// passes: planes of one float per slot, 1/length (lib/mesh/mesh_frame.clh), NaN if nothing could be
 // measured. Such a slot is left out of its neighbours' means, and the last pass writes 0 for it, so no NaN
 // spreads or is returned.
 //

@@ -11,7 +11,7 @@
 // What is left after a time, exp(time L), is summed up in Chebyshev polynomials of L [Tal-Ezer, Spectral
 // Methods in Time for Parabolic Problems, SIAM J. Numer. Anal. 26, 1989]: one stage each, their number
 // grows with radius / edge, not with its square, and what is left out is below 2e-4. Coefficients:
-// host/mesh/mesh_diffusion.cpp.
+// host/mesh/mesh_smoothing.cpp.
 //
 // Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h); planes as in
 // curvature.cl. One work-item: PEL_WIDTH slots (of plane get_global_id(1) in diffuse_stage). Variants:

@@ -30,13 +30,13 @@
 // finite. Such slots are counted.
 //
 // Inputs: position (length) and unit normal of each slot, one-rings, and points of the two-ring
-// (shared/mesh.h). Output: lib/mesh/principal.clh; counts->lowDegreeFits, where counts is not NULL.
+// (shared/mesh.h). Output: lib/mesh/mesh_frame.clh; counts->lowDegreeFits, where counts is not NULL.
 //
 // One work-item: PEL_WIDTH slots, 16 of them too.
 //
-// Variants: PEL_MESH_STRIDE (lib/mesh/mesh_slots.clh), PEL_MESH_PLANES (lib/mesh/principal.clh).
+// Variants: PEL_MESH_STRIDE (lib/mesh/mesh_slots.clh), PEL_MESH_PLANES (lib/mesh/mesh_frame.clh).
 
-#include "mesh/quadric_chart.clh"
+#include "mesh/quadric_fit.clh"
 
 // How many lanes of the `slots` that begin at `first` are set.
 static inline uint countLanes(maskw mask, uint first, uint slots) {

@@ -4,13 +4,13 @@
 // of the triangle's area that lies nearest to the slot.
 //
 // Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h). Output:
-// lib/mesh/principal.clh.
+// lib/mesh/mesh_frame.clh.
 //
 // One work-item: PEL_WIDTH slots. Each triangle is solved once for each of its corners: three times the
 // arithmetic, but no memory traffic, no second pass and no atomic sums.
 //
 // Variants: PEL_MESH_STRIDE, PEL_MESH_RUNS (lib/mesh/mesh_slots.clh), PEL_MESH_PLANES
-// (lib/mesh/principal.clh).
+// (lib/mesh/mesh_frame.clh).
 
 #include "lib/mesh/mesh_frame.clh"
 #include "lib/mesh/mesh_triangle.clh"

@@ -1,6 +1,5 @@
 // Constants of the steps before and after the scattering methods, laid out alike on host and device.
-#ifndef PEL_SHARED_BLEND
-#define PEL_SHARED_BLEND
+#pragma once
 #include "shared/diffusion.h"
 
 typedef struct PelBlendMaterial {
@@ -22,5 +21,4 @@ typedef struct PelBlendFrame {
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelBlendMaterial) == 36 && sizeof(PelBlendFrame) == 16 + 7 * 32 + 4 * PEL_DIFFUSION_IDS);
-#endif
 #endif

@@ -1,7 +1,6 @@
 // The enumerations of pellucid.h, which is checked against these lists (host/core/choices.cpp).
 // X(name, number, key); keys are those of files and of the command.
-#ifndef PEL_SHARED_CHOICES
-#define PEL_SHARED_CHOICES
+#pragma once
 // clang-format off
 
 // PelLightType
@@ -95,5 +94,3 @@ enum { PEL_EACH_SHADOW_PROJECTION(PEL_NUMBER_MAP_) PEL_MAPS };
 enum { PEL_EACH_SHADOW_CONTENT(PEL_NUMBER_CONTENT_) PEL_CONTENTS };
 enum { PEL_EACH_SPECULAR_MODEL(PEL_NUMBER_MODEL_) PEL_MODELS };
 enum { PEL_EACH_SCATTERING(PEL_NUMBER_SCATTER_) PEL_SCATTERS };
-
-#endif

@@ -1,7 +1,6 @@
 // Constants of scattering on the screen, with the same layout on host and device (docs/mathematics.md,
 // sections 9 and 10). Lengths are in the caller's unit.
-#ifndef PEL_SHARED_DIFFUSION
-#define PEL_SHARED_DIFFUSION
+#pragma once
 #include "shared/shade.h"
 
 // The surface as a pyramid of blocks of 2^l x 2^l pixels. A level is rows of planes: row y of plane p begins
@@ -102,5 +101,4 @@ typedef struct PelDiffusionFrame {
 static_assert(sizeof(PelProfileTable) == 24 && sizeof(PelPyramidLevel) == 16);
 static_assert(sizeof(PelDiffusionFrame) ==
               4 * (10 + 3 + 16 + PEL_DIFFUSION_IDS) + 4 * 32 + PEL_PYRAMID_LEVELS * 16);
-#endif
 #endif

@@ -1,8 +1,7 @@
 // Constants of eyes (section 13 of the mathematics), with the same layout on host and device. An eye's own
 // space: mm, the sclera's centre at 0, the gaze along z, PelEye.up along y. Tables are made in units of the
 // iris' radius.
-#ifndef PEL_SHARED_EYE
-#define PEL_SHARED_EYE
+#pragma once
 #include "shared/scalars.h"
 
 // The surfaces that light meets.
@@ -88,5 +87,4 @@ static inline PelUint32 irisRows(PelUint32 size) {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelEyeShape) == 48 && sizeof(PelEyeLutGrid) == 32);
 static_assert(sizeof(PelShadeEye) == 48 + 4 * (13 + 9 + 4 + 3 + 5 + PEL_AMBIENT_NODES));
-#endif
 #endif

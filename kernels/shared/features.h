@@ -1,7 +1,6 @@
 // What a variant of the shading kernel is made of, beside the formats of images (shared/formats.h): feature
 // bits (PEL_FEATURES), a compile-time number. Numbers of the scene are arguments.
-#ifndef PEL_SHARED_FEATURES
-#define PEL_SHARED_FEATURES
+#pragma once
 
 // clang-format off
 // PelFeature of the public header, each once: X(name, bit, kernel, material, key). kernel: 1 makes another
@@ -52,5 +51,3 @@ enum {
     PEL_BITS_OF_MATERIALS = 0 PEL_EACH_FEATURE(PEL_FEATURE_MATERIAL_)
 };
 // clang-format on
-
-#endif

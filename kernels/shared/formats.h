@@ -1,7 +1,6 @@
 // Formats of images. This list is the only one; PelFormat of pellucid.h is checked against it
 // (host/core/image_view.cpp).
-#ifndef PEL_SHARED_FORMATS
-#define PEL_SHARED_FORMATS
+#pragma once
 
 // clang-format off
 // X(name, number, kind, components, componentBytes, pixelBytes); 0 is an image that is not there.
@@ -34,5 +33,3 @@ enum { PEL_EACH_FORMAT(PEL_FORMAT_NUMBER_) PEL_FMT_NONE = 0 };
 // Added to a format whose pixels are not tightly packed, not aligned, or fewer in a row than the math width.
 // Such pixels are read one by one, packed ones in vectors.
 #define PEL_FMT_STRIDED 32
-
-#endif

@@ -1,7 +1,6 @@
 // Constants of methods that gather irradiance by taps, laid out alike on host and device
 // (docs/mathematics.md, section 10). Lengths are in the caller's unit.
-#ifndef PEL_SHARED_GATHER
-#define PEL_SHARED_GATHER
+#pragma once
 #include "shared/diffusion.h"
 
 // The surface under each pixel, 12 floats in a row.
@@ -60,5 +59,4 @@ typedef struct PelGatherFrame {
 static_assert(sizeof(PelGatherTap) == 48 && sizeof(PelGatherMaterial) == sizeof(PelProfileTable) + 32);
 static_assert(sizeof(PelGatherFrame) ==
               4 * (8 + 6 + 16 + PEL_DIFFUSION_IDS / 32 + PEL_DIFFUSION_IDS) + 5 * 32);
-#endif
 #endif

@@ -1,8 +1,7 @@
 // The images of a G-buffer. This list is the only one: names, checks, keys of scene files, programs and the
 // arguments of shade.cl are made from it. PelImageSlot in pellucid.h, which documents them, is checked
 // against it (host/shading/image_slots.cpp).
-#ifndef PEL_SHARED_IMAGE_SLOTS
-#define PEL_SHARED_IMAGE_SLOTS
+#pragma once
 #include "shared/features.h"
 
 // Features whose terms read the blurred normal, or the geometric one if there is no blurred one.
@@ -58,5 +57,3 @@
 #define PEL_IMAGE_ONE_(name, number, role, content, components, key, words, bits) +1
 enum { PEL_EACH_IMAGE(PEL_IMAGE_NUMBER_) PEL_IMAGE_SLOTS = 0 PEL_EACH_IMAGE(PEL_IMAGE_ONE_) };
 enum { PEL_EACH_IMAGE(PEL_IMAGE_BITS_) PEL_READ_NONE = 0 };
-
-#endif

@@ -1,7 +1,6 @@
 // Constants of sums over the texels of shadow maps, laid out alike on host and device (docs/mathematics.md,
 // section 10, "Light space"). Lengths are in the caller's unit, positions from PelDiffusionFrame.origin.
-#ifndef PEL_SHARED_LIGHT_SPACE
-#define PEL_SHARED_LIGHT_SPACE
+#pragma once
 #include "shared/diffusion.h"
 
 // The lit surface as a pyramid of blocks of 2^l x 2^l texels. A block of level 1 or coarser holds two
@@ -62,5 +61,4 @@ typedef struct PelLightMap {
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelLightMap) == 4 * (32 + 1 + 3 + 3 + 3 + 3 + 3 + 8 + 7) + 32 + PEL_LIGHT_LEVELS * 16);
-#endif
 #endif

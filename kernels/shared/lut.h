@@ -1,6 +1,5 @@
 // How a look-up table lies in memory and which texel a value belongs to; compiled by host and device.
-#ifndef PEL_SHARED_LUT
-#define PEL_SHARED_LUT
+#pragma once
 
 // How texels are spread over the axes (PelLutAxis).
 #define PEL_LUT_AXIS_LINEAR 0
@@ -26,6 +25,4 @@ typedef struct LutLayout {
 } LutLayout;
 #ifdef __cplusplus
 static_assert(sizeof(LutLayout) == 32);
-#endif
-
 #endif

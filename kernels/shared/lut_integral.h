@@ -1,8 +1,7 @@
 // What the LUT integrators share with the host: the nodes of the curvature rows and the parameters of both
 // kernels. All lengths are in units of the LUT's diffusion radius, so that no radius leaves the range of
 // float.
-#ifndef PEL_SHARED_LUT_INTEGRAL
-#define PEL_SHARED_LUT_INTEGRAL
+#pragma once
 
 // One Gaussian of a profile, as line spread weight * exp(-s^2 / 2 sigma^2) / (sigma sqrt(2 pi)); in a list,
 // sigma rises.
@@ -150,5 +149,3 @@ typedef struct RampWeight {
     float valueToSlope;
     float slopeToSlope;
 } RampWeight;
-
-#endif

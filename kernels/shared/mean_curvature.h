@@ -1,7 +1,6 @@
 // Constants of the mean curvature per pixel, with the same layout on host and device (docs/mathematics.md,
 // section 12).
-#ifndef PEL_SHARED_MEAN_CURVATURE
-#define PEL_SHARED_MEAN_CURVATURE
+#pragma once
 #include "shared/shade.h"
 
 #define PEL_CURVATURE_GROUP 64  // work-items
@@ -18,5 +17,4 @@ typedef struct PelMeanCurvature {
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelMeanCurvature) == 4 * (4 + 16 + PEL_CURVATURE_IDS) + 4 * 32);
-#endif
 #endif

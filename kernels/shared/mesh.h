@@ -3,8 +3,7 @@
 // A slot is a vertex of the topology: one vertex of the caller's mesh, or all those that were welded into
 // one. Kernels work on slots; only the first and the last pass of an operation know the caller's vertices and
 // their strides.
-#ifndef PEL_SHARED_MESH
-#define PEL_SHARED_MESH
+#pragma once
 
 // One-rings are in slices of PEL_MESH_LANES slots. A slice has as many rows as its longest list. A row holds
 // one neighbour of each of its slots side by side, so that a vector of slots, or neighbouring work-items,
@@ -83,6 +82,4 @@ typedef struct UvScaleShare {
 
 #ifdef __cplusplus
 static_assert(sizeof(VertexLayout) == 16 && sizeof(MeshCounts) == 16 && sizeof(UvScaleShare) == 16);
-#endif
-
 #endif

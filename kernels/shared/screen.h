@@ -1,6 +1,5 @@
 // Constants of a pass over the screen, with the same layout on host and device.
-#ifndef PEL_SHARED_SCREEN
-#define PEL_SHARED_SCREEN
+#pragma once
 #include "shared/shade.h"
 
 typedef struct ScreenCurvatureFrame {
@@ -14,5 +13,4 @@ typedef struct ScreenCurvatureFrame {
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(ScreenCurvatureFrame) == 20 * 4 + 4 * sizeof(PelShadeImage));
-#endif
 #endif

@@ -1,8 +1,7 @@
 // Constants of one execution of the shading pass (shading constants), with the same layout on host and
 // device. Lengths are in the caller's unit, colours are linear RGB, matrices are row-major and multiply
 // column vectors.
-#ifndef PEL_SHARED_SHADE
-#define PEL_SHARED_SHADE
+#pragma once
 #include "shared/choices.h"
 #include "shared/formats.h"
 #include "shared/image_slots.h"
@@ -183,5 +182,4 @@ static_assert(sizeof(PelTapCells) == 24);
 static_assert(sizeof(PelShadeCascade) == 4 * (16 + 4) + 32 + PEL_TAP_DISKS * sizeof(PelTapCells));
 static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64 + 8 + PEL_CASCADES * sizeof(PelShadeCascade) +
                                            PEL_TAP_DISKS * sizeof(PelTapCells));
-#endif
 #endif

@@ -1,7 +1,6 @@
 // Constants of the passes that run before shade.cl, with the same layout on host and device. Units as in
 // shared/shade.h.
-#ifndef PEL_SHARED_SHADE_PASSES
-#define PEL_SHARED_SHADE_PASSES
+#pragma once
 #include "shared/shade.h"
 
 #define PEL_BLUR_TAPS 6  // of the normal blur, to each side
@@ -61,5 +60,4 @@ typedef struct PelNormalMap {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelWideShadow) == 4 * (16 + 9 + 4 + 15) + 64);
 static_assert(sizeof(PelNormalMap) == PEL_MAP_LEVELS * 32 + 16);
-#endif
 #endif

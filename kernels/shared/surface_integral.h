@@ -1,6 +1,5 @@
 // The surface integral of a lit mesh as host and device share it (kernels/diffusion/surface_integral.cl).
-#ifndef PEL_SHARED_SURFACE_INTEGRAL
-#define PEL_SHARED_SURFACE_INTEGRAL
+#pragma once
 #include "shared/scalars.h"
 
 // The table of a profile has this many rows per doubling of the distance. A row holds M(r) = integral of R(s)
@@ -38,5 +37,4 @@ typedef struct SurfaceSum {
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(SurfaceNode) == 48 && sizeof(SurfaceTriangle) == 80 && sizeof(SurfaceSum) == 48);
-#endif
 #endif

@@ -1,7 +1,6 @@
 // Constants of scattering in texture space, laid out alike on host and device (docs/mathematics.md, section
 // 7).
-#ifndef PEL_SHARED_TEXTURE_SCATTER
-#define PEL_SHARED_TEXTURE_SCATTER
+#pragma once
 #include "shared/shade.h"
 
 #define PEL_TEXTURE_TILE 16  // texels along a side
@@ -44,5 +43,4 @@ typedef struct PelTextureSample {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelTextureFrame) == 32 + 3 * 32 && sizeof(PelTextureBlur) == 28);
 static_assert(sizeof(PelTextureSample) == 32 + 5 * 32);
-#endif
 #endif

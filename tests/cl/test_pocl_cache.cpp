@@ -15,8 +15,8 @@
 #include <pellucid/pellucid.hpp>
 #include <set>
 
+#include "cl/machine.h"
 #include "cl/pocl_cache.h"
-#include "cl/private_folder.h"
 #include "io/io_files.h"
 #include "system/process.h"
 

@@ -6,7 +6,7 @@
 #include <pellucid/pellucid.hpp>
 #include <thread>
 
-#include "cl/digest.h"
+#include "cl/binary_files.h"
 #include "cli_run.h"
 
 namespace fs = std::filesystem;

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "cli_shade.h"
-#include "io/image/npy_read.h"
+#include "io/image/image_file.h"
 #include "reference/random_walk.h"
 #include "reference/surface_integral.h"
 #include "sample/mesh.h"

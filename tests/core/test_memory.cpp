@@ -17,7 +17,8 @@
 #include <pellucid/pellucid.hpp>
 #include <thread>
 
-#include "cl/host_memory.h"
+#include "cl/error.h"
+#include "cl/machine.h"
 
 using namespace pellucid;
 

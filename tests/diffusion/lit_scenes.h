@@ -10,7 +10,6 @@
 #include "sample/gbuffer.h"
 #include "sample/lit_mesh.h"
 #include "sample/shadow_map.h"
-#include "sample/surface_light.h"
 
 namespace lit_scenes {
 

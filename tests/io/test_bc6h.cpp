@@ -9,7 +9,7 @@
 #include <set>
 
 #include "io/image/texture_file.h"
-#include "io/lut/bc6h_fit.h"
+#include "io/lut/bc6h_block.h"
 #include "io/lut/lut_file.h"
 #include "io_files.h"
 #include "tolerances.h"

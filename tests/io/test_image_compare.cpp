@@ -7,10 +7,8 @@
 #include <random>
 
 #include "io/file_error.h"
-#include "io/image/color_difference.h"
 #include "io/image/image_compare.h"
 #include "io/image/image_file.h"
-#include "io/image/npy_read.h"
 #include "io_files.h"
 #include "tolerances.h"
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/image/color_difference.h"
 #include "io/image/color_map.h"
+#include "io/image/image_compare.h"
 #include "io/image/image_file.h"
 #include "io/image/picture.h"
 #include "io/image/tone_map.h"

@@ -5,7 +5,7 @@
 
 #include "fields/field_ranges.h"
 #include "io/file_error.h"
-#include "io/image/mip_chain.h"
+#include "io/image/image_file.h"
 #include "io/scene/scene_file.h"
 #include "io_files.h"
 

@@ -1,5 +1,5 @@
 // A frame that was prepared before its pictures came: the same bits, and nothing is read or made twice.
-#include "scene/scene_programs.h"
+#include "scene/scene_frame.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,6 @@
 #include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/io_files.h"
-#include "system/library.h"
 #include "system/process.h"
 
 namespace fs = std::filesystem;

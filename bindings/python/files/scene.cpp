@@ -11,7 +11,7 @@
 
 #include "files.h"
 #include "io/scene/scene_keys.h"
-#include "scene/scene_programs.h"
+#include "scene/scene_frame.h"
 
 namespace pellucid::python {
 namespace {

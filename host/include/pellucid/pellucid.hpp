@@ -53,6 +53,19 @@ class Handle {
         *this = Handle();
         return &h_;
     }
+    // A T of the handle that a call of the C interface makes.
+    template <class T, class Create, class... Arguments>
+    static T made(Create create, Arguments... arguments) {
+        T object{H()};
+        check(create(arguments..., object.out()));
+        return object;
+    }
+    // `value`, filled in by a call of the C interface.
+    template <class Value>
+    Value filled(PelError (*get)(H, Value*), Value value) const {
+        check(get(h_, &value));
+        return value;
+    }
     H h_ = nullptr;
 };
 
@@ -60,11 +73,7 @@ class Event : public Handle<PelEvent, pelEventRetain, pelEventRelease> {
   public:
     using Handle::Handle;
     void wait() const { check(pelEventWait(h_)); }
-    bool isDone() const {
-        int done = 0;
-        check(pelEventIsDone(h_, &done));
-        return done != 0;
-    }
+    bool isDone() const { return filled(pelEventIsDone, 0) != 0; }
 };
 
 class Device : public Handle<PelDevice, pelDeviceRetain, pelDeviceRelease> {
@@ -85,16 +94,8 @@ class Device : public Handle<PelDevice, pelDeviceRetain, pelDeviceRelease> {
         for (uint32_t i = 0; i < count; ++i) check(pelDeviceEnumerate(i, &infos[i]));
         return infos;
     }
-    PelDeviceInfo info() const {
-        PelDeviceInfo info = pelDeviceInfoDefaults();
-        check(pelDeviceGetInfo(h_, &info));
-        return info;
-    }
-    PelDeviceStats stats() const {
-        PelDeviceStats stats = pelDeviceStatsDefaults();
-        check(pelDeviceGetStats(h_, &stats));
-        return stats;
-    }
+    PelDeviceInfo info() const { return filled(pelDeviceGetInfo, pelDeviceInfoDefaults()); }
+    PelDeviceStats stats() const { return filled(pelDeviceGetStats, pelDeviceStatsDefaults()); }
     void finish() const { check(pelDeviceFinish(h_)); }
     void setProgress(PelProgressCallback callback, void* user) const {
         check(pelDeviceSetProgress(h_, callback, user));
@@ -111,20 +112,12 @@ class Buffer : public Handle<PelBuffer, pelBufferRetain, pelBufferRelease> {
     Buffer(const Device& device, const std::vector<T>& initial)
         : Buffer(device, initial.size() * sizeof(T), initial.data()) {}
     static Buffer fromHost(const Device& device, void* memory, size_t bytes) {
-        Buffer buffer;
-        check(pelBufferCreateFromHost(device.get(), memory, bytes, buffer.out()));
-        return buffer;
+        return made<Buffer>(pelBufferCreateFromHost, device.get(), memory, bytes);
     }
     static Buffer fromCl(const Device& device, void* clMem) {
-        Buffer buffer;
-        check(pelBufferCreateFromCl(device.get(), clMem, buffer.out()));
-        return buffer;
+        return made<Buffer>(pelBufferCreateFromCl, device.get(), clMem);
     }
-    size_t bytes() const {
-        size_t bytes = 0;
-        check(pelBufferGetSize(h_, &bytes));
-        return bytes;
-    }
+    size_t bytes() const { return filled(pelBufferGetSize, size_t(0)); }
     void read(void* destination, size_t bytes, size_t offset = 0, const PelSubmit* submit = nullptr) const {
         check(pelBufferRead(h_, offset, bytes, destination, submit));
     }
@@ -137,11 +130,7 @@ class Buffer : public Handle<PelBuffer, pelBufferRetain, pelBufferRelease> {
     void write(const void* source, size_t bytes, size_t offset = 0, const PelSubmit* submit = nullptr) const {
         check(pelBufferWrite(h_, offset, bytes, source, submit));
     }
-    void* map() const {
-        void* memory = nullptr;
-        check(pelBufferMap(h_, &memory));
-        return memory;
-    }
+    void* map() const { return filled<void*>(pelBufferMap, nullptr); }
     void unmap() const { check(pelBufferUnmap(h_)); }
 };
 
@@ -283,11 +272,7 @@ class LiveMesh : public Handle<PelLiveMesh, pelLiveMeshRetain, pelLiveMeshReleas
         check(pelLiveMeshUpdate(h_, positions.get(), normals.get(), curvature.get(),
                                 changed.empty() ? &none : changed.data(), uint32_t(changed.size()), submit));
     }
-    PelLiveMeshStats stats() const {
-        PelLiveMeshStats stats = pelLiveMeshStatsDefaults();
-        check(pelLiveMeshGetStats(h_, &stats));
-        return stats;
-    }
+    PelLiveMeshStats stats() const { return filled(pelLiveMeshGetStats, pelLiveMeshStatsDefaults()); }
 };
 
 // Any of positions, depth and ids may be NULL, but not both of the first two.
@@ -308,32 +293,20 @@ inline void surfaceIntegral(const Device& device, const PelSurfaceIntegralDesc& 
 class Profile : public Handle<PelProfile, pelProfileRetain, pelProfileRelease> {
   public:
     using Handle::Handle;
-    static Profile skin() {
-        Profile p;
-        check(pelProfileCreateSkin(p.out()));
-        return p;
-    }
+    static Profile skin() { return made<Profile>(pelProfileCreateSkin); }
     static Profile gaussians(const std::vector<PelGaussian>& gaussians) {
-        Profile p;
-        check(pelProfileCreateGaussians(gaussians.data(), uint32_t(gaussians.size()), p.out()));
-        return p;
+        return made<Profile>(pelProfileCreateGaussians, gaussians.data(), uint32_t(gaussians.size()));
     }
     static Profile burley(const float (&meanFreePath)[3], const float (&albedo)[3],
                           PelBurleyFit fit = PEL_BURLEY_DIFFUSE_TRANSMISSION) {
-        Profile p;
-        check(pelProfileCreateBurley(meanFreePath, albedo, fit, p.out()));
-        return p;
+        return made<Profile>(pelProfileCreateBurley, meanFreePath, albedo, fit);
     }
     static Profile burleyDistance(const float (&distance)[3]) {
-        Profile p;
-        check(pelProfileCreateBurleyDistance(distance, p.out()));
-        return p;
+        return made<Profile>(pelProfileCreateBurleyDistance, distance);
     }
     // A material of the library.
     static Profile named(const std::string& name) {
-        Profile p;
-        check(pelProfileCreateNamed(name.c_str(), p.out()));
-        return p;
+        return made<Profile>(pelProfileCreateNamed, name.c_str());
     }
     static std::vector<std::string> libraryNames() {
         std::vector<std::string> names;
@@ -341,9 +314,7 @@ class Profile : public Handle<PelProfile, pelProfileRetain, pelProfileRelease> {
         return names;
     }
     static Profile dipole(const float (&absorption)[3], const float (&reducedScattering)[3], float eta) {
-        Profile p;
-        check(pelProfileCreateDipole(absorption, reducedScattering, eta, p.out()));
-        return p;
+        return made<Profile>(pelProfileCreateDipole, absorption, reducedScattering, eta);
     }
     // values: RGB per distance.
     static Profile table(const std::vector<float>& distances, const std::vector<float>& values) {
@@ -353,11 +324,7 @@ class Profile : public Handle<PelProfile, pelProfileRetain, pelProfileRelease> {
         check(pelProfileCreateTable(distances.data(), values.data(), uint32_t(distances.size()), p.out()));
         return p;
     }
-    PelProfileInfo info() const {
-        PelProfileInfo info = pelProfileInfoDefaults();
-        check(pelProfileGetInfo(h_, &info));
-        return info;
-    }
+    PelProfileInfo info() const { return filled(pelProfileGetInfo, pelProfileInfoDefaults()); }
     void setName(const std::string& name) const { check(pelProfileSetName(h_, name.c_str())); }
     // RGB per distance.
     std::vector<double> transmission(const std::vector<double>& distances) const {
@@ -399,11 +366,7 @@ class Scatter : public Handle<PelScatter, pelScatterRetain, pelScatterRelease> {
         check(pelScatterExecute(h_, &params, irradiance.get(), positions.get(), depth.get(), ids.get(),
                                 scattered.get(), submit));
     }
-    PelScatterStats stats() const {
-        PelScatterStats stats = pelScatterStatsDefaults();
-        check(pelScatterGetStats(h_, &stats));
-        return stats;
-    }
+    PelScatterStats stats() const { return filled(pelScatterGetStats, pelScatterStatsDefaults()); }
 };
 
 // Scattering in the texture of a mesh.
@@ -425,9 +388,7 @@ class TextureScatter : public Handle<PelTextureScatter, pelTextureScatterRetain,
         check(pelTextureScatterExecute(h_, &params, irradiance.get(), albedo.get(), scattered.get(), submit));
     }
     PelTextureScatterStats stats() const {
-        PelTextureScatterStats stats = pelTextureScatterStatsDefaults();
-        check(pelTextureScatterGetStats(h_, &stats));
-        return stats;
+        return filled(pelTextureScatterGetStats, pelTextureScatterStatsDefaults());
     }
 };
 
@@ -488,17 +449,9 @@ class Lut : public Handle<PelLut, pelLutRetain, pelLutRelease> {
         check(
             pelLutCreateFromTexels(device.get(), &info, texels.data(), texels.size() * sizeof(float), out()));
     }
-    PelLutInfo info() const {
-        PelLutInfo info = pelLutInfoDefaults();
-        check(pelLutGetInfo(h_, &info));
-        return info;
-    }
+    PelLutInfo info() const { return filled(pelLutGetInfo, pelLutInfoDefaults()); }
     // Texels that PEL_LUT_FACEWORKS8 clips.
-    uint64_t clippedTexels() const {
-        uint64_t clipped = 0;
-        check(pelLutCountClipped(h_, &clipped));
-        return clipped;
-    }
+    uint64_t clippedTexels() const { return filled(pelLutCountClipped, uint64_t(0)); }
     // The texels in the element type of the encoding: float, uint16_t (half) or uint8_t.
     template <class T>
     std::vector<T> read(PelLutEncoding encoding) const {
@@ -567,16 +520,8 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
         check(pelShaderGetMaterial(h_, id, &material));
         return material;
     }
-    std::string warnings() const {
-        const char* text = "";
-        check(pelShaderGetWarnings(h_, &text));
-        return text;
-    }
-    PelShaderStats stats() const {
-        PelShaderStats stats = pelShaderStatsDefaults();
-        check(pelShaderGetStats(h_, &stats));
-        return stats;
-    }
+    std::string warnings() const { return filled<const char*>(pelShaderGetWarnings, ""); }
+    PelShaderStats stats() const { return filled(pelShaderGetStats, pelShaderStatsDefaults()); }
 
   private:
     Shader& done(PelError code) {

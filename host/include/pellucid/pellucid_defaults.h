@@ -11,6 +11,14 @@
     memset(&value, 0, sizeof value); \
     value.structSize = (uint32_t)sizeof value
 
+/* PelNAME pelNAMEDefaults(void): zeros but for what the statements set in `s`. */
+#define PEL_DEFAULTS_(Name, ...)                        \
+    static inline Pel##Name pel##Name##Defaults(void) { \
+        PEL_ZEROED_(Pel##Name, s);                      \
+        __VA_ARGS__                                     \
+        return s;                                       \
+    }
+
 /* The default of a row of pellucid_fields.h, for the structure `s`. */
 #define PEL_DEFAULT_(type, name, value, ...) PEL_DEFAULT_##type##_(name, value)
 #define PEL_DEFAULT_FLOAT_(name, value) s.name = value;
@@ -25,12 +33,12 @@
 #define PEL_UNWRAPPED_(...) __VA_ARGS__
 
 /* clang-format off */
-static inline PelDeviceInfo pelDeviceInfoDefaults(void) { PEL_ZEROED_(PelDeviceInfo, s); return s; }
-static inline PelDeviceStats pelDeviceStatsDefaults(void) { PEL_ZEROED_(PelDeviceStats, s); return s; }
-static inline PelImageDesc pelImageDescDefaults(void) { PEL_ZEROED_(PelImageDesc, s); return s; }
-static inline PelMeshReport pelMeshReportDefaults(void) { PEL_ZEROED_(PelMeshReport, s); return s; }
-static inline PelMeshOrientation pelMeshOrientationDefaults(void) { PEL_ZEROED_(PelMeshOrientation, s); return s; }
-static inline PelMeshTopologyDesc pelMeshTopologyDescDefaults(void) { PEL_ZEROED_(PelMeshTopologyDesc, s); return s; }
+PEL_DEFAULTS_(DeviceInfo, )
+PEL_DEFAULTS_(DeviceStats, )
+PEL_DEFAULTS_(ImageDesc, )
+PEL_DEFAULTS_(MeshReport, )
+PEL_DEFAULTS_(MeshOrientation, )
+PEL_DEFAULTS_(MeshTopologyDesc, )
 static inline PelCurvatureParams pelCurvatureParamsDefaults(void) {
     PEL_ZEROED_(PelCurvatureParams, s);
     s.estimator = PEL_CURVATURE_QUADRIC;
@@ -38,7 +46,7 @@ static inline PelCurvatureParams pelCurvatureParamsDefaults(void) {
     s.scale = 1.0f;
     return s;
 }
-static inline PelLiveMeshStats pelLiveMeshStatsDefaults(void) { PEL_ZEROED_(PelLiveMeshStats, s); return s; }
+PEL_DEFAULTS_(LiveMeshStats, )
 static inline PelScreenCurvatureParams pelScreenCurvatureParamsDefaults(void) {
     PEL_ZEROED_(PelScreenCurvatureParams, s);
     s.scale = 1.0f;
@@ -55,12 +63,9 @@ static inline PelCurvatureLutDesc pelCurvatureLutDescDefaults(void) {
     s.axis = PEL_AXIS_ROOT;
     return s;
 }
-static inline PelShadowLutDesc pelShadowLutDescDefaults(void) {
-    PEL_ZEROED_(PelShadowLutDesc, s);
+PEL_DEFAULTS_(ShadowLutDesc,
     PEL_EACH_SHADOW_LUT_FIELD(PEL_DEFAULT_)
-    s.axis = PEL_AXIS_ROOT;
-    return s;
-}
+    s.axis = PEL_AXIS_ROOT;)
 /* As FaceWorks 1.0 makes them, for skin in millimetres: form arc, open ends, linear axes. */
 static inline PelCurvatureLutDesc pelCurvatureLutDescFaceWorks(void) {
     PEL_ZEROED_(PelCurvatureLutDesc, s);
@@ -109,21 +114,9 @@ static inline PelShadowLutDesc pelShadowLutDescFilled(PelShadowLutDesc s, const 
     s.widthMax = pelLengthOr_(s.widthMax, 1000.0 * s.widthMin);
     return s;
 }
-static inline PelSpecularLutDesc pelSpecularLutDescDefaults(void) {
-    PEL_ZEROED_(PelSpecularLutDesc, s);
-    PEL_EACH_SPECULAR_LUT_FIELD(PEL_DEFAULT_)
-    return s;
-}
-static inline PelEye pelEyeDefaults(void) {
-    PEL_ZEROED_(PelEye, s);
-    PEL_EACH_EYE_FIELD(PEL_DEFAULT_)
-    return s;
-}
-static inline PelEyeLutDesc pelEyeLutDescDefaults(void) {
-    PEL_ZEROED_(PelEyeLutDesc, s);
-    PEL_EACH_EYE_LUT_FIELD(PEL_DEFAULT_)
-    return s;
-}
+PEL_DEFAULTS_(SpecularLutDesc, PEL_EACH_SPECULAR_LUT_FIELD(PEL_DEFAULT_))
+PEL_DEFAULTS_(Eye, PEL_EACH_EYE_FIELD(PEL_DEFAULT_))
+PEL_DEFAULTS_(EyeLutDesc, PEL_EACH_EYE_LUT_FIELD(PEL_DEFAULT_))
 /* The table that belongs to an eye. */
 static inline PelEyeLutDesc pelEyeLutDescOf(const PelEye* eye) {
     PelEyeLutDesc s = pelEyeLutDescDefaults();
@@ -133,27 +126,20 @@ static inline PelEyeLutDesc pelEyeLutDescOf(const PelEye* eye) {
     s.profile = eye->irisProfile;
     return s;
 }
-static inline PelScatterParams pelScatterParamsDefaults(void) {
-    PEL_ZEROED_(PelScatterParams, s);
-    PEL_EACH_SCATTER_PARAM_FIELD(PEL_DEFAULT_)
-    return s;
-}
+PEL_DEFAULTS_(ScatterParams, PEL_EACH_SCATTER_PARAM_FIELD(PEL_DEFAULT_))
 static inline PelScatterControls pelScatterControlsDefaults(void) {
     PEL_ZEROED_(PelScatterControls, s);
     PEL_EACH_SCATTER_CONTROL_FIELD(PEL_DEFAULT_)
     s.scattering = PEL_SCATTERING_SCREEN;
     return s;
 }
-static inline PelTextureScatterDesc pelTextureScatterDescDefaults(void) { PEL_ZEROED_(PelTextureScatterDesc, s); return s; }
-static inline PelTextureScatterParams pelTextureScatterParamsDefaults(void) {
-    PEL_ZEROED_(PelTextureScatterParams, s);
+PEL_DEFAULTS_(TextureScatterDesc, )
+PEL_DEFAULTS_(TextureScatterParams,
     s.scale = 1.0f;
-    s.gaussians = 6;
-    return s;
-}
-static inline PelTextureScatterStats pelTextureScatterStatsDefaults(void) { PEL_ZEROED_(PelTextureScatterStats, s); return s; }
-static inline PelScatterStats pelScatterStatsDefaults(void) { PEL_ZEROED_(PelScatterStats, s); return s; }
-static inline PelProfileInfo pelProfileInfoDefaults(void) { PEL_ZEROED_(PelProfileInfo, s); return s; }
+    s.gaussians = 6;)
+PEL_DEFAULTS_(TextureScatterStats, )
+PEL_DEFAULTS_(ScatterStats, )
+PEL_DEFAULTS_(ProfileInfo, )
 static inline PelLutInfo pelLutInfoDefaults(void) {
     PEL_ZEROED_(PelLutInfo, s);
     s.curvature = pelCurvatureLutDescFaceWorks();
@@ -172,35 +158,26 @@ static inline PelLight pelLightDefaults(void) {
     PEL_EACH_SHADOW_MAP_FIELD(PEL_DEFAULT_)
     return s;
 }
-static inline PelMaterial pelMaterialDefaults(void) {
-    PEL_ZEROED_(PelMaterial, s);
+PEL_DEFAULTS_(Material,
     PEL_EACH_MATERIAL_FIELD(PEL_DEFAULT_)
-    s.scattering = PEL_SCATTERING_AUTO;
-    return s;
-}
-static inline PelAmbient pelAmbientDefaults(void) { PEL_ZEROED_(PelAmbient, s); return s; }
+    s.scattering = PEL_SCATTERING_AUTO;)
+PEL_DEFAULTS_(Ambient, )
 static inline PelCamera pelCameraDefaults(void) {
     PEL_ZEROED_(PelCamera, s);
     s.inverseViewProjection[0] = s.inverseViewProjection[5] = 1.0f;
     s.inverseViewProjection[10] = s.inverseViewProjection[15] = 1.0f;
     return s;
 }
-static inline PelShaderStats pelShaderStatsDefaults(void) { PEL_ZEROED_(PelShaderStats, s); return s; }
-static inline PelShaderOptions pelShaderOptionsDefaults(void) {
-    PEL_ZEROED_(PelShaderOptions, s);
-    PEL_EACH_OPTION_FIELD(PEL_DEFAULT_)
-    return s;
-}
-static inline PelSurfaceIntegralDesc pelSurfaceIntegralDescDefaults(void) {
-    PEL_ZEROED_(PelSurfaceIntegralDesc, s);
+PEL_DEFAULTS_(ShaderStats, )
+PEL_DEFAULTS_(ShaderOptions, PEL_EACH_OPTION_FIELD(PEL_DEFAULT_))
+PEL_DEFAULTS_(SurfaceIntegralDesc,
     s.millimetresPerUnit = 1.0f;
-    s.tolerance = 1e-3f;
-    return s;
-}
-static inline PelWarmUp pelWarmUpDefaults(void) { PEL_ZEROED_(PelWarmUp, s); return s; }
+    s.tolerance = 1e-3f;)
+PEL_DEFAULTS_(WarmUp, )
 /* clang-format on */
 
 #undef PEL_ZEROED_
+#undef PEL_DEFAULTS_
 #undef PEL_DEFAULT_
 #undef PEL_DEFAULT_FLOAT_
 #undef PEL_DEFAULT_UINT_

@@ -1,4 +1,4 @@
-#include "io/image/exr_header.h"
+#include "io/image/image_format.h"
 
 #include <algorithm>
 #include <cstring>
@@ -141,14 +141,13 @@ class Check {
                      std::max(1.0, double(part.data.height) / double(t.height));
         }
         taken_ += pixels * double(part.channels) * sizeof(float);
-        if (taken_ > limit_) {
+        if (taken_ > limit_)
             throw FileError(path_, std::to_string(part.display.width) + " x " +
                                        std::to_string(part.display.height) + " pixels (" +
                                        std::to_string(part.data.width) + " x " +
                                        std::to_string(part.data.height) + " of them stored) of " +
                                        std::to_string(part.channels) + " channels take " +
                                        tooLarge(taken_, uint64_t(limit_)));
-        }
         if (chunks * double(placeOfChunk) > double(file_.size()))
             damaged("it is too short for " + std::to_string(part.data.width) + " x " +
                     std::to_string(part.data.height) + " pixels");

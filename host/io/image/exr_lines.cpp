@@ -1,4 +1,4 @@
-#include "io/image/exr_lines.h"
+#include "io/image/exr_file.h"
 
 #include <Imath/half.h>
 #include <OpenEXR/openexr.h>

@@ -27,7 +27,6 @@
 
 #include "io/file_error.h"
 #include "io/image/exr_file.h"
-#include "io/image/exr_lines.h"
 #include "io/image/image_format.h"
 
 namespace pellucid::io {

@@ -6,7 +6,6 @@
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/image/picture_library.h"
-#include "io/input_file.h"
 
 namespace pellucid::io {
 namespace {
@@ -66,11 +65,10 @@ void Image::interleave(std::span<const std::string> names, float* values) const 
 
 void Image::addInterleaved(std::span<const std::string> names, std::span<const float> values,
                            ChannelType type) {
-    if (values.size() != names.size() * pixelCount()) {
+    if (values.size() != names.size() * pixelCount())
         throw std::invalid_argument("addInterleaved: " + std::to_string(values.size()) + " values for " +
                                     std::to_string(names.size()) + " channels of " + std::to_string(width) +
                                     " x " + std::to_string(height));
-    }
     for (size_t k = 0; k < names.size(); ++k) {
         Channel c{names[k], type, std::vector<float>(pixelCount())};
         for (size_t i = 0; i < c.pixels.size(); ++i) c.pixels[i] = values[i * names.size() + k];
@@ -107,10 +105,34 @@ void writeImage8(const std::string& path, int width, int height, int channels,
     const bool jpeg = extension == "jpg" || extension == "jpeg";
     if (jpeg && channels == 4) throw FileError(path, "JPEG holds no alpha; 1 or 3 channels do");
     if (pixels.size() !=
-        static_cast<size_t>(width) * static_cast<size_t>(height) * static_cast<size_t>(channels)) {
+        static_cast<size_t>(width) * static_cast<size_t>(height) * static_cast<size_t>(channels))
         throw std::invalid_argument("writeImage8: the number of bytes does not fit the size");
-    }
     writeWholeFile(path, pictureLibrary(path).encode(path, width, height, channels, pixels, srgb));
+}
+
+MipChain mipChain(int width, int height, std::vector<float> rgb) {
+    MipChain chain{{{width, height, 0}}, std::move(rgb)};
+    while (width > 1 || height > 1) {
+        const int w = std::max(width / 2, 1), h = std::max(height / 2, 1);
+        const size_t from = chain.levels.back().byteOffset / sizeof(float);
+        chain.levels.push_back({w, h, chain.texels.size() * sizeof(float)});
+        for (int y = 0; y < h; ++y)
+            for (int x = 0; x < w; ++x) {
+                // The last texel of an odd side takes its third neighbour too.
+                const int x0 = width > 1 ? 2 * x : 0, x1 = x + 1 == w ? width : x0 + 2;
+                const int y0 = height > 1 ? 2 * y : 0, y1 = y + 1 == h ? height : y0 + 2;
+                double sum[3] = {};
+                for (int j = y0; j < y1; ++j)
+                    for (int i = x0; i < x1; ++i)
+                        for (int c = 0; c < 3; ++c)
+                            sum[c] +=
+                                chain.texels[from + 3 * (size_t(j) * size_t(width) + size_t(i)) + size_t(c)];
+                for (double s : sum) chain.texels.push_back(float(s / double((x1 - x0) * (y1 - y0))));
+            }
+        width = w;
+        height = h;
+    }
+    return chain;
 }
 
 }  // namespace pellucid::io

@@ -98,4 +98,27 @@ void writeNpy(const std::string& path, std::span<const size_t> shape, std::span<
               ChannelType type = ChannelType::Float);
 void writeNpy(const std::string& path, std::span<const size_t> shape, std::span<const uint8_t> values);
 
+struct NpyArray {
+    std::vector<size_t> shape;
+    std::vector<float> values;  // C order
+};
+
+// Little-endian float16, float32, float64 or uint8 (values 0 to 255 unchanged), C order. Throws FileError:
+// missing, damaged or truncated file, another type or order.
+NpyArray readNpy(const std::string& path);
+
+struct MipLevel {
+    int width = 0, height = 0;
+    size_t byteOffset = 0;  // of its first texel in `texels`
+};
+
+// RGB float32 texels of all levels, one after another, the finest first. Each texel of a level is the mean of
+// the texels that it covers: two, or three where a side is odd, in each direction. Means of different normals
+// are shorter than 1, as they should be.
+struct MipChain {
+    std::vector<MipLevel> levels;
+    std::vector<float> texels;
+};
+MipChain mipChain(int width, int height, std::vector<float> rgb);
+
 }  // namespace pellucid::io

@@ -1,10 +1,8 @@
 #include "io/image/image_format.h"
 
 #include <array>
-#include <string_view>
 
 #include "io/file_error.h"
-#include "io/image/exr_header.h"
 #include "io/input_file.h"
 
 namespace pellucid::io {

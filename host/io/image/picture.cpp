@@ -26,15 +26,13 @@ std::string shownNumber(double value) {
 
 Picture::Picture(int w, int h, Srgb8 background) : width(w), height(h) {
     rgb.reserve(static_cast<size_t>(w) * static_cast<size_t>(h) * 3);
-    for (size_t i = 0; i < static_cast<size_t>(w) * static_cast<size_t>(h); ++i) {
+    for (size_t i = 0; i < static_cast<size_t>(w) * static_cast<size_t>(h); ++i)
         rgb.insert(rgb.end(), background.begin(), background.end());
-    }
 }
 
 Picture::Picture(int w, int h, std::vector<uint8_t> pixels) : width(w), height(h), rgb(std::move(pixels)) {
-    if (rgb.size() != static_cast<size_t>(w) * static_cast<size_t>(h) * 3) {
+    if (rgb.size() != static_cast<size_t>(w) * static_cast<size_t>(h) * 3)
         throw std::invalid_argument("Picture: the number of bytes does not fit the size");
-    }
 }
 
 void Picture::paint(int x, int y, Srgb8 color) {
@@ -82,10 +80,9 @@ Picture shrunk(const Picture& picture, int factor) {
                 }
             }
             Srgb8 mean;
-            for (size_t c = 0; c < 3; ++c) {
+            for (size_t c = 0; c < 3; ++c)
                 mean[c] = static_cast<uint8_t>(
                     std::lround(255.0f * encodeSrgb(sum[c] / static_cast<float>(count))));
-            }
             small.paint(x, y, mean);
         }
     }

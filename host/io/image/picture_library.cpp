@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "io/file_error.h"
-#include "system/library.h"
+#include "system/process.h"
 
 namespace pellucid::io {
 #ifdef PELLUCID_PNG_ONLY

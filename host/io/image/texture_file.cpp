@@ -112,9 +112,8 @@ void writeKtx2(const std::string& path, const Texture& t,
     const FormatFacts f = factsOf(t.format);
     const Bytes descriptor = formatDescriptor(t.format);
     Bytes pairs;  // a map is sorted, as the format requires for keys
-    for (const auto& [key, value] : keyValues) {
+    for (const auto& [key, value] : keyValues)
         pairs.add(uint32_t(key.size() + value.size() + 2)).text(key).zeros(1).text(value).zeros(1).align(4);
-    }
     const uint32_t descriptorAt = headerSize + levelIndexSize,
                    pairsAt = descriptorAt + uint32_t(descriptor.size());
     const uint64_t texelsAt = (pairsAt + pairs.size() + f.blockBytes - 1) / f.blockBytes * f.blockBytes;

@@ -8,7 +8,7 @@
 #include <system_error>
 #include <thread>
 
-#include "io/lut/bc6h_fit.h"
+#include "io/lut/bc6h_block.h"
 
 namespace pellucid::io {
 namespace {

@@ -1,7 +1,7 @@
 // Lines are fitted where the format interpolates: in the integers that halves are stored as. Each texel is
 // weighted by how much a step there changes its value. Candidates are then compared by the squared error of
 // the values that they decode to.
-#include "io/lut/bc6h_fit.h"
+#include "io/lut/bc6h_block.h"
 
 #include <algorithm>
 #include <cmath>

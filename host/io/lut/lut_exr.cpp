@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "io/content_hash.h"
-#include "io/image/exr_header.h"
+#include "io/image/image_format.h"
 #include "io/lut/lut_describe.h"
 
 namespace pellucid::io {

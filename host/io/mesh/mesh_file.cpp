@@ -20,12 +20,11 @@ std::string counted(size_t count, const std::string& one, const std::string& sev
 
 void checkVertices(const std::string& path, const RawMesh& raw) {
     for (size_t i = 0; i < raw.positions.size(); ++i) {
-        if (!std::isfinite(raw.positions[i])) {
+        if (!std::isfinite(raw.positions[i]))
             throw FileError(
                 path,
                 "vertex " + std::to_string(i / 3) +
                     " (counted from 0) has a position that is NaN or infinite; positions must be finite");
-        }
     }
 }
 
@@ -174,10 +173,9 @@ MeshData decodeMesh(const std::string& path, const std::string& text, const Mesh
         mesh.uvs = std::move(raw.uvs);
     }
     triangulate(mesh, raw);
-    if (mesh.triangles.empty()) {
+    if (mesh.triangles.empty())
         throw FileError(path, "has " + counted(mesh.vertexCount(), "vertex", "vertices") +
                                   " but no face with three corners; a surface was expected");
-    }
     checkOrder(mesh, options.orient);
     return mesh;
 }

@@ -148,9 +148,8 @@ RawMesh readOff(const std::string& path, const std::string& text) {
     if (!scan.nextLine()) scan.fail("is empty; an OFF file starts with a line 'OFF'");
     const std::string header(scan.words()[0]);
     const size_t prefix = header.find("OFF");
-    if (prefix == std::string::npos || prefix + 3 != header.size()) {
+    if (prefix == std::string::npos || prefix + 3 != header.size())
         scan.fail("starts with '" + header.substr(0, 20) + "'; the first line of an OFF file is 'OFF'");
-    }
     bool normals = false, uvs = false;
     const std::string flags = header.substr(0, prefix);
     if (flags != "" && flags != "C" && flags != "N" && flags != "CN" && flags != "ST" && flags != "STC" &&
@@ -172,10 +171,9 @@ RawMesh readOff(const std::string& path, const std::string& text) {
     if (vertices < 0 || faces < 0) scan.fail("the numbers of vertices and faces cannot be negative");
 
     for (long long v = 0; v < vertices; ++v) {
-        if (!scan.nextLine()) {
+        if (!scan.nextLine())
             scan.fail("ends early: " + std::to_string(vertices) + " vertices announced, " +
                       std::to_string(v) + " found");
-        }
         readPosition(scan, 0, mesh.positions);
         if (normals)
             for (size_t i = 3; i < 6; ++i) mesh.normals.push_back(scan.number(i, "normal"));
@@ -188,15 +186,13 @@ RawMesh readOff(const std::string& path, const std::string& text) {
         }
     }
     for (long long f = 0; f < faces; ++f) {
-        if (!scan.nextLine()) {
+        if (!scan.nextLine())
             scan.fail("ends early: " + std::to_string(faces) + " faces announced, " + std::to_string(f) +
                       " found");
-        }
         const long long corners = scan.integer(scan.words()[0], "number of corners");
-        if (corners < 1 || static_cast<size_t>(corners) >= scan.words().size()) {
+        if (corners < 1 || static_cast<size_t>(corners) >= scan.words().size())
             scan.fail("the face announces " + std::to_string(corners) + " corners and lists " +
                       std::to_string(scan.words().size() - 1));
-        }
         for (size_t i = 1; i <= static_cast<size_t>(corners); ++i) {
             const long long index = scan.integer(scan.words()[i], "vertex");
             if (index < 0 || index >= vertices)
@@ -237,11 +233,10 @@ RawMesh readStl(const std::string& path, const std::string& text) {
     RawMesh mesh;
     StlVertices vertices(mesh);
     TextScan scan(path, text);
-    if (!scan.nextLine() || scan.words()[0] != "solid") {
+    if (!scan.nextLine() || scan.words()[0] != "solid")
         throw FileError(path, "is not an STL file: it neither starts with 'solid' nor has the " +
                                   std::to_string(stlHeader) + " + 50 x facets bytes of a binary one (" +
                                   std::to_string(text.size()) + " bytes: cut off?)");
-    }
     size_t inFacet = 0;
     bool ended = false;
     while (scan.nextLine()) {

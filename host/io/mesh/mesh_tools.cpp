@@ -2,10 +2,14 @@
 #include <OpenMesh/Tools/Subdivider/Uniform/LoopT.hh>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
+#include "io/atomic_file.h"
 #include "io/file_error.h"
+#include "io/image/color_map.h"
 #include "io/mesh/mesh_file.h"
 #include "io/mesh/quiet_open_mesh.h"
 
@@ -39,9 +43,8 @@ std::vector<uint32_t> firstAtPosition(const std::vector<float>& positions) {
         const auto ka = key(a), kb = key(b);
         return ka != kb ? ka < kb : a < b;
     });
-    for (size_t i = 0; i < count; ++i) {
+    for (size_t i = 0; i < count; ++i)
         first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
-    }
     return first;
 }
 
@@ -70,9 +73,8 @@ void computeNormals(MeshData& mesh) {
         const Vec& sum = sums[first[v]];
         const double size = length(sum);
         const bool usable = size > 1e-12;  // else unreferenced, or two faces back to back
-        for (size_t k = 0; k < 3; ++k) {
+        for (size_t k = 0; k < 3; ++k)
             mesh.normals[3 * v + k] = usable ? static_cast<float>(sum[k] / size) : (k == 2 ? 1.0f : 0.0f);
-        }
     }
 }
 
@@ -88,11 +90,10 @@ void loopSubdivide(MeshData& mesh, int levels) {
         const uint32_t* corner = &mesh.triangles[3 * t];
         const bool repeated = corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0];
         OpenMesh::FaceHandle face;
-        if (!repeated) {
+        if (!repeated)
             face = topology.add_face(OpenMesh::VertexHandle(static_cast<int>(corner[0])),
                                      OpenMesh::VertexHandle(static_cast<int>(corner[1])),
                                      OpenMesh::VertexHandle(static_cast<int>(corner[2])));
-        }
         if (face.is_valid()) continue;
         throw FileError(
             mesh.source,
@@ -145,10 +146,42 @@ float scaleToHeight(MeshData& mesh, float height, int axis) {
     const float extent = high[axis] - low[axis];
     if (!(extent > 0)) throw FileError(mesh.source, "is flat along the axis it should be scaled to");
     const float factor = height / extent;
-    for (size_t i = 0; i < mesh.positions.size(); ++i) {
+    for (size_t i = 0; i < mesh.positions.size(); ++i)
         mesh.positions[i] = (mesh.positions[i] - (low[i % 3] + high[i % 3]) / 2) * factor;
-    }
     return factor;
+}
+
+static_assert(std::endian::native == std::endian::little, "the PLY below is written as the memory lies");
+
+void writePly(const std::string& path, const MeshData& mesh, std::span<const float> quality, float low,
+              float high) {
+    if (quality.size() != mesh.vertexCount())
+        throw std::invalid_argument("writePly: " + std::to_string(quality.size()) + " values for " +
+                                    std::to_string(mesh.vertexCount()) + " vertices; one each is needed");
+    const bool normals = !mesh.normals.empty();
+    std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                      std::to_string(mesh.vertexCount()) +
+                      "\nproperty float x\nproperty float y\nproperty float z\n";
+    if (normals) out += "property float nx\nproperty float ny\nproperty float nz\n";
+    out +=
+        "property float quality\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement "
+        "face " +
+        std::to_string(mesh.triangleCount()) + "\nproperty list uchar int vertex_indices\nend_header\n";
+    const auto append = [&out](const void* bytes, size_t count) {
+        out.append(static_cast<const char*>(bytes), count);
+    };
+    for (size_t v = 0; v < mesh.vertexCount(); ++v) {
+        append(&mesh.positions[3 * v], 12);
+        if (normals) append(&mesh.normals[3 * v], 12);
+        append(&quality[v], 4);
+        const Srgb8 color = scaleColor(quality[v], low, high);
+        append(color.data(), 3);
+    }
+    for (size_t t = 0; t < mesh.triangles.size(); t += 3) {
+        out += '\3';
+        append(&mesh.triangles[t], 12);
+    }
+    writeWholeFile(path, out);
 }
 
 }  // namespace pellucid::io

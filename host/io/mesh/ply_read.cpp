@@ -129,19 +129,17 @@ void checkElements(const std::string& path, const Header& header) {
             vertices = true;
             for (const char* axis : {"x", "y", "z"}) {
                 const Property* p = e.find(axis);
-                if (!p || p->count || !p->type->isFloat) {
+                if (!p || p->count || !p->type->isFloat)
                     throw FileError(path, std::string("vertices need '") + axis + "' as one float or double",
                                     e.line);
-                }
             }
         }
         if (e.name == "face") {
             faces = true;
             const Property* p = e.find("vertex_indices");
             if (!p) p = e.find("vertex_index");
-            if (!p || !p->count || p->type->isFloat || p->count->isFloat) {
+            if (!p || !p->count || p->type->isFloat || p->count->isFloat)
                 throw FileError(path, "faces need a list of whole numbers named vertex_indices", e.line);
-            }
         }
     }
     if (!vertices) throw FileError(path, "has no element 'vertex'");

@@ -18,11 +18,10 @@ void readLut(TomlReader& reader, SceneFile& scene, PelLutKind kind, LutPreset pr
     lut.line = reader.line();
     reader.choice("preset", preset, lutPresets);
     lut.info = presetInfo(preset, kind);
-    if (kind == PEL_LUT_CURVATURE) {
+    if (kind == PEL_LUT_CURVATURE)
         curvatureLutKeys(reader, lut);
-    } else {
+    else
         shadowLutKeys(reader, lut);
-    }
     if (lut.name.empty()) reader.fail("name", "is missing; materials need it to refer to this table");
     if (scene.lut(lut.name, kind)) reader.fail("name", "is used twice; give each table a name of its own");
     for (const char* key : {"profile", "preset"})
@@ -87,16 +86,14 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
         channels.fail("normal_shading", "is missing; nothing can be shaded without normals");
     std::set<uint32_t> ids;
     for (const SceneMaterial& m : scene.materials) {
-        if (!ids.insert(m.id).second) {
+        if (!ids.insert(m.id).second)
             throw FileError(scene.source, "material id " + std::to_string(m.id) + " is used twice", m.line);
-        }
         if (m.material.thicknessTaps != 0 && m.material.thicknessTaps != 8 &&
-            m.material.thicknessTaps != 16 && m.material.thicknessTaps != 32) {
+            m.material.thicknessTaps != 16 && m.material.thicknessTaps != 32)
             throw FileError(scene.source,
                             "'thickness_taps' is " + std::to_string(m.material.thicknessTaps) +
                                 "; 0, 8, 16 or 32 would be right",
                             m.line);
-        }
         if (!m.normalMap.empty())
             for (const auto& [slot, key] : {std::pair{PEL_SLOT_UV, "uv"}, {PEL_SLOT_TANGENT, "tangent"}})
                 if (scene.channels[slot].empty())

@@ -1,5 +1,6 @@
 #include "system/process.h"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/file.h>
@@ -151,6 +152,23 @@ size_t filesLeft() {
     std::error_code error;
     for (fs::directory_iterator at("/dev/fd", error), end; !error && at != end; at.increment(error)) ++taken;
     return limit.rlim_cur > taken ? size_t(limit.rlim_cur - taken) : 0;
+}
+
+void* openLibrary(const std::string& name, std::string& why) {
+    void* library = ::dlopen(name.c_str(), RTLD_LAZY | RTLD_LOCAL);
+    if (!library) why = ::dlerror();
+    return library;
+}
+
+void* symbolIn(void* library, const char* name) {
+    return ::dlsym(library, name);
+}
+
+std::string folderOf(const void* address) {
+    Dl_info where{};
+    if (!::dladdr(address, &where) || !where.dli_fname) return {};
+    const std::string file = where.dli_fname;
+    return file.substr(0, file.rfind('/') + 1);
 }
 
 }  // namespace pel::system

@@ -1,10 +1,57 @@
-#include "eye/eye_constants.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "cl/error.h"
+#include "core/check_range.h"
+#include "eye/eye.h"
+
 namespace pel {
+
+double EyeShape::sag(double r) const {
+    return r * r / (cornea * (1 + std::sqrt(std::max(0.0, 1 - (1 + conic) * r * r / (cornea * cornea)))));
+}
+
+double EyeShape::slope(double r) const {
+    return r / (cornea * std::sqrt(std::max(1e-12, 1 - (1 + conic) * r * r / (cornea * cornea))));
+}
+
+EyeShape::EyeShape(const PelEyeLutDesc& d, const char* structure)
+    : sclera(d.scleraRadius),
+      cornea(d.corneaRadius),
+      conic(d.corneaConic),
+      limbus(d.limbusRadius),
+      iris(d.irisRadius > 0 ? d.irisRadius : d.limbusRadius),
+      concavity(d.irisConcavity) {
+    if (limbus >= sclera)
+        invalidArgument(structure, ".limbusRadius is ", limbus, "; it must be below scleraRadius, ", sclera);
+    // Keeps the slope finite at the edge of the cornea.
+    if ((1 + conic) * limbus * limbus > 0.98 * cornea * cornea)
+        invalidArgument(structure, ".limbusRadius is ", limbus, "; a cornea of corneaRadius ", cornea,
+                        " and corneaConic ", conic, " is only ", cornea / std::sqrt(1 + conic),
+                        " wide; the limbus may be at most 0.98 of that");
+    if (iris > limbus)
+        invalidArgument(structure, ".irisRadius is ", iris, "; it must not exceed limbusRadius, ", limbus);
+    limbusZ = std::sqrt(sclera * sclera - limbus * limbus);
+    apexZ = limbusZ + sag(limbus);
+    irisZ = apexZ - d.chamberDepth;
+    if (d.chamberDepth < sag(iris))
+        invalidArgument(structure, ".chamberDepth is ", d.chamberDepth,
+                        "; the iris would cut through the cornea, which lies ", sag(iris),
+                        " below its apex at the rim of the iris: at least that is needed");
+    if (irisZ - concavity <= -sclera || std::hypot(iris, irisZ) > sclera)
+        invalidArgument(structure, ".chamberDepth is ", d.chamberDepth, " and irisConcavity ", concavity,
+                        "; the iris would leave the sclera, of scleraRadius ", sclera);
+    // Light reaches a point of the cornea above the point's own horizon and above that of the sclera.
+    largestAngle = 0;
+    for (int i = 1; i <= 256; ++i) {
+        const double r = limbus * i / 256, z = apexZ - sag(r), far = std::hypot(r, z);
+        const double local = std::atan(slope(r)),
+                     past = std::atan2(r, z) + std::acos(std::min(1.0, sclera / far));
+        largestAngle = std::max(largestAngle, std::numbers::pi / 2 + std::min(local, past));
+    }
+}
+
 namespace {
 
 // Steps of the integral over directions from one point of the iris: its error is below 1e-3.
@@ -130,6 +177,57 @@ PelShadeEye describeEye(const PelEye& eye, const AmbientNodes& ambient, double m
     to.tearIndex = eye.tearIndex;
     std::copy(ambient.begin(), ambient.end(), to.ambient);
     return to;
+}
+
+namespace {
+
+// Returns false for a vector of length 0.
+bool normalize(double (&v)[3]) {
+    const double length = std::hypot(v[0], v[1], v[2]);
+    if (!(length > 0)) return false;
+    for (double& c : v) c /= length;
+    return true;
+}
+
+void checkFinite(const char* field, const float (&v)[3]) {
+    for (int i = 0; i < 3; ++i)
+        if (!std::isfinite(v[i]))
+            invalidArgument("PelEye.", field, "[", i, "] is ", v[i], "; it must be finite");
+}
+
+}  // namespace
+
+PelEye resolvedEye(const PelEye& given) {
+    const char* structure = "PelEye";
+    const PelEye& fields = given;
+    PEL_EACH_EYE_FIELD(PEL_CHECK_RANGE)
+    PelEye eye = given;
+    if (eye.irisRadius == 0) eye.irisRadius = eye.limbusRadius;
+    checkEyeLutWork(pelEyeLutDescOf(&eye), structure);
+    if (eye.pupilRadius >= eye.irisRadius)
+        invalidArgument("PelEye.pupilRadius is ", eye.pupilRadius,
+                        "; it must be less than the radius of the iris, ", eye.irisRadius);
+    checkFinite("center", eye.center);
+    checkFinite("gaze", eye.gaze);
+    checkFinite("up", eye.up);
+    double g[3] = {eye.gaze[0], eye.gaze[1], eye.gaze[2]}, u[3] = {eye.up[0], eye.up[1], eye.up[2]};
+    if (!normalize(g)) invalidArgument("PelEye.gaze is (0, 0, 0); a direction is needed");
+    if (!normalize(u)) invalidArgument("PelEye.up is (0, 0, 0); a direction is needed");
+    const double along = u[0] * g[0] + u[1] * g[1] + u[2] * g[2];
+    for (int i = 0; i < 3; ++i) u[i] -= along * g[i];
+    if (std::abs(along) > 0.99999 || !normalize(u))
+        invalidArgument("PelEye.up is parallel to PelEye.gaze; a direction that is not would be right");
+    for (int i = 0; i < 3; ++i) {
+        eye.gaze[i] = float(g[i]);
+        eye.up[i] = float(u[i]);
+    }
+    return eye;
+}
+
+void checkEyeLutDesc(const PelEyeLutDesc& fields) {
+    const char* structure = "PelEyeLutDesc";
+    PEL_EACH_EYE_LUT_FIELD(PEL_CHECK_RANGE)
+    checkEyeLutWork(fields, structure);
 }
 
 }  // namespace pel

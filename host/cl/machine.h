@@ -1,0 +1,60 @@
+// What host/cl asks of the operating system: memory, private folders, and whether this process is a fork.
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace pel::cl {
+
+// Whole pages of zeros, all committed: systems promise more memory than they have, and end the process that
+// touches the last page.
+// nullptr if there is not enough.
+void* mapPages(size_t bytes);
+// Zeros whose pages come when they are touched, by whichever thread does so.
+void* mapZeros(size_t bytes);
+// Of either.
+void unmapPages(void* at, size_t bytes);
+
+// nullptr if there is not enough. `bytes` is a multiple of `alignment`, a power of two.
+void* allocateAligned(size_t alignment, size_t bytes);
+void freeAligned(void* at);
+
+// Throws PEL_ERROR_OUT_OF_MEMORY if so many more bytes would use what drivers and others need of the machine,
+// of the process's control group or of its address space (ulimit -v). When that is used up, processes end
+// without an error.
+void requireMemory(uint64_t bytes, const char* what);
+
+// Private folders: they hold machine code that this process will run, so nobody else may write there.
+
+// This user's cache folders, the preferred one first: XDG_CACHE_HOME, ~/.cache by HOME, ~/.cache by the
+// user's entry in the system. Relative paths are ignored, as the XDG base directory specification says. They
+// need not exist.
+std::vector<std::filesystem::path> cacheHomes();
+
+// Makes the folder and its missing parents, for this user alone. False if that is not possible.
+bool makePrivateFolder(const std::filesystem::path& folder);
+
+// The reason why others could change files in the folder or replace the folder; "" if they cannot. The folder
+// and all its parents must belong to this user or root. Others may write to a parent only if they cannot
+// rename files of other users there (as in /tmp).
+std::string whyNotPrivate(const std::filesystem::path& folder);
+
+// The system's reason why this process cannot make files in the folder; "" if it can.
+std::string whyNotWritable(const std::filesystem::path& folder);
+
+// Bytes that can still be written there; 0 if none.
+uint64_t roomIn(const std::filesystem::path& folder);
+
+// Forked processes. OpenCL drivers have threads, and a fork has none of them: it would wait for them for
+// ever.
+
+// To be called before the first use of OpenCL: from now on this process may use it. Throws as checkProcess
+// does.
+void claimProcess();
+// Whether this process is a fork of the owner.
+bool isFork();
+// Throws PEL_ERROR_INVALID_STATE in a fork.
+void checkProcess();
+
+}  // namespace pel::cl
