@@ -49,8 +49,9 @@ class BlurNormals final : public Pass {
         cl::Launch launch(program(), "prepare_normals", work.constants.frameMemory(), work.plan.tileLists);
         for (PelImageSlot slot :
              {PEL_SLOT_MATERIAL, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_POSITION, PEL_SLOT_DEPTH})
-            launch.args(memoryOf(images[slot]), normals_.memory(), positions_->memory(), tags_->memory(),
-                        cl_uint(work.plan.scratchPlane));
+            launch.arg(memoryOf(images[slot]));
+        launch.args(normals_.memory(), positions_->memory(), tags_->memory(),
+                    cl_uint(work.plan.scratchPlane));
         work.launch(launch, tileRange(work.device, work.tiles()));
         blur(work, false);
     }

@@ -46,6 +46,11 @@ void checkContent(const ImageView& view, Content content, const char* what) {
     if (right) invalidArgument("the ", what, " image has format ", view.info().name, "; it needs ", right);
 }
 
+void checkChoice(std::string_view structure, const char* field, int value, int count, const char* type) {
+    if (value < 0 || value >= count)
+        invalidArgument(structure, ".", field, " is ", value, ", which is none of ", type);
+}
+
 bool isUnit(const float (&v)[3]) {
     const double length2 = double(v[0]) * v[0] + double(v[1]) * v[1] + double(v[2]) * v[2];
     return length2 > 0.998 && length2 < 1.002;
@@ -106,11 +111,8 @@ void checkMaterial(const PelMaterial& m) {
     const char* structure = "PelMaterial";
     const PelMaterial& fields = m;
     PEL_EACH_MATERIAL_FIELD(PEL_CHECK_RANGE)
-    if (unsigned(m.specularModel) >= PEL_MODELS)
-        invalidArgument("PelMaterial.specularModel is ", int(m.specularModel),
-                        ", which is none of PelSpecularModel");
-    if (unsigned(m.scattering) >= PEL_SCATTERS)
-        invalidArgument("PelMaterial.scattering is ", int(m.scattering), ", which is none of PelScattering");
+    checkChoice(structure, "specularModel", m.specularModel, PEL_MODELS, "PelSpecularModel");
+    checkChoice(structure, "scattering", m.scattering, PEL_SCATTERS, "PelScattering");
     if (m.thicknessTaps & (m.thicknessTaps - 1))
         invalidArgument("PelMaterial.thicknessTaps is ", m.thicknessTaps, "; it must be 0, 8, 16 or 32");
 }
@@ -120,14 +122,9 @@ void checkLight(const PelLight& l, uint32_t index) {
     const PelLight& fields = l;
     PEL_EACH_LIGHT_FIELD(PEL_CHECK_RANGE)
     PEL_EACH_SHADOW_MAP_FIELD(PEL_CHECK_RANGE)
-    if (unsigned(l.shadowContent) >= PEL_CONTENTS)
-        invalidArgument(name, ".shadowContent is ", int(l.shadowContent),
-                        ", which is none of PelShadowContent");
-    if (unsigned(l.shadowProjection) >= PEL_MAPS)
-        invalidArgument(name, ".shadowProjection is ", int(l.shadowProjection),
-                        ", which is none of PelShadowProjection");
-    if (unsigned(l.type) >= PEL_TYPES)
-        invalidArgument(name, ".type is ", int(l.type), ", which is none of PelLightType");
+    checkChoice(structure, "shadowContent", l.shadowContent, PEL_CONTENTS, "PelShadowContent");
+    checkChoice(structure, "shadowProjection", l.shadowProjection, PEL_MAPS, "PelShadowProjection");
+    checkChoice(structure, "type", l.type, PEL_TYPES, "PelLightType");
     if (l.type == PEL_LIGHT_DIRECTIONAL) {
         checkFinite(name.c_str(), "toLight", l.toLight, 3);
         if (!isUnit(l.toLight))
@@ -176,9 +173,7 @@ void checkOptions(const PelShaderOptions& options) {
     const char* structure = "PelShaderOptions";
     const PelShaderOptions& fields = options;
     PEL_EACH_OPTION_FIELD(PEL_CHECK_RANGE)
-    if (options.tileLists > PEL_TILES_NO_LIST)
-        invalidArgument("PelShaderOptions.tileLists is ", int(options.tileLists),
-                        ", which is none of PelTileLists");
+    checkChoice(structure, "tileLists", options.tileLists, PEL_TILES_NO_LIST + 1, "PelTileLists");
 }
 
 namespace {

@@ -92,9 +92,9 @@ class NormalMap final : public Pass {
                               work.constants.materials(), work.plan.tileLists);
             for (PelImageSlot slot : {PEL_SLOT_MATERIAL, geometricNormalSlot(state), PEL_SLOT_UV,
                                       PEL_SLOT_UV_GRADIENT, PEL_SLOT_TANGENT})
-                launch.args(memoryOf(state.images[slot]), constants_[k].memory(),
-                            memoryOf(state.materials.at(ids_[k]).normalMap[0]),
-                            memoryOf(state.images[PEL_SLOT_NORMAL_BLURRED]), cl_uint(work.plan.scratchPlane));
+                launch.arg(memoryOf(state.images[slot]));
+            launch.args(constants_[k].memory(), memoryOf(state.materials.at(ids_[k]).normalMap[0]),
+                        memoryOf(state.images[PEL_SLOT_NORMAL_BLURRED]), cl_uint(work.plan.scratchPlane));
             work.launch(launch, tileRange(work.device, work.tiles()));
         }
     }

@@ -126,10 +126,11 @@ class WideShadow final : public Pass {
                           work.constants.lights(), plan.tileLists, plan.counters);
         for (PelImageSlot slot :
              {PEL_SLOT_MATERIAL, geometricNormalSlot(plan.state), PEL_SLOT_POSITION, PEL_SLOT_DEPTH})
-            launch.args(memoryOf(plan.state.images[slot]), filtered.constants, cl_uint(filtered.index));
+            launch.arg(memoryOf(plan.state.images[slot]));
+        launch.args(filtered.constants, cl_uint(filtered.index));
         for (uint32_t i = 0; i < PEL_CASCADES; ++i)
-            launch.args(i < cascadesOf(light) ? memoryOf(*shadowCascade(light, i).map) : cl::Memory(),
-                        plan.bounds, images_->memory(), pixels);
+            launch.arg(i < cascadesOf(light) ? memoryOf(*shadowCascade(light, i).map) : cl::Memory());
+        launch.args(plan.bounds, images_->memory(), pixels);
         work.launch(launch, tileRange(work.device, work.tiles()));
     }
 

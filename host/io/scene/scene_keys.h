@@ -166,13 +166,4 @@ void shadowLutKeys(Visitor& v, Lut& l) {
     PEL_EACH_SHADOW_LUT_FIELD(PELLUCID_FIELD_KEY)
 }
 
-#undef PELLUCID_FIELD_KEY
-#undef PELLUCID_KEY_FLOAT
-#undef PELLUCID_KEY_FREE
-#undef PELLUCID_KEY_UINT
-#undef PELLUCID_KEY_FREE_UINT
-#undef PELLUCID_KEY_COLOR
-#undef PELLUCID_KEY_VECTOR
-#undef PELLUCID_KEY_MATRIX
-
 }  // namespace pellucid::io
