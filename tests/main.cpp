@@ -1,5 +1,5 @@
 // Runs the cases of a test program. Ends with 77 where none failed and some were skipped, so that CTest says
-// so, and with 1 where handles or OpenCL objects are left (host/core/left_objects.cpp, tests/cl/cl_spy.cpp).
+// so, and with 1 where handles or OpenCL objects are left (host/core/handle_table.cpp, tests/cl/cl_spy.cpp).
 #include <gtest/gtest.h>
 
 #include <cstdlib>

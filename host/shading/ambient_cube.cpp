@@ -27,11 +27,9 @@ class CubeNodes final : public Pass {
     }
     size_t bytes() const override { return nodes_ ? nodes_->bytes() : 0; }
 
-    std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
+    std::vector<cl::ProgramKey> programs(const Device&, const ShaderPlan& plan) const override {
         return {{{"shading/ambient_cube.cl"},
-                 {{"PEL_GROUP", launchPolicy(device).texels},
-                  {"PEL_WIDTH", "1"},
-                  {"PEL_FORMAT_CUBE", formatCode(plan.state.*Faces, 1)}}}};
+                 {{"PEL_WIDTH", "1"}, {"PEL_FORMAT_CUBE", formatCode(plan.state.*Faces, 1)}}}};
     }
 
     void enqueueFrame(PassWork& work) const override {

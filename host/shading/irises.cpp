@@ -33,14 +33,13 @@ class Irises final : public Pass {
     }
     size_t bytes() const override { return texels_ ? texels_->bytes() : 0; }
 
-    std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
+    std::vector<cl::ProgramKey> programs(const Device&, const ShaderPlan& plan) const override {
         std::vector<cl::ProgramKey> keys;
         for (const auto& [id, material] : plan.state.materials)
             if (material.eye)
-                keys.push_back({{"eye/iris_texels.cl"},
-                                {{"PEL_GROUP", launchPolicy(device).texels},
-                                 {"PEL_WIDTH", "1"},
-                                 {"PEL_FORMAT_IRIS", formatCode(material.eye->iris, 1)}}});
+                keys.push_back(
+                    {{"eye/iris_texels.cl"},
+                     {{"PEL_WIDTH", "1"}, {"PEL_FORMAT_IRIS", formatCode(material.eye->iris, 1)}}});
         return keys;
     }
 

@@ -3,6 +3,7 @@
 // passes: the list comes from host/api/shader.cpp.
 #pragma once
 #include <memory>
+#include <span>
 
 #include "shading/shader_plan.h"
 
@@ -88,6 +89,33 @@ template <class P>
 constexpr PassKind passKind(uint32_t methods = 0) {
     return {P::needed, [] { return std::unique_ptr<Pass>(std::make_unique<P>()); }, methods};
 }
+
+// The passes of a shader, and the memory that they share.
+class PassList {
+  public:
+    PassList() = default;
+    explicit PassList(std::span<const PassKind> kinds) : kinds_(kinds), passes_(kinds.size()) {}
+
+    // Makes the needed passes and drops the others. Their images hold as many rows of tiles as
+    // PelShaderOptions.scratchBudget, memory and `mostRows` allow.
+    void allocate(const Ref<Device>& device, ShaderPlan& plan, uint32_t mostRows);
+    size_t bytes() const;
+    // That the passes of a plan will take, if one of them works on the whole frame at a time; else 0.
+    uint64_t bytesOfWholeFrame(const ShaderPlan& plan);
+    bool empty() const { return kinds_.empty(); }
+
+    template <class Call>
+    void each(Call&& call) const {
+        for (const auto& pass : passes_)
+            if (pass) call(*pass);
+    }
+
+  private:
+    PassScratch choose(const ShaderPlan& plan);
+
+    std::span<const PassKind> kinds_;
+    std::vector<std::unique_ptr<Pass>> passes_;  // one for each kind; empty: not needed
+};
 
 // The passes of this folder, each in a file beside its kernel's.
 extern const PassKind ambientCubePass, classifyTilesPass, blurNormalsPass, normalMapPass, shadowBoundsPass,

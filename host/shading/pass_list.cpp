@@ -1,4 +1,4 @@
-#include "shading/pass_list.h"
+#include "shading/pass.h"
 
 #include <algorithm>
 

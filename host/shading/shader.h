@@ -5,7 +5,7 @@
 #include <string>
 
 #include "shading/material.h"
-#include "shading/pass_list.h"
+#include "shading/pass.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
