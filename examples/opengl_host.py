@@ -1,8 +1,9 @@
 """A deferred renderer in OpenGL that hands its G-buffer to Pellucid: opengl_host.py PICTURE.png
 
-It draws a ring of jade before a wall with shaders of its own, reads back what they wrote, and gives Pellucid the very matrices that it
-gave to OpenGL. Rows that OpenGL counts from below are turned by the projection for the G-buffer; the shadow map stays as it is, and
-`first_row` says so. Works with any OpenGL 3.3 through EGL: a GPU's driver, or Mesa without one.
+It draws a ring of jade before a wall with shaders of its own, reads back what they wrote, and gives Pellucid
+the very matrices that it gave to OpenGL. Rows that OpenGL counts from below are turned by the projection for
+the G-buffer; the shadow map stays as it is, and `first_row` says so. Works with any OpenGL 3.3 through EGL: a
+GPU's driver, or Mesa without one.
 Install: pip install pellucid moderngl
 """
 
@@ -72,7 +73,8 @@ GBUFFER = """#version 330 core
 in vec3 p, n; flat in float m; layout(location = 0) out vec4 position; layout(location = 1) out vec4 normal;
 void main() { position = vec4(p, m); normal = vec4(normalize(n), 0.0); }"""
 DEPTH = """#version 330 core
-in vec3 p, n; flat in float m; layout(location = 0) out float depth; void main() { depth = gl_FragCoord.z; }"""
+in vec3 p, n; flat in float m; layout(location = 0) out float depth;
+void main() { depth = gl_FragCoord.z; }"""
 
 # Geometry, as this renderer keeps it: the ring is material 1, the wall behind it material 2.
 ring, ring_normals, ring_faces = torus()

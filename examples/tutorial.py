@@ -33,7 +33,8 @@ curvature = topology.curvature(mesh.positions, mesh.normals, smoothing_passes=2)
 renderer, orbit = Renderer(), Orbit(azimuth=25)
 renderer.set_mesh(mesh, curvature, mm)
 orbit.frame(mesh.low, mesh.high, aspect=1)
-eye, matrix = orbit.matrices(mesh.up, mesh.front, np.add(mesh.low, mesh.high) / 2, 2 * renderer.radius, aspect=1)
+middle = np.add(mesh.low, mesh.high) / 2
+eye, matrix = orbit.matrices(mesh.up, mesh.front, middle, 2 * renderer.radius, aspect=1)
 g = renderer.gbuffer(matrix, 480, 480)
 depth, light = renderer.shadow_map(direction(mesh.up, mesh.front, azimuth=100, elevation=20), 1024, mesh.up)
 light.shadow_filter_texels = 48  # shadows are made from the map
@@ -41,8 +42,10 @@ light.shadow_filter_texels = 48  # shadows are made from the map
 # 4. Shade it: plain on the left, scattering on the right.
 picture = np.zeros((480, 960, 3), np.float32)
 other = pel.Material(scattering="none", specular=0.0, shadow_filter_width=1 / mm)
-for half, skin in enumerate([pel.Material(specular=0.3, shadow_filter_width=1 / mm), pel.Material(profile="skin", specular=0.3)]):
-    shader = pel.Shader(device).set_options(millimetres_per_unit=mm).set_image("radiance", picture[:, 480 * half:][:, :480])
+plain = pel.Material(specular=0.3, shadow_filter_width=1 / mm)
+for half, skin in enumerate([plain, pel.Material(profile="skin", specular=0.3)]):
+    shader = pel.Shader(device).set_options(millimetres_per_unit=mm)
+    shader.set_image("radiance", picture[:, 480 * half:][:, :480])
     for slot in ("position", "normal_geometric", "normal_shading", "curvature", "albedo", "material"):
         shader.set_image(slot, getattr(g, slot))
     for id in np.unique(g.material[g.material > 0]):  # 1 is skin; the eyes and teeth of the head have others
@@ -50,5 +53,6 @@ for half, skin in enumerate([pel.Material(specular=0.3, shadow_filter_width=1 / 
     for id, model in eyes_of(mesh, mm=mm).items():
         shader.set_eye(id, model)
     shader.set_lights([light]).set_light_image(0, "shadow_map", depth)
-    shader.set_ambient(pel.Ambient(constant=[0.05] * 3)).set_camera(pel.Camera(position=eye)).commit().execute()
+    shader.set_ambient(pel.Ambient(constant=[0.05] * 3)).set_camera(pel.Camera(position=eye))
+    shader.commit().execute()
 files.write_image(a.picture, picture)

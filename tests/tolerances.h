@@ -421,7 +421,8 @@ inline constexpr Tolerance lightTails{"lightTails", 0.04, "the same in the tails
 inline constexpr Tolerance lightHalves{"lightHalves", 2e-6, "the same sums in another order"};
 inline constexpr Tolerance lightsAddUp{
     "lightsAddUp", 2e-2,
-    "relative, RMS, on a ball narrower than the profile's radius: hidden mass is known if either light shows "
+    "relative, RMS, on a ball narrower than the profile's radius: hidden weight is known if either light "
+    "shows "
     "it, and bounds on what a slope takes away do not add up; 0.016 measured, 0.001 on one five times wider"};
 inline constexpr Tolerance scatterLeftOut{
     "scatterLeftOut", 1.6,
@@ -448,7 +449,7 @@ inline constexpr Tolerance lightThroughBall{"lightThroughBall", 0.12,
                                             "texels half as wide as their distance are 10 % off"};
 inline constexpr Tolerance hiddenThroughBall{"hiddenThroughBall", 0.2,
                                              "the same for blocks of 2 x 2 of 24 x 24 pixels, and as far as "
-                                             "the screen lacks mass: 0.14 to 0.19 measured"};
+                                             "the screen lacks weight: 0.14 to 0.19 measured"};
 inline constexpr Tolerance throughSheet{
     "throughSheet", 0.18,
     "of red: 2 x 2 pixels at the edge of a strip of eight; 0.16 measured, 0.02 in its middle"};

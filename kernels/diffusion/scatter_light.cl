@@ -24,10 +24,10 @@
 // A map locates an edge to a fifth of a texel, pixels to a step over the root of 12: the factor of the
 // squared step.
 #define STEP_OVER_TEXEL 2.0f
-#define WEIGHT_OFF \
-    0.1f  // of the accumulated weight of pixels from that of a plane: fully trusted; not at all from three times that on
-#define AGREE \
-    0.02f  // of light at normal incidence: triangles of a mesh lean by so much from its smooth normals
+// Of the accumulated weight of pixels from that of a plane: fully trusted; not at all from three times that on.
+#define WEIGHT_OFF 0.1f
+// Of light at normal incidence: triangles of a mesh lean by so much from its smooth normals.
+#define AGREE 0.02f
 #define NEARLY_PLANE 0.03f  // of the weight
 #define MAX_PARTS 4.0f      // of a block
 

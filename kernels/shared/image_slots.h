@@ -12,8 +12,8 @@
 
 // clang-format off
 // X(name, number, role, content, components, key, words, bits)
-//   role        SHADE: read by shade.cl; PASS: read only by passes before it; OUTPUT: written; TARGET: written
-//               or added to
+//   role        SHADE: read by shade.cl; PASS: read only by passes before it; OUTPUT: written; TARGET:
+//               written or added to
 //   content     the kind of pixels, which decides the formats that are accepted
 //   components  the number of channel names in a scene file
 //   key, words  the name in scene files and in messages

@@ -1,4 +1,4 @@
-"""Errors of both native modules come as the kinds that are documented: each module of a wheel has a C++ library of its own."""
+"""Both native modules raise the documented kinds of errors: each has a C++ library of its own in a wheel."""
 
 import base64
 import json

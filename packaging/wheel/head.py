@@ -1,7 +1,7 @@
-"""Shades the head that comes with the package, with nothing but NumPy beside it, and writes a picture: head.py PICTURE.png
+"""Shades the head of the package with only NumPy beside it, and writes a picture: head.py PICTURE.png
 
-What a renderer would draw is made here by marking the pixel of each vertex of the finely divided head. Ends with 1 if scattering
-does not carry red light past the terminator.
+What a renderer would draw is made here by marking the pixel of each vertex of the finely divided head. Ends
+with 1 if scattering does not carry red light past the terminator.
 """
 
 import sys
@@ -48,7 +48,6 @@ for skin in (
 files.write_image(sys.argv[1], np.hstack(pictures), exposure=1.5)
 again = files.read_image(sys.argv[1])
 gain = (pictures[1] - pictures[0])[(material == 1) & (pictures[0].max(-1) < 0.02)].mean(0)
-print(
-    f"{device.info.name} ({device.info.platform}): {int(material.sum())} pixels; light past the terminator: {gain.round(5)}"
-)
+print(f"{device.info.name} ({device.info.platform}): {int(material.sum())} pixels")
+print(f"light past the terminator: {gain.round(5)}")
 sys.exit(not (gain[0] > 2 * gain[2] > 0 and again["R"].shape == (SIZE, 2 * SIZE)))

@@ -336,8 +336,8 @@ typedef struct PelVertexView {
 typedef enum PelCurvatureEstimator {
     PEL_CURVATURE_EDGE = 0,   /* (min + max) / 2 of |dn| / |dp| over a vertex's triangle edges [FaceWorks] */
     PEL_CURVATURE_TENSOR = 1, /* least squares on each triangle's normal differences [Rusinkiewicz 2004] */
-    PEL_CURVATURE_QUADRIC =
-        2 /* polynomial fit to the positions of the two-ring: does not depend on the normals. Default */
+    /* polynomial fit to the positions of the two-ring: does not depend on the normals. Default */
+    PEL_CURVATURE_QUADRIC = 2
 } PelCurvatureEstimator;
 
 /* What is written for a vertex. Curvatures are positive where the surface bends away from its normal (a
@@ -362,13 +362,13 @@ typedef enum PelCurvatureQuantity {
 /* How a smoothing to a radius weighs the neighbours of a vertex. Either way a mesh of twice the triangles
  * gives the same answer. */
 typedef enum PelSmoothingWeights {
-    PEL_SMOOTHING_COTANGENT =
-        0, /* cotangents over Voronoi areas [Pinkall & Polthier 1993]: spreads equally in all directions,
-                                    whatever the triangles look like. Default */
-    PEL_SMOOTHING_AREA =
-        1 /* of the cotangents those that are not negative, lessened so that a radius stays the same: no value
-                                    leaves the range of its neighbours, and the sum of value times area (a third of the
-                                    triangles) is kept; on stretched irregular cells less even than cotangents */
+    /* cotangents over Voronoi areas [Pinkall & Polthier 1993]: spreads equally in all directions, whatever
+     * the triangles look like. Default */
+    PEL_SMOOTHING_COTANGENT = 0,
+    /* of the cotangents those that are not negative, lessened so that a radius stays the same: no value
+     * leaves the range of its neighbours, and the sum of value times area (a third of the triangles) is
+     * kept; on stretched irregular cells less even than cotangents */
+    PEL_SMOOTHING_AREA = 1
 } PelSmoothingWeights;
 
 typedef struct PelCurvatureParams {
@@ -596,9 +596,9 @@ typedef enum PelCurvatureForm {
     PEL_FORM_HALF_RING = 2, /* the same over the half circle about the point */
     /* the radial profile of the chord, over a whole sphere, normalised: exact for a sphere */
     PEL_FORM_SPHERE = 3,
-    PEL_FORM_PENNER_RING =
-        4 /* the line spread P (energy per length) of the chord, round a circle, normalised: the published
-                                table [Penner 2011], and a cylinder by straight-line distances */
+    /* the line spread P (energy per length) of the chord, round a circle, normalised: the published table
+     * [Penner 2011], and a cylinder by straight-line distances */
+    PEL_FORM_PENNER_RING = 4
 } PelCurvatureForm;
 
 /* How texels are spread over the axes of a curvature LUT. Look-ups in pellucid follow the table's own axis; a
@@ -606,9 +606,9 @@ typedef enum PelCurvatureForm {
  * to 1 down. */
 typedef enum PelLutAxis {
     PEL_AXIS_LINEAR = 0, /* u = s; curvature linear in t [FaceWorks] */
-    PEL_AXIS_ROOT =
-        1 /* square-root axis: u = s |s|; the square root of curvature linear in t: dense at the terminator and
-                            for flat surfaces, so that look-ups in 64x64 texels are as good as in 1024x1024 linear ones */
+    /* square-root axis: u = s |s|; the square root of curvature linear in t: dense at the terminator and
+     * for flat surfaces, so that look-ups in 64x64 texels are as good as in 1024x1024 linear ones */
+    PEL_AXIS_ROOT = 1
 } PelLutAxis;
 
 /* pelCurvatureLutDescDefaults() is the table that a material makes of its profile,
@@ -772,20 +772,20 @@ typedef enum PelImageSlot {
     /* length, one component: of the thickness image, or along the first light with a shadow map; 0 without
      * either */
     PEL_SLOT_OUT_THICKNESS = 19,
-    PEL_SLOT_IRRADIANCE =
-        20, /* RGB, irradiance / pi: all lights and the ambient, shadows sharp; no specular, no albedo. Read
-                                       by materials that do not scatter by tables (PelMaterial.scattering); not set: made from
-                                       lights, PEL_LIGHT_WIDE_SHADOW or shadow maps, and the ambient */
-    PEL_SLOT_SCATTER_WEIGHT =
-        21, /* one or two components, 0 to 1. First: how much of the scattered light a pixel takes, the rest
-                                     is its own irradiance; 0: no scattering. Second: times the profile's radius. Both are clamped;
-                                     NaN is 0. Not set: 1 */
+    /* RGB, irradiance / pi: all lights and the ambient, shadows sharp; no specular, no albedo. Read by
+     * materials that do not scatter by tables (PelMaterial.scattering); not set: made from lights,
+     * PEL_LIGHT_WIDE_SHADOW or shadow maps, and the ambient */
+    PEL_SLOT_IRRADIANCE = 20,
+    /* one or two components, 0 to 1. First: how much of the scattered light a pixel takes, the rest is its
+     * own irradiance; 0: no scattering. Second: times the profile's radius. Both are clamped; NaN is 0. Not
+     * set: 1 */
+    PEL_SLOT_SCATTER_WEIGHT = 21,
     /* RGB, as PEL_SLOT_IRRADIANCE: of the other side of a thin sheet (PelMaterial.thinThickness). Not set:
      * made from lights and ambient */
     PEL_SLOT_IRRADIANCE_BACK = 22,
-    PEL_SLOT_WETNESS =
-        23, /* 0 to 1, one component: the wet line along the lids, where tears collect. Read by eyes: their gloss is there as wide as
-                              PelEye.wetLineRoughness says. Clamped; NaN is 0. Not set: 0 */
+    /* 0 to 1, one component: the wet line along the lids, where tears collect. Read by eyes: their gloss is
+     * there as wide as PelEye.wetLineRoughness says. Clamped; NaN is 0. Not set: 0 */
+    PEL_SLOT_WETNESS = 23,
     /* H, the mean of both principal curvatures, 1/unit of positions, one component: positive where the
      * surface is convex, negative in hollows. Read by PelMaterial.curvatureGain. Not set: measured from
      * positions or depth, and from normals */
@@ -801,9 +801,9 @@ typedef enum PelLightSlot {
     /* depth in [0, 1], any size, one component: thickness by taps, wide shadow. Other forms:
      * PelLight.shadowProjection, shadowContent, shadowCascades */
     PEL_LIGHT_SHADOW_MAP = 1,
-    PEL_LIGHT_CASCADE_1 =
-        2, /* the second of PelLight.shadowCascades, and so on. Maps that share one image (an atlas) are
-                                  views of it: the same buffer and rowStride, each with its byteOffset */
+    /* the second of PelLight.shadowCascades, and so on. Maps that share one image (an atlas) are views of
+     * it: the same buffer and rowStride, each with its byteOffset */
+    PEL_LIGHT_CASCADE_1 = 2,
     PEL_LIGHT_CASCADE_2 = 3,
     PEL_LIGHT_CASCADE_3 = 4,
     PEL_LIGHT_SLOT_COUNT = 5
@@ -826,8 +826,8 @@ typedef enum PelShadowProjection {
  * lights. */
 typedef enum PelShadowContent {
     PEL_SHADOW_CONTENT_DEPTH = 0, /* z */
-    PEL_SHADOW_CONTENT_MOMENTS =
-        1, /* means of z and z^2, two components: variance shadow maps [Donnelly, Lauritzen 2006] */
+    /* means of z and z^2, two components: variance shadow maps [Donnelly, Lauritzen 2006] */
+    PEL_SHADOW_CONTENT_MOMENTS = 1,
     /* mean of exp(shadowExponent * z): exponential shadow maps [Annen et al. 2008] */
     PEL_SHADOW_CONTENT_EXPONENTIAL = 2
 } PelShadowContent;
@@ -897,11 +897,11 @@ typedef enum PelScattering {
     PEL_SCATTERING_SCREEN = 3,  /* the profile summed over the screen, from irradiance per pixel */
     PEL_SCATTERING_LIGHT = 4,   /* the profile summed over the light's shadow map */
     PEL_SCATTERING_TEXTURE = 5, /* irradiance in texture space [d'Eon, Luebke 2007] */
-    PEL_SCATTERING_AUTO =
-        6 /* what the inputs allow, with the least work for PelShaderOptions.targetError: on the screen where there
-                               are positions or depth, and shadows that are sharp or can be made so; by tables otherwise, and where the
-                               material brings its own; with nothing to scatter by, like PREINTEGRATED without tables
-                               (docs/guide/shading.md, "Auto"). pelShaderGetWarnings and PelShaderStats say what it took */
+    /* what the inputs allow, with the least work for PelShaderOptions.targetError: on the screen where
+     * there are positions or depth, and shadows that are sharp or can be made so; by tables otherwise, and
+     * where the material brings its own; with nothing to scatter by, like PREINTEGRATED without tables
+     * (docs/guide/shading.md, "Auto"). pelShaderGetWarnings and PelShaderStats say what it took */
+    PEL_SCATTERING_AUTO = 6
 } PelScattering;
 
 typedef struct PelMaterial {
@@ -1189,13 +1189,15 @@ PEL_API PelError pelShaderSetLights(PelShader shader, const PelLight* lights, ui
 PEL_API PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot slot,
                                         const PelImageDesc* image);
 PEL_API PelError pelShaderSetAmbient(PelShader shader, const PelAmbient* ambient);
-/* An irradiance cube map, added to PelAmbient: irradiance / pi (the cosine already convolved in) of the six normals +x, -x, +y,
- * -y, +z, -z and those between. Six square faces in one image, one below the other (height = 6 * width) or side by side (width =
- * 6 * height); a colour format. With s to the right and t down, both from -1 to 1, a face's point (s, t) is the normal
+/* An irradiance cube map, added to PelAmbient: irradiance / pi (the cosine already convolved in) of the six
+ * normals +x, -x, +y, -y, +z, -z and those between. Six square faces in one image, one below the other
+ * (height = 6 * width) or side by side (width = 6 * height); a colour format. With s to the right and t
+ * down, both from -1 to 1, a face's point (s, t) is the normal
  *     +x ( 1, -t, -s)   +y (s,  1,  t)   +z ( s, -t,  1)
  *     -x (-1, -t,  s)   -y (s, -1, -t)   -z (-s, -t, -1)
- * as in OpenGL, Direct3D and Vulkan. Bilinear, without seams between faces; negative values count as 0. Read at each execution.
- * NULL removes it. Errors: PEL_ERROR_INVALID_ARGUMENT for another shape or a format without colour. */
+ * as in OpenGL, Direct3D and Vulkan. Bilinear, without seams between faces; negative values count as 0.
+ * Read at each execution. NULL removes it. Errors: PEL_ERROR_INVALID_ARGUMENT for another shape or a
+ * format without colour. */
 PEL_API PelError pelShaderSetAmbientCube(PelShader shader, const PelImageDesc* faces);
 PEL_API PelError pelShaderSetCamera(PelShader shader, const PelCamera* camera);
 /* Checks that everything fits together, derives the features and builds the programs that they need. */

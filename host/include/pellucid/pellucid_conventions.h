@@ -22,8 +22,9 @@ typedef struct PelConvention {
     int yDown; /* 1: clip space has y downwards, as Vulkan's; 0: upwards, as OpenGL's and Direct3D's */
     /* 1: the first row of the image in memory is its lowest, as glReadPixels gives it; 0: its highest */
     int bottomFirst;
-    int columnMajor; /* 1: the 16 numbers are columns one after another (glm, OpenGL, Godot, bgfx), or rows of a matrix that multiplies row
-                        vectors (DirectXMath); 0: rows of one that multiplies column vectors, as in this library */
+    /* 1: the 16 numbers are columns one after another (glm, OpenGL, Godot, bgfx), or rows of a matrix that
+     * multiplies row vectors (DirectXMath); 0: rows of one that multiplies column vectors, as in this library */
+    int columnMajor;
 } PelConvention;
 
 static inline double pelConventionEntry_(const float* m, const PelConvention* c, int row, int column) {

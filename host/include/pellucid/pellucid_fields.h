@@ -2,11 +2,11 @@
  *
  *     X(type, name, default, min, max, special, unit, key, slider, words)
  *
- * type     FLOAT, UINT or COLOR (3 floats): every component lies between min and max or equals `special`, a
- *          value with a meaning of its own. The library checks it where the field is set, readers of files where
- *          they read it.
- *          FREE (a float), FREE_UINT, VECTOR (3 floats) and MATRIX (16): any finite value; the code that reads
- *          the field checks it.
+ * type     FLOAT, UINT or COLOR (3 floats): every component lies between min and max or equals `special`,
+ *          a value with a meaning of its own. The library checks it where the field is set, readers of files
+ *          where they read it.
+ *          FREE (a float), FREE_UINT, VECTOR (3 floats) and MATRIX (16): any finite value; the code that
+ *          reads the field checks it.
  * default  one value for all components; VECTOR: (x, y, z); MATRIX: PEL_IDENTITY
  * min, max, special   constants of host/fields/field_ranges.h, or numbers
  * unit     of lengths: "mm", or "length" for the unit of the caller's positions; "" for others
@@ -15,9 +15,9 @@
  * words    for the tables of docs/guide, which docs/field_tables writes
  *
  * From these rows follow the defaults (pellucid_defaults.h), the checks and their messages
- * (host/fields/field_ranges.h), the keys of scene files (host/io/scene/scene_keys.h), the sliders of the viewer
- * and the tables of the guide. A new field is its documented declaration in pellucid.h, a row here, and the code
- * that reads it. */
+ * (host/fields/field_ranges.h), the keys of scene files (host/io/scene/scene_keys.h), the sliders of the
+ * viewer and the tables of the guide. A new field is its documented declaration in pellucid.h, a row here, and
+ * the code that reads it. */
 #ifndef PELLUCID_FIELDS_H
 #define PELLUCID_FIELDS_H
 /* clang-format off */

@@ -12,7 +12,7 @@ namespace pellucid::io {
 struct Texture {
     enum class Format {
         Rgba16Float,  // four halves per texel
-        Bc6hUnsigned  // 16 bytes per 4x4 texels (io/lut/bc6h.h); hardware takes sizes that are no multiple of 4
+        Bc6hUnsigned  // 16 bytes per 4x4 texels (io/lut/bc6h.h); sizes need be no multiple of 4
                       // from KTX2 (Vulkan), and not from DDS (Direct3D)
     };
     Format format;
