@@ -4,6 +4,7 @@
 
 #include "command.h"
 #include "sample/gbuffer.h"
+#include "sample/occlusion.h"
 #include "sample/shadow_map.h"
 #include "sample/sky.h"
 #include "sample/wide_shadow.h"
@@ -116,6 +117,7 @@ std::vector<io::SceneMaterial> materialsOf(const DemoHead& head) {
     if (materials.size() > 1) {
         // Their gloss is that of the film of tears.
         materials[demo::DEMO_EYES - 1].material = materials[demo::DEMO_RIGHT_EYE - 1].material = glossy(0, 1);
+        materials[demo::DEMO_EYES - 1].profile = materials[demo::DEMO_RIGHT_EYE - 1].profile = "cream";  // sclera
         materials[demo::DEMO_TEETH - 1].material = materials[demo::DEMO_TONGUE - 1].material =
             glossy(0.05f, 0.2f);
         materials[demo::DEMO_CUT - 1].material = glossy(0, 1);
@@ -167,6 +169,8 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     addChannels(view, "NormalBlurred", "XYZ", g.blurredNormal.data.data(), PEL_SLOT_NORMAL_BLURRED);
     addChannels(view, "Curvature", "V", g.curvature.data.data(), PEL_SLOT_CURVATURE);
     addChannels(view, "Albedo", "RGB", g.albedo.data.data(), PEL_SLOT_ALBEDO);
+    addChannels(view, "AmbientOcclusion", "V", sample::ambientOcclusion(mesh, g).data.data(),
+                PEL_SLOT_AMBIENT_OCCLUSION);
     const std::vector<float> ids(g.material.begin(), g.material.end());
     addChannels(view, "Material", "I", ids.data(), PEL_SLOT_MATERIAL);
     if (!head.eyeModels.empty()) {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "sample/gbuffer.h"
+#include "sample/occlusion.h"
 #include "sample/waves.h"
 #include "tolerances.h"
 
@@ -333,4 +334,24 @@ TEST(SampleCamera, DirectionsRoundTheHead) {
     EXPECT_GT(camera.viewProjection(1).project({0, 0, 1}).y, 0);
     EXPECT_GT(dot(sample::keyLightDirection(pose, sample::KeyLight::Front), pose.front), 0.5);
     EXPECT_LT(dot(sample::keyLightDirection(pose, sample::KeyLight::Back), pose.front), -0.5);
+}
+
+// Under the middle of a square ceiling of half side a at height a: four times the form factor of a corner,
+// (2/pi) (1/sqrt 2) atan(1/sqrt 2) / 2 [Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-3].
+TEST(Sample, AmbientOcclusionUnderASquareIsItsFormFactor) {
+    constexpr double half = 40;
+    const sample::Mesh floor = sample::makeRectangle(-2000, 2000, -2000, 2000, 0);
+    sample::Mesh both = floor;
+    both.append(sample::makeRectangle(-half, half, -half, half, half));
+    const sample::Camera camera{
+        .eye = {0, 0, half / 2}, .target = {0, 0, 0}, .up = {0, 1, 0}, .nearPlane = 1};
+    const auto occlusionOf = [&](const sample::Mesh& mesh) {
+        const sample::Scene scene(mesh.view());
+        return sample::ambientOcclusion(scene, sample::renderGBuffer(scene, camera, 16, 16, plain()));
+    };
+    const double covered = 4 / std::numbers::pi * std::atan(std::sqrt(0.5)) * std::sqrt(0.5);
+    EXPECT_NEAR(occlusionOf(both).at(0, 8, 8), 1 - covered, 0.01);
+    for (const float open : occlusionOf(floor).data) EXPECT_EQ(open, 1);
+    const sample::Scene scene(floor.view());
+    EXPECT_THROW(sample::ambientOcclusion(scene, sample::GBuffer(), 0), std::invalid_argument);
 }

@@ -1,0 +1,13 @@
+// Ambient occlusion of a G-buffer, by rays.
+#pragma once
+#include "sample/gbuffer.h"
+
+namespace pellucid::sample {
+
+// The share of diffuse light from all round that reaches each pixel past the mesh: the fraction of `rays`
+// cosine-distributed rays that hit nothing. One plane, 1 on the background. Pixels take the directions of a
+// 4 x 4 pattern, and the mean over as many similar neighbours; the result depends on no thread. Throws
+// std::invalid_argument for `rays` below 1.
+Image ambientOcclusion(const Scene& scene, const GBuffer& gbuffer, int rays = 8);
+
+}  // namespace pellucid::sample
