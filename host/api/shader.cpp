@@ -10,8 +10,8 @@ using namespace pel;
 static const PassKind shadingPasses[] = {
     ambientCubePass,    reflectionCubePass, irisesPass,       classifyTilesPass, tapCellsPass,
     blurNormalsPass,    normalMapPass,      shadowBoundsPass, wideShadowPass,    irradiancePass,
-    prepareScatterPass, diskPass,           separablePass,    texturePass,       scatterPass,
-    lightScatterPass,   weighScatterPass,   curvaturePass,    shadePass};
+    prepareScatterPass, curvaturePass,      diskPass,         separablePass,     texturePass,
+    scatterPass,        lightScatterPass,   weighScatterPass, shadePass};
 
 PelError pelShaderCreate(PelDevice device, PelShader* shader) {
     return create(shader, "shader", [&] { return make<Shader>(fromHandle<Device>(device), shadingPasses); });

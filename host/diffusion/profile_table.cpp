@@ -159,9 +159,13 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
         for (int c = 0; c < 3; ++c) within[c] += light[c];
     }
     std::vector<Rgb> shares{within};
+    Rgb distance{};
     for (uint32_t bits = firstBits; bits < lastBits; bits += step) {
         const Rgb light = lightBetween(shape, radiusOfNode(bits) / scale, radiusOfNode(bits + step) / scale);
-        for (int c = 0; c < 3; ++c) within[c] += light[c];
+        for (int c = 0; c < 3; ++c) {
+            within[c] += light[c];
+            distance[c] += light[c] * radiusOfNode(bits + step / 2);
+        }
         shares.push_back(within);
     }
     size_t nodes = 1;
@@ -176,8 +180,9 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
     ProfileNodes result;
     const double reach = radiusOfNode(firstBits + uint32_t(nodes - 1) * step);
     const double fall = 4 / (reach * reach);  // of the widest Gaussian, which is 1/16 at the reach
-    result.table = {0, uint32_t(nodes), firstBits, float(reach), float(fall), 0};
+    result.table = {0, uint32_t(nodes), firstBits, float(reach), float(fall), 0, {}};
     result.values.resize(12 * nodes);
+    for (int c = 0; c < 3; ++c) result.meanDistance[c] = distance[c] / within[c];
     const Rgb all = shares[nodes - 1];
     for (size_t k = 0; k < nodes; ++k) {
         const uint32_t bits = firstBits + uint32_t(k) * step;

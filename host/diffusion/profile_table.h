@@ -14,6 +14,7 @@ constexpr double lightBeyondReach = 4e-3;
 struct ProfileNodes {
     PelProfileTable table{};    // its offset is 0
     std::vector<float> values;  // R of all nodes, the shares within, R of blocks; both as Gaussians
+    Rgb meanDistance{};         // of the light, length
 };
 
 // `scale`: lengths of the tables per length of the profile, > 0. Throws if squares of such lengths are

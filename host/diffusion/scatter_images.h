@@ -7,6 +7,7 @@ namespace pel {
 // Images of one size. Images that are not set are empty; either positions or depth is set.
 struct ScatterImages {
     ImageView irradiance, positions, depth, ids, out;
+    ImageView curvature{};  // mean, 1/length: for materials with a gain
 };
 
 }  // namespace pel

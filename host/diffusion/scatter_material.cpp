@@ -11,7 +11,7 @@ ScreenScatter::Material profileOf(const ShaderMaterial& material) {
                            : material.curvatureLut ? material.curvatureLut->profile()
                                                    : Profile::skin();
     const double radius = profile->radius();
-    return {std::move(profile), material.params.diffusionRadius / radius, material.gain[0] > 0};
+    return {std::move(profile), material.params.diffusionRadius / radius, std::to_array(material.gain)};
 }
 
 ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Buffer>& out, bool inPlace) {

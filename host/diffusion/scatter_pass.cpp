@@ -51,8 +51,10 @@ class ScatterPass final : public Pass {
         scatter_->announce({plan.state.lights, alone});
         materials_.clear();
         for (const auto& [id, material] : plan.state.materials)
-            if (scatters(plan.state, material, alone) && material.params.diffusionRadius > 0)
+            if (scatters(plan.state, material, alone) && material.params.diffusionRadius > 0) {
                 materials_[id] = profileOf(material);
+                if (material.gain[0] > 0) images_.curvature = plan.state.images[PEL_SLOT_MEAN_CURVATURE];
+            }
     }
     size_t bytes() const override { return (out_ ? out_->bytes() : 0) + (scatter_ ? scatter_->bytes() : 0); }
 

@@ -24,6 +24,11 @@ bool samePixels(const ImageView& a, const ImageView& b) {
 }
 
 namespace {
+// The factor 1 + k t of R (docs/mathematics.md, section 12) has the k with which even light on a sphere gains
+// this, times mean free path and curvature, to first order: k = 0.92 at a reflectance of 0.8. Samples of sums
+// by levels are nearer than the light that they stand for, so that they gain less.
+constexpr double gainPerCurvature = 1.06, nearerByLevels = 0.925;
+
 enum Program { PIXELS, CLASSIFY };
 }  // namespace
 
@@ -36,14 +41,22 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
         frame_.tableOf[id] = uint32_t(found - distinct.begin()) + 1;
     }
     frame_.tables = uint32_t(distinct.size());
-    if (materials == materials_ && tables_) return;
+    const bool hasSides = frame_.facing && frame_.curvature.rowStride;
+    if (materials == materials_ && hasSides == hasSides_ && tables_) return;
     narrowest_ = 0;
     std::vector<PelProfileTable> tables;
     std::vector<float> values;
     for (const Material& material : distinct) {
         ProfileNodes nodes = profileNodes(material.profile->shape(), material.scale);
         nodes.table.offset = uint32_t(values.size() / 4);
-        nodes.table.volume = material.volume;
+        if (hasSides) {  // otherwise surfaces have no outer side
+            const auto sum = [](const auto& v) { return v[0] + v[1] + v[2]; };
+            const double k = 2 * gainPerCurvature * sum(material.gain) / sum(nodes.meanDistance);
+            nodes.table.directed = float(k);
+            for (int c = 0; c < 3; ++c)
+                nodes.table.perCurvature[c] =
+                    float(k / 2 * nodes.meanDistance[c] * (lights_.alone ? 1 : nearerByLevels));
+        }
         tables.push_back(nodes.table);
         narrowest_ = narrowest_ > 0 ? std::min(narrowest_, double(nodes.table.reach)) : nodes.table.reach;
         values.insert(values.end(), nodes.values.begin(), nodes.values.end());
@@ -53,6 +66,7 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
     nodes_ = device_->allocate(values.size() * sizeof(float), values.data());
     nodeBytes_ = tables.size() * sizeof tables[0] + values.size() * sizeof(float);
     materials_ = materials;
+    hasSides_ = hasSides;
 }
 
 // Returns the number of floats of all levels.
@@ -131,6 +145,7 @@ void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const
     frame_.position = describeImage(images.positions ? images.positions : images.depth);
     frame_.ids = images.ids ? describeImage(images.ids) : PelShadeImage{};
     frame_.out = describeImage(images.out);
+    frame_.curvature = images.curvature ? describeImage(images.curvature) : PelShadeImage{};
     sendTables(materials);
     describeLevels(frame_.width, frame_.height);
     const PelPyramidLevel& pairs = frame_.level[1];
@@ -153,6 +168,7 @@ std::vector<cl::ProgramKey> ScreenScatter::programs(const ScatterImages& images)
                            {"PEL_FORMAT_DEPTH", images.positions ? text(0) : code(images.depth)},
                            {"PEL_FORMAT_MATERIAL", code(images.ids)},
                            {"PEL_FORMAT_OUT", code(images.out)},
+                           {"PEL_FORMAT_MEAN_CURVATURE", code(images.curvature)},
                            {"PEL_HIDDEN", text(int(fillsHidden()))}}};
     if (!light_.empty()) light_.addFiles(pixels);
     return {std::move(pixels), {{"diffusion/classify_scatter.cl"}, {{"PEL_WIDTH", text(1)}}}};
@@ -178,7 +194,7 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
         points.arg(constants_.memory())
             .arg(memory(images.irradiance))
             .arg(memory(images.positions ? images.positions : images.depth));
-        points.arg(memory(images.ids)).arg(pyramid_).arg(counters_);
+        points.arg(memory(images.ids)).arg(memory(images.curvature)).arg(pyramid_).arg(counters_);
         launch(points, rows(frame_.width, frame_.height));
         cl::Launch areas(programs[PIXELS], "surface_areas");
         areas.arg(constants_.memory()).arg(pyramid_);

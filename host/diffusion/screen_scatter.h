@@ -1,6 +1,7 @@
 // Scatters the irradiance of a picture: the kernels of kernels/diffusion over plain inputs, for the shader's
 // passes and for hosts that light their own frames.
 #pragma once
+#include <array>
 #include <map>
 #include <vector>
 
@@ -39,9 +40,9 @@ class ScreenScatter {
     struct Material {
         Ref<Profile> profile;
         double scale;
-        bool volume = false;  // the medium is known: light that would cross air counts less
+        std::array<float, 3> gain{};  // length: as ShaderMaterial has it; 0: the medium is not known
         bool operator==(const Material& other) const {
-            return profile.get() == other.profile.get() && scale == other.scale && volume == other.volume;
+            return profile.get() == other.profile.get() && scale == other.scale && gain == other.gain;
         }
     };
     // Sets the lights, before `programs` is called; none by default.
@@ -72,7 +73,8 @@ class ScreenScatter {
     PelDiffusionFrame frame_{};
     SentConstants<PelDiffusionFrame> constants_;
     cl::Memory tables_, nodes_, pyramid_, sums_, tiles_, counters_;
-    double narrowest_ = 0;  // reach of the tables, length
+    bool hasSides_ = false;  // tables_ have directions
+    double narrowest_ = 0;   // reach of the tables, length
     size_t pyramidBytes_ = 0, sumBytes_ = 0, nodeBytes_ = 0, tileBytes_ = 0;
 };
 

@@ -54,6 +54,7 @@ static inline float changeByLight(__global const PelDiffusionFrame* frame, __glo
     const uint side = PEL_DIFFUSION_TILE >> PART_LEVEL;
     Receiver receiver;
     receiver.rho = 0.0f;
+    receiver.directed = (float3)(0.0f);
     float3 middle = (float3)(0.0f);
     float change = 0.0f, around = 0.0f;
     int number = -1;
@@ -75,10 +76,19 @@ static inline float changeByLight(__global const PelDiffusionFrame* frame, __glo
     return change;
 }
 #else
+// Of one of its pixels.
+static inline float curvatureOfBlock(__global const PelDiffusionFrame* frame, __global const float* pyramid,
+                                     uint x, uint y) {
+    __global const PelPyramidLevel* pixels = &frame->level[0];
+    const uint middle = 1u << (PART_LEVEL - 1);
+    return pyramid[pyramidRow(pixels, (int)min((y << PART_LEVEL) + middle, frame->height - 1)) +
+                   min((x << PART_LEVEL) + middle, frame->width - 1) + PEL_PLANE_CURVATURE * pixels->stride];
+}
+
 static inline bool lightMatters(__global const PelDiffusionFrame* frame, __global const float* block,
                                 uint stride, __global const PelProfileTable* tables,
                                 __global const float* nodes, __global const PelLightMap* maps, uint mapCount,
-                                __global const float* lights, bool tapped, uint* texels) {
+                                __global const float* lights, bool tapped, float curvature, uint* texels) {
     Receiver receiver;
     const int number = receiverOf(frame, block, stride, &receiver);
     if (number < 0) return false;
@@ -86,10 +96,12 @@ static inline bool lightMatters(__global const PelDiffusionFrame* frame, __globa
     const PelProfileTable table = tables[number];
     receiver.rho = 2.0f * maxStep(block, stride, PART_LEVEL);
     receiver.margin = 0.0f;
+    receiver.directed = table.directed * outwardNormal(frame, block, stride);
     const float3 e = (float3)(block[PEL_PLANE_RED * stride], block[PEL_PLANE_GREEN * stride],
                               block[PEL_PLANE_BLUE * stride]);
-    const float3 light = fabs(farLight(maps, mapCount, lights, nodes, table, &receiver, texels) -
-                              e * (1.0f - shareOfWindow(nodes, table, receiver.rho)));
+    const float3 window = shareOfWindow(nodes, table, receiver.rho), gain = directedGainAt(table, curvature),
+                 light = fabs(farLight(maps, mapCount, lights, nodes, table, &receiver, texels) / gain -
+                              e * (1.0f - window * directedGainWithin(gain, window) / gain));
     return fmax(light.x, fmax(light.y, light.z)) > (frame->everyTile ? 0.0f : LEFT_ALONE * frame->tolerance);
 }
 #endif
@@ -122,7 +134,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_class
             const uint x = tileX * side + i, y = tileY * side + j;
             if (x >= level->width || y >= level->height) continue;
             if (lightMatters(frame, pyramid + pyramidRow(level, (int)y) + x, level->stride, tables, nodes,
-                             maps, mapCount, lights, tiles[tile] != 0, &texels))
+                             maps, mapCount, lights, tiles[tile] != 0, curvatureOfBlock(frame, pyramid, x, y),
+                             &texels))
                 reached |= 1u << (j * side + i);
         }
     parts[tile] = reached;

@@ -83,10 +83,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_hidde
                 receiver.margin = 0.0f;
                 const float step = sqrt(fmax(block[PEL_PLANE_SIZE * stride], FLT_MIN));
                 receiver.rho = WINDOW * fmax(block[PEL_PLANE_AREA * stride] / (4.0f * step), step);
-                receiver.p = (float3)(block[PEL_PLANE_X * stride], block[PEL_PLANE_Y * stride],
-                                      block[PEL_PLANE_Z * stride]);
-                addHidden(maps, mapCount, lights, nodes, tables[frame->tableOf[id] - 1], &receiver, &light,
-                          &weight, &far, &texels);
+                receiver.p = pointAt(block, stride);
+                const PelProfileTable table = tables[frame->tableOf[id] - 1];
+                receiver.directed = table.directed * outwardNormal(frame, block, stride);
+                addHidden(maps, mapCount, lights, nodes, table, &receiver, &light, &weight, &far, &texels);
                 ++pixels;
             }
             __global float* to = hidden + hiddenRow(frame, (int)y) + x;

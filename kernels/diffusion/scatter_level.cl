@@ -47,8 +47,16 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_lev
     const Blocks here = loadBlocks(at, stride);
     const maskw on = here.area > 0.0f;
     if (!anyw(on)) return;
-    const Slope slope =
+    Slope slope =
         slopeAt(at, stride, &here, loadPlanes3(at + PEL_PLANE_RED * stride, stride), frame->facing, on);
+    if (PEL_FORMAT_MEAN_CURVATURE && level == 1) {  // that of a pixel
+        const uint pixels = frame->level[0].stride;
+        __global const float* pixel = pyramid + pyramidRow(&frame->level[0], 2 * (int)y) + 2 * x;
+        floatw id, unused;
+        loadEvenOdd(pixel + PEL_PLANE_ID * pixels, &id, &unused);
+        loadEvenOdd(pixel + PEL_PLANE_CURVATURE * pixels, &slope.curvature, &unused);
+        slope.curvature = selectw((floatw)(0.0f), slope.curvature, as_uintw(id) == here.id);
+    }
     Sums result = noSums();
     if (level + 1 < frame->levels) {
         const Interpolated coarser = interpolateSums(frame, pyramid, sums, NULL, level + 1, x, y, &here, on);

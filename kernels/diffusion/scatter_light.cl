@@ -37,10 +37,6 @@ typedef struct Pixel {
     uint id;
 } Pixel;
 
-static inline float3 pointAt(__global const float* at, uint stride) {
-    return (float3)(at[PEL_PLANE_X * stride], at[PEL_PLANE_Y * stride], at[PEL_PLANE_Z * stride]);
-}
-
 static inline Pixel pixelAt(__global const float* at, uint stride) {
     Pixel pixel;
     pixel.area = at[PEL_PLANE_AREA * stride];
@@ -49,19 +45,6 @@ static inline Pixel pixelAt(__global const float* at, uint stride) {
     pixel.p = pointAt(at, stride);
     pixel.e = (float3)(at[PEL_PLANE_RED * stride], at[PEL_PLANE_GREEN * stride], at[PEL_PLANE_BLUE * stride]);
     return pixel;
-}
-
-// The offset to the nearer of two neighbours of the same object.
-static inline float3 shorterWay(__global const float* at, long to, uint stride, const Pixel* here) {
-    float3 way = (float3)(0.0f);
-    float least = FLT_MAX;
-    for (int side = -1; side <= 1; side += 2) {
-        __global const float* neighbour = at + to * side;
-        if (as_uint(neighbour[PEL_PLANE_ID * stride]) != here->id) continue;
-        const float3 v = (float)side * (pointAt(neighbour, stride) - here->p);
-        if (dot(v, v) < least) least = dot(v, v), way = v;
-    }
-    return way;
 }
 
 // A texel of a light at a point: its width across the light, and the cosine of the light.
@@ -132,14 +115,15 @@ static inline bool scatterPixel(__global const PelDiffusionFrame* frame, __globa
     const PelProfileTable table = tables[frame->tableOf[here->id] - 1];
     const uint stride = frame->level[0].stride;
     __global const float* at = pyramid + pyramidRow(&frame->level[0], y) + x;
-    const float3 right = shorterWay(at, 1, stride, here),
-                 down = shorterWay(at, (long)stride * PEL_PYRAMID_PLANES, stride, here),
+    const float3 right = shorterWay(at, 1, stride),
+                 down = shorterWay(at, (long)stride * PEL_PYRAMID_PLANES, stride),
                  across = cross(right, down);
     const float longest = sqrt(fmax(dot(right, right), dot(down, down))), shortest = sqrt(here->size);
     Receiver receiver;
     receiver.p = here->p;
     receiver.id = here->id;
     receiver.margin = 0.0f;
+    receiver.directed = table.directed * outwardNormal(frame, at, stride);
     const float3 normal = across * rsqrt(fmax(dot(across, across), FLT_MIN));
     float texel = 0.0f, point = 0.0f, shown = 0.0f;  // the longest on the surface
     float steepest = 1.0f;                           // least cosine
@@ -154,12 +138,17 @@ static inline bool scatterPixel(__global const PelDiffusionFrame* frame, __globa
     LitReceiver lit;
     lit.p = here->p;
     lit.id = here->id;
+    lit.directed = table.directed;
+    lit.normal = outwardNormal(frame, at, stride);
+    lit.curvature = at[PEL_PLANE_CURVATURE * stride];
     lit.own = OWN_WINDOW * point * (1.0f / PEL_TEXEL_ACROSS);
     receiver.rho = lit.shown = fmax(SHOWN_WINDOW * shown, lit.own);
     if (!(lit.own > 0.0f)) return false;
     const float3 none = (float3)(0.0f);
     const float3 ownWindow = shareOfWindow(nodes, table, lit.own),
                  window = shareOfWindow(nodes, table, lit.shown);
+    const float3 gain = directedGainAt(table, lit.curvature),
+                 ownLight = here->e * ownWindow * directedGainWithin(gain, ownWindow);
     float3 far = none, between = none, asPlane = none;
     for (uint k = 0; k < mapCount;) {
         LitSums sums;
@@ -190,10 +179,9 @@ static inline bool scatterPixel(__global const PelDiffusionFrame* frame, __globa
     const float3 own = shareOfPixel(nodes, table, here->area);
     const float3 nearWeight = own + sumOfLanes3(screen.nearWeight),
                  nearLight = own * here->e + sumOfLanes3(screen.nearLight);
-    const float3 byPixels = window * meanLight(nearLight, nearWeight, here->e),
-                 byTexels = ownWindow * here->e + asPlane;
+    const float3 byPixels = window * meanLight(nearLight, nearWeight, here->e), byTexels = ownLight + asPlane;
     const float3 trust = trustInPixels(byPixels, byTexels, nearWeight, window, steepest, texel, longest);
-    *result = far + ownWindow * here->e + between + trust * (byPixels - byTexels);
+    *result = (far + ownLight + between + trust * (byPixels - byTexels)) / gain;
     return true;
 }
 

@@ -11,12 +11,13 @@
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 
-// Scattered light in one channel. `known`: accumulated weight from level 1 on; `hidden...`: light and
-// weight of occluded texels.
-static inline floatw lightOf(floatw light, floatw weight, floatw centre, floatw e, floatw known,
+// Scattered light in one channel. `gain`: directedGain; `known`: accumulated weight from level 1 on;
+// `hidden...`: light and weight of occluded texels.
+static inline floatw lightOf(floatw light, floatw weight, floatw centre, floatw e, floatw gain, floatw known,
                              floatw hiddenLight, floatw hiddenWeight, floatw hiddenFar) {
     const floatw found = weight + centre, any = selectw((floatw)(1.0f), found, found > 0.0f);
-    const floatw shown = selectw(e, (light + centre * e) / any, found > 0.0f);
+    const floatw shown =
+        selectw(e * gain, fma(centre * e, directedGainOfCentre(gain, centre), light) / any, found > 0.0f);
 #if PEL_HIDDEN
     // Occluded light fills only missing weight. The remainder of the missing weight is taken to be lit like
     // the surface that is shown.
@@ -28,9 +29,9 @@ static inline floatw lightOf(floatw light, floatw weight, floatw centre, floatw 
     const floatw most = satw(PEL_HIDDEN_SLOPE *
                              (hiddenLight / fmax(hiddenLight + shown, (floatw)(FLT_MIN)) - PEL_HIDDEN_FROM));
     const floatw part = filled / fmax(hiddenWeight, (floatw)(FLT_MIN));
-    return max0w(shown * (1.0f - filled) + hiddenLight * part + hiddenFar * (most * (1.0f - part)));
+    return max0w(shown * (1.0f - filled) + hiddenLight * part + hiddenFar * (most * (1.0f - part))) / gain;
 #else
-    return max0w(shown);  // a negative value is an error of the sums
+    return max0w(shown) / gain;  // a negative value is an error of the sums
 #endif
 }
 
@@ -78,16 +79,25 @@ static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __glo
     const uint stride = frame->level[0].stride;
     __global const float* at = pyramid + pyramidRow(&frame->level[0], (int)y) + x;
     const Vec3w e = loadPlanes3(at + PEL_PLANE_RED * stride, stride);
-    const Slope slope = slopeAt(at, stride, here, e, frame->facing, active);
+    Slope slope = slopeAt(at, stride, here, e, frame->facing, active);
+    if (PEL_FORMAT_MEAN_CURVATURE) slope.curvature = loadw(PEL_PLANE_CURVATURE * stride, at);
     Interpolated all = interpolateSums(frame, pyramid, sums, hidden, 1, x, y, here, active);
     all.sums.light = movedLight(&all.sums, &slope, all.place, here);
     // Pixels are too coarse for their weights to add up: within the ring of level 1 no weight is missing.
     const Vec3w known = add3(all.sums.weight, all.sums.centre);
-    if (near) {
+    Vec3w gain = vec3((floatw)(1.0f), (floatw)(1.0f), (floatw)(1.0f));
+    if (near || PEL_FORMAT_MEAN_CURVATURE) {
         const intw table = selectw((intw)(0), tablesOf(frame, here->id), active);
         for (uint t = 1; t <= frame->tables; ++t) {
             const maskw mine = table == (intw)((int)t);
             if (!anyw(mine)) continue;
+            if (PEL_FORMAT_MEAN_CURVATURE)
+                gain = select3(gain,
+                               vec3(directedGain(tables[t - 1], 0, slope.curvature),
+                                    directedGain(tables[t - 1], 1, slope.curvature),
+                                    directedGain(tables[t - 1], 2, slope.curvature)),
+                               mine);
+            if (!near) continue;
             Sums more = noSums();
             addPixels(at, stride, nodes, tables[t - 1], here, &slope, mine, &more);
             const Vec3w own = shareOfPixelItself(nodes, tables[t - 1], here->area, here->size);
@@ -100,12 +110,12 @@ static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __glo
         }
     }
     const Sums* s = &all.sums;
-    const Vec3w found = vec3(lightOf(s->light.x, s->weight.x, s->centre.x, e.x, known.x, all.hiddenLight.x,
-                                     all.hiddenWeight.x, all.hiddenFar.x),
-                             lightOf(s->light.y, s->weight.y, s->centre.y, e.y, known.y, all.hiddenLight.y,
-                                     all.hiddenWeight.y, all.hiddenFar.y),
-                             lightOf(s->light.z, s->weight.z, s->centre.z, e.z, known.z, all.hiddenLight.z,
-                                     all.hiddenWeight.z, all.hiddenFar.z));
+    const Vec3w found = vec3(lightOf(s->light.x, s->weight.x, s->centre.x, e.x, gain.x, known.x,
+                                     all.hiddenLight.x, all.hiddenWeight.x, all.hiddenFar.x),
+                             lightOf(s->light.y, s->weight.y, s->centre.y, e.y, gain.y, known.y,
+                                     all.hiddenLight.y, all.hiddenWeight.y, all.hiddenFar.y),
+                             lightOf(s->light.z, s->weight.z, s->centre.z, e.z, gain.z, known.z,
+                                     all.hiddenLight.z, all.hiddenWeight.z, all.hiddenFar.z));
     return add3(e, scale3(sub3(found, e), (floatw)(weight)));
 }
 
@@ -114,8 +124,7 @@ static inline void fetchNextTile(__global const PelDiffusionFrame* frame, __glob
                                  __global const float* sums, uint x, uint y) {
     const uint stride = frame->level[0].stride;
     __global const float* at = pyramid + pyramidRow(&frame->level[0], (int)y) + x + PEL_DIFFUSION_TILE;
-    for (uint plane = 0; plane < PEL_PYRAMID_PLANES; ++plane)
-        if (plane != PEL_PLANE_DIFFERENCE2) PEL_PREFETCH(at + plane * stride);
+    for (uint plane = 0; plane < PEL_PYRAMID_PLANES; ++plane) PEL_PREFETCH(at + plane * stride);
     const uint inTile = y % PEL_DIFFUSION_TILE;
     if (inTile < 2 || inTile >= PEL_DIFFUSION_TILE - 2) {
         at += (inTile < 2 ? -2L : 2L) * (long)(stride * PEL_PYRAMID_PLANES);

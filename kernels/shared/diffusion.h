@@ -18,6 +18,7 @@
 #define PEL_PLANE_GREEN 6
 #define PEL_PLANE_BLUE 7
 #define PEL_PLANE_DIFFERENCE2 8  // largest second difference of irradiance between blocks one level finer
+#define PEL_PLANE_CURVATURE 8    // of a pixel, in its place: mean curvature, 1/length
 #define PEL_PLANE_SIZE 9         // length^2: the smaller of the squared steps to the next pixel; of a pixel
 #define PEL_PYRAMID_PLANES 10
 
@@ -57,10 +58,11 @@
 typedef struct PelProfileTable {
     PelUint32 offset;  // of the first node, nodes
     PelUint32 nodes;
-    PelUint32 firstBits;  // of the first node's squared distance
-    float reach;          // length beyond which nothing is left
-    float widest;         // 1/length^2: log2 of the widest Gaussian falls by so much
-    PelUint32 volume;     // 1: samples that light would reach through air count less
+    PelUint32 firstBits;    // of the first node's squared distance
+    float reach;            // length beyond which nothing is left
+    float widest;           // 1/length^2: log2 of the widest Gaussian falls by so much
+    float directed;         // factor of R: 1 + directed t, t the cosine between the inward normal and the way
+    float perCurvature[3];  // length: even light gains so much by that, to first order
 } PelProfileTable;
 
 typedef struct PelPyramidLevel {
@@ -83,7 +85,7 @@ typedef struct PelDiffusionFrame {
     float tolerance;   // of irradiance
     float origin[3];   // length, world; of the pyramid's positions
     float inverseViewProjection[16];
-    PelShadeImage irradiance, position, ids, out;  // position: or depth
+    PelShadeImage irradiance, position, ids, out, curvature;  // position: or depth
     PelPyramidLevel level[PEL_PYRAMID_LEVELS];
     PelUint32 tableOf[PEL_DIFFUSION_IDS];  // 1 + the table of an id; 0: the id does not scatter
 } PelDiffusionFrame;
@@ -98,7 +100,7 @@ typedef struct PelDiffusionFrame {
 #define PEL_DIFFUSION_COUNTERS 6
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(PelProfileTable) == 24 && sizeof(PelPyramidLevel) == 16);
+static_assert(sizeof(PelProfileTable) == 36 && sizeof(PelPyramidLevel) == 16);
 static_assert(sizeof(PelDiffusionFrame) ==
-              4 * (10 + 3 + 16 + PEL_DIFFUSION_IDS) + 4 * 32 + PEL_PYRAMID_LEVELS * 16);
+              4 * (10 + 3 + 16 + PEL_DIFFUSION_IDS) + 5 * 32 + PEL_PYRAMID_LEVELS * 16);
 #endif

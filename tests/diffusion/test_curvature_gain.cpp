@@ -8,6 +8,7 @@
 #include "diffusion/reference_scenes.h"
 #include "diffusion/scatter_scene.h"
 #include "npy.h"
+#include "reference/diffusion_screen.h"
 #include "test_size.h"
 #include "tolerances.h"
 
@@ -109,7 +110,7 @@ std::array<double, 3> errorOfWalk(const ReferenceScene& r, const std::vector<flo
 
 void print(const char* scene, int method, const std::array<double, 3>& own,
            const std::array<double, 3>& lambert) {
-    std::printf("%-12s method %d  1e-4: %5.0f %5.0f %5.0f   Lambert %5.0f %5.0f %5.0f\n", scene, method,
+    std::printf("%-12s method %d  1e-4: %5.1f %5.1f %5.1f   Lambert %5.0f %5.0f %5.0f\n", scene, method,
                 own[0], own[1], own[2], lambert[0], lambert[1], lambert[2]);
 }
 
@@ -160,21 +161,28 @@ TEST(CurvatureGain, NeedsNeitherAllNeighboursNorTheWholeFrame) {
 }
 
 // A groove of two planes, of which the left one is lit, seen from above: where the medium is known, less
-// light crosses the air in it. Over a ridge the light takes its way through the body.
-TEST(CurvatureGain, LightDoesNotCrossAir) {
+// light crosses the air in it. Over a ridge more takes its way through the body.
+TEST(CurvatureGain, LightTakesItsWayThroughTheBody) {
     const uint32_t side = 64;
     const double size = 0.15;
+    const auto exact = reference::burleyProfile({meanFreePath[0], meanFreePath[1], meanFreePath[2]},
+                                                {albedo, albedo, albedo});
     for (double slope : {1.0, -1.0}) {
         std::vector<float> positions, normals, irradiance;
+        reference::ScatterPicture picture;
+        picture.width = picture.height = int(side);
+        picture.camera = Vec3{0, 0, 60};
+        picture.ids.assign(side * side, 1);
         for (uint32_t row = 0; row < side; ++row)
             for (uint32_t column = 0; column < side; ++column) {
                 const double x = (column + 0.5 - 0.5 * side) * size, y = (0.5 * side - row - 0.5) * size,
-                             lean = (x < 0 ? 1 : -1) * slope / std::sqrt(2.0);
+                             lean = (x < 0 ? 1 : -1) * slope / std::sqrt(2.0), e = x < 0 ? 1 : 0;
+                picture.positions.push_back({x, y, slope * std::abs(x)});
+                picture.irradiance.push_back({e, e, e});
                 for (double v : {x, y, slope * std::abs(x)}) positions.push_back(float(v));
                 for (double v : {lean, 0.0, std::sqrt(0.5)}) normals.push_back(float(v));
-                irradiance.insert(irradiance.end(), 3, x < 0 ? 1.0f : 0.0f);
+                irradiance.insert(irradiance.end(), 3, float(e));
             }
-        std::vector<float> light[2];
         for (int gain : {0, 1}) {
             scatter_scene::ShownImages shown(Device(""), side, side);
             shown.set(PEL_SLOT_POSITION, positions);
@@ -191,15 +199,19 @@ TEST(CurvatureGain, LightDoesNotCrossAir) {
             material.specular = 0;
             material.curvatureGain = float(gain);
             shown.shader.setMaterial(1, material);
-            light[gain] = shown.execute();
-        }
-        for (uint32_t column = 40; column < 46; ++column) {  // beyond the window of the curvature
-            const size_t i = 3 * (side / 2 * side + column);
-            EXPECT_GT(light[1][i], 0) << column;
-            if (slope > 0)
-                EXPECT_LT(light[1][i], 0.95f * light[0][i]) << column;
-            else
-                EXPECT_NEAR(light[1][i], light[0][i], 2e-3) << column;
+            const std::vector<float> light = shown.execute();
+            picture.directed = 0;
+            const auto even = reference::scatterOnScreen(picture, *exact);
+            picture.directed = 0.92 * gain;
+            const auto expected = reference::scatterOnScreen(picture, *exact);
+            for (uint32_t column = 39; column < 46; ++column) {  // beyond the window of the curvature
+                const size_t i = side / 2 * side + column;
+                EXPECT_NEAR(light[3 * i], expected[i].x, tolerance::scatterBlocksRms + 0.1 * expected[i].x)
+                    << column << ", slope " << slope << ", gain " << gain;
+                if (!gain) continue;
+                EXPECT_GT(slope * (even[i].x - light[3 * i]), 0.1 * slope * (even[i].x - expected[i].x))
+                    << column << ", slope " << slope;
+            }
         }
     }
 }
@@ -233,7 +245,7 @@ TEST(CurvatureGain, BallsAgainstRandomWalks) {
             }
             const double rms = 1e4 * std::sqrt(own / double(count)),
                          plain = 1e4 * std::sqrt(lambert / double(count));
-            std::printf("ball of %5.2f paths, method %d: %4.0f, Lambert %4.0f\n", radii[k], int(method), rms,
+            std::printf("ball of %5.2f paths, method %d: %5.1f, Lambert %4.0f\n", radii[k], int(method), rms,
                         plain);
             EXPECT_LT(rms, plain) << "radius " << radii[k] << ", method " << int(method);
         }

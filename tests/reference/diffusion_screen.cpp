@@ -19,6 +19,14 @@ std::optional<Vec3> shorterStep(const ScatterPicture& p, int x, int y, int dx, i
     return shortest;
 }
 
+// Unit, towards the camera; 0 where steps along both axes are missing.
+static Vec3 outwardNormal(const ScatterPicture& p, int x, int y) {
+    const auto right = shorterStep(p, x, y, 1, 0), down = shorterStep(p, x, y, 0, 1);
+    if (!p.camera || !right || !down) return {};
+    const Vec3 n = normalized(cross(*right, *down));
+    return dot(n, *p.camera - p.positions[p.at(x, y)]) < 0 ? -1 * n : n;
+}
+
 double scatterReach(const Profile& profile) {
     double low = 0, high = 64 * magnitude(rmsWidth(profile));
     for (int k = 0; k < 40; ++k) {
@@ -50,16 +58,19 @@ std::vector<Rgb> scatterOnScreen(const ScatterPicture& p, const Profile& profile
     std::vector<Rgb> result = p.irradiance;
     for (size_t i = 0; i < result.size(); ++i) {
         if (!(areas[i] > 0)) continue;
+        const Vec3 normal = p.directed > 0 ? outwardNormal(p, int(i) % p.width, int(i) / p.width) : Vec3{};
         // The pixel itself: the share of a disk of its area.
         Rgb weights = enclosedEnergy(profile, std::min(reach, std::sqrt(areas[i] / pi))),
             light = weights * p.irradiance[i];
         for (size_t j = 0; j < result.size(); ++j) {
             if (i == j || !(areas[j] > 0) || p.ids[j] != p.ids[i]) continue;
-            const double distance = length(p.positions[j] - p.positions[i]);
+            const Vec3 way = p.positions[j] - p.positions[i];
+            const double distance = length(way);
             if (distance >= reach) continue;
             const Rgb weight = areas[j] * profile.radial(distance);
             weights = weights + weight;
-            light = light + weight * p.irradiance[j];
+            const double share = std::max(0.0, 1 - p.directed * dot(normal, way) / distance);
+            light = light + (share * weight) * p.irradiance[j];
         }
         for (int c = 0; c < 3; ++c) result[i][c] = light[c] / weights[c];
     }

@@ -16,6 +16,7 @@ struct ScatterPicture {
     std::vector<int> ids;  // 0 is background
     // surface seen at less than a quarter of its area counts as if it were a quarter
     std::optional<Vec3> camera;
+    double directed = 0;  // with a camera: factor max0(1 + directed t) of section 12, t by n_x alone
     size_t at(int x, int y) const { return size_t(y) * width + x; }
 };
 
@@ -31,8 +32,8 @@ std::optional<Vec3> shorterStep(const ScatterPicture& picture, int x, int y, int
 // is one step, 0 where there is none.
 double surfaceArea(const ScatterPicture& picture, int x, int y);
 
-// The sum divided by that of the weights. Pixels whose irradiance or position is not finite count for nobody
-// and keep theirs.
+// The sum divided by that of the weights without the factor of directions. Pixels whose irradiance or
+// position is not finite count for nobody and keep theirs.
 std::vector<Rgb> scatterOnScreen(const ScatterPicture& picture, const Profile& profile);
 
 }  // namespace reference
