@@ -15,6 +15,10 @@
 
 namespace shade_test {
 
+using pellucid::Buffer;
+using pellucid::Device;
+using pellucid::imageDesc;
+using pellucid::Shader;
 using reference::Rgb;
 using reference::Vec3;
 
@@ -96,25 +100,6 @@ struct Frame {
     bool curvatureLut = true, shadowLut = true;
     size_t pixels() const { return size_t(width) * height; }
 };
-
-// The pixels [x, x + width) x [y, y + height) of a frame as a frame of their own.
-inline Frame cropped(const Frame& f, uint32_t x, uint32_t y, uint32_t width, uint32_t height) {
-    Frame part = f;
-    part.width = width, part.height = height;
-    const auto crop = [&](Image& image) {
-        if (image.values.empty()) return;
-        const uint32_t n = image.components;
-        std::vector<float> values;
-        for (uint32_t row = y; row < y + height; ++row) {
-            const auto from = image.values.begin() + ptrdiff_t((size_t(row) * f.width + x) * n);
-            values.insert(values.end(), from, from + ptrdiff_t(width * n));
-        }
-        image.values = std::move(values);
-    };
-    for (Image& image : part.slots) crop(image);
-    for (Light& light : part.lights) crop(light.wide);
-    return part;
-}
 
 class Random {
   public:
@@ -215,27 +200,13 @@ inline Frame randomFrame(uint32_t seed, uint32_t width, uint32_t height, uint32_
         const bool perspective = i % 2;
         l.shadowProjection = perspective ? PEL_SHADOW_PERSPECTIVE : PEL_SHADOW_PARALLEL;
         if (perspective) {
-            const float n = 100, far = 700;  // left-handed: z = f/(f-n) - nf/(f-n)/w
-            const float rows[16] = {1.2f,
-                                    0.1f,
-                                    0.5f,
-                                    150,
-                                    0,
-                                    1.1f,
-                                    0.5f,
-                                    150,
-                                    0,
-                                    0,
-                                    far / (far - n),
-                                    300 * far / (far - n) - n * far / (far - n),
-                                    0,
-                                    0,
-                                    1,
-                                    300};
+            const float n = 100, far = 700, a = far / (far - n);  // left-handed: z = a - n a / w
+            const float rows[16] = {1.2f, 0.1f, 0.5f, 150, 0, 1.1f, 0.5f, 150, 0, 0, a, 300 * a - n * a,
+                                    0,    0,    1,    300};
             std::copy_n(rows, 16, l.worldToShadow);
             l.shadowDepthA = -(far - n) / (n * far);
             l.shadowDepthB = 1 / n;
-            for (float& z : light.map.values) z = far / (far - n) * (1 - n / random.uniform(270, 305));
+            for (float& z : light.map.values) z = a * (1 - n / random.uniform(270, 305));
         } else {
             const float rows[16] = {0.005f, 0,       0.0005f, 0.5f, 0, 0.005f, 0, 0.5f,
                                     0,      0.0001f, 0.005f,  0.5f, 0, 0,      0, 1};

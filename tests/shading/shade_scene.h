@@ -10,8 +10,8 @@ namespace shade_test {
 
 // --- the device's answer ---
 
-inline const pellucid::Device& device() {
-    static const pellucid::Device d("");
+inline const Device& device() {
+    static const Device d("");
     return d;
 }
 inline const Tables& tables() {
@@ -19,28 +19,25 @@ inline const Tables& tables() {
     return t;
 }
 
-inline pellucid::Buffer upload(const pellucid::Device& device, const Image& image) {
-    return pellucid::Buffer(device, image.values);
+inline Buffer upload(const Device& device, const Image& image) {
+    return Buffer(device, image.values);
 }
 
 constexpr PelFormat floatFormats[] = {PEL_FORMAT_UNDEFINED, PEL_FORMAT_R32F, PEL_FORMAT_RG32F,
                                       PEL_FORMAT_RGB32F, PEL_FORMAT_RGBA32F};
 
 // Sets everything but the output, in float32.
-inline void setFrame(const pellucid::Device& device, pellucid::Shader& shader, const Frame& f,
-                     const Tables& tables) {
+inline void setFrame(const Device& device, Shader& shader, const Frame& f, const Tables& tables) {
     shader.set(f.options).set(f.ambient).set(f.camera);
     if (const uint32_t size = uint32_t(f.cube.size)) {
         std::vector<float> texels;
         for (const Rgb& t : f.cube.texels) texels.insert(texels.end(), {float(t.x), float(t.y), float(t.z)});
-        shader.setAmbientCube(
-            pellucid::imageDesc(pellucid::Buffer(device, texels), PEL_FORMAT_RGB32F, size, 6 * size));
+        shader.setAmbientCube(imageDesc(Buffer(device, texels), PEL_FORMAT_RGB32F, size, 6 * size));
     }
     for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot)
         if (const Image& image = f.slots[slot]; !image.values.empty())
             shader.set(PelImageSlot(slot),
-                       pellucid::imageDesc(upload(device, image), floatFormats[image.components], f.width,
-                                           f.height));
+                       imageDesc(upload(device, image), floatFormats[image.components], f.width, f.height));
     for (const auto& [id, material] : f.materials)
         shader.setMaterial(id, material, f.curvatureLut ? tables.curvature : pellucid::Lut(),
                            f.shadowLut ? tables.shadow : pellucid::Lut());
@@ -51,20 +48,19 @@ inline void setFrame(const pellucid::Device& device, pellucid::Shader& shader, c
         const Light& light = f.lights[i];
         if (!light.wide.values.empty())
             shader.set(i, PEL_LIGHT_WIDE_SHADOW,
-                       pellucid::imageDesc(upload(device, light.wide), PEL_FORMAT_R32F, f.width, f.height));
+                       imageDesc(upload(device, light.wide), PEL_FORMAT_R32F, f.width, f.height));
         if (!light.map.values.empty())
             shader.set(i, PEL_LIGHT_SHADOW_MAP,
-                       pellucid::imageDesc(upload(device, light.map), PEL_FORMAT_R32F, light.mapSize,
-                                           light.mapSize));
+                       imageDesc(upload(device, light.map), PEL_FORMAT_R32F, light.mapSize, light.mapSize));
         for (const MapImage& map : light.maps)
-            shader.set(i, map.slot,
-                       pellucid::imageDesc(pellucid::Buffer(device, map.values), floatFormats[map.components],
-                                           map.width, map.height));
+            shader.set(
+                i, map.slot,
+                imageDesc(Buffer(device, map.values), floatFormats[map.components], map.width, map.height));
     }
 }
 
 // Takes back all that setFrame sets.
-inline void clearFrame(pellucid::Shader& shader) {
+inline void clearFrame(Shader& shader) {
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot) shader.clear(PelImageSlot(slot));
     for (uint32_t id = 1; id < 256; ++id)
         pellucid::check(pelShaderSetMaterial(shader.get(), id, nullptr, nullptr, nullptr));
@@ -72,25 +68,43 @@ inline void clearFrame(pellucid::Shader& shader) {
 }
 
 // An image of zeros that the shader writes: three float32 components, or one.
-inline pellucid::Buffer setTarget(const pellucid::Device& device, pellucid::Shader& shader, const Frame& f,
-                                  PelImageSlot slot = PEL_SLOT_RADIANCE) {
+inline Buffer setTarget(const Device& device, Shader& shader, const Frame& f,
+                        PelImageSlot slot = PEL_SLOT_RADIANCE) {
     const uint32_t components = slot == PEL_SLOT_OUT_THICKNESS ? 1 : 3;
-    pellucid::Buffer target(device, f.pixels() * components * sizeof(float));
-    shader.set(slot, pellucid::imageDesc(target, floatFormats[components], f.width, f.height));
+    Buffer target(device, f.pixels() * components * sizeof(float));
+    shader.set(slot, imageDesc(target, floatFormats[components], f.width, f.height));
     return target;
 }
 
+// On the tests' own device, with radiance into a buffer.
+inline Shader& setFrame(Shader& shader, const Frame& f, const Buffer& target,
+                        PelFormat format = PEL_FORMAT_RGB32F) {
+    setFrame(device(), shader, f, tables());
+    return shader.set(PEL_SLOT_RADIANCE, imageDesc(target, format, f.width, f.height));
+}
+
 // RGB float32 over zeros. `stats`, if given, is filled; `change` sets more on the shader before its commit.
-inline std::vector<float> shade(const pellucid::Device& device, const Frame& f, const Tables& tables,
+inline std::vector<float> shade(const Device& device, const Frame& f, const Tables& tables,
                                 PelShaderStats* stats = nullptr,
-                                const std::function<void(pellucid::Shader&)>& change = {}) {
-    pellucid::Shader shader(device);
+                                const std::function<void(Shader&)>& change = {}) {
+    Shader shader(device);
     setFrame(device, shader, f, tables);
-    const pellucid::Buffer target = setTarget(device, shader, f);
+    const Buffer target = setTarget(device, shader, f);
     if (change) change(shader);
     shader.commit().execute();
     if (stats) *stats = shader.stats();
     return target.readAll<float>();
+}
+
+// On the tests' own device, and with the counts.
+inline std::vector<float> shade(const Frame& f, PelShaderStats* stats = nullptr,
+                                const std::function<void(Shader&)>& change = {}) {
+    return shade(device(), f, tables(), stats, change);
+}
+inline std::pair<std::vector<float>, PelShaderStats> shadeCounted(const Frame& f) {
+    PelShaderStats stats = pelShaderStatsDefaults();
+    std::vector<float> radiance = shade(f, &stats);
+    return {std::move(radiance), stats};
 }
 
 // --- the oracle's ---
@@ -115,17 +129,25 @@ inline std::vector<reference::Vec2> diskTaps(uint32_t count) {
     return taps;
 }
 
+inline Vec3 vectorOf(const float (&v)[3]) {
+    return {v[0], v[1], v[2]};
+}
+inline reference::Matrix4 matrixOf(const float (&m)[16]) {
+    reference::Matrix4 out;
+    for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = m[i];
+    return out;
+}
+
 inline reference::PixelLight truthLight(const Frame& f, const PelMaterial& material, const Light& light,
                                         size_t i) {
     const PelLight& l = light.params;
-    const auto vec = [](const float(&v)[3]) { return Vec3{v[0], v[1], v[2]}; };
     reference::PixelLight out;
     if (l.type == PEL_LIGHT_DIRECTIONAL) {
-        out.toLight = vec(l.toLight);
-        out.color = vec(l.color);
+        out.toLight = vectorOf(l.toLight);
+        out.color = vectorOf(l.color);
     } else {
-        out = reference::lampAt({vec(l.position), vec(l.color), l.range, l.type == PEL_LIGHT_SPOT,
-                                 vec(l.spotDirection), l.spotCosInner, l.spotCosOuter},
+        out = reference::lampAt({vectorOf(l.position), vectorOf(l.color), l.range, l.type == PEL_LIGHT_SPOT,
+                                 vectorOf(l.spotDirection), l.spotCosInner, l.spotCosOuter},
                                 f.slots[PEL_SLOT_POSITION].vec(i));
     }
     if (!light.wide.values.empty()) out.wideShadow = light.wide.at(i);
@@ -134,9 +156,6 @@ inline reference::PixelLight truthLight(const Frame& f, const PelMaterial& mater
         out.thickness = f.slots[PEL_SLOT_THICKNESS].at(i);
     } else if (!light.map.values.empty() && material.thicknessTaps) {
         out.hasThickness = true;
-        reference::Matrix4 m;
-        for (int r = 0; r < 4; ++r)
-            for (int c = 0; c < 4; ++c) m[r][c] = l.worldToShadow[4 * r + c];
         const reference::DepthDecoding decoding{l.shadowProjection == PEL_SHADOW_PERSPECTIVE,
                                                 l.shadowDepthRange, l.shadowDepthA, l.shadowDepthB};
         reference::ShadowMap map{
@@ -145,8 +164,8 @@ inline reference::PixelLight truthLight(const Frame& f, const PelMaterial& mater
                                                                              : PEL_SLOT_NORMAL_GEOMETRIC;
         out.thickness = reference::thickness(
             map,
-            reference::shadowCoordinates(m, f.slots[PEL_SLOT_POSITION].vec(i), f.slots[normal].vec(i),
-                                         material.deepScatterNormalOffset),
+            reference::shadowCoordinates(matrixOf(l.worldToShadow), f.slots[PEL_SLOT_POSITION].vec(i),
+                                         f.slots[normal].vec(i), material.deepScatterNormalOffset),
             f.options.rotateTaps ? reference::turnedTaps(diskTaps(material.thicknessTaps),
                                                          uint32_t(i % f.width), uint32_t(i / f.width))
                                  : diskTaps(material.thicknessTaps),
@@ -166,12 +185,11 @@ inline reference::Shaded truth(const Frame& f, const Tables& tables, size_t i) {
         return s[slot].values.empty() ? otherwise : s[slot].at(i);
     };
     reference::Material material;
-    material.albedo = s[PEL_SLOT_ALBEDO].values.empty() ? Rgb{m.albedo[0], m.albedo[1], m.albedo[2]}
-                                                        : s[PEL_SLOT_ALBEDO].vec(i);
+    material.albedo = s[PEL_SLOT_ALBEDO].values.empty() ? vectorOf(m.albedo) : s[PEL_SLOT_ALBEDO].vec(i);
     material.diffusionRadius = m.diffusionRadius;
-    material.normalBlend = {m.normalBlend[0], m.normalBlend[1], m.normalBlend[2]};
+    material.normalBlend = vectorOf(m.normalBlend);
     material.shadowFilterWidth = m.shadowFilterWidth;
-    material.deepScatterColor = {m.deepScatterColor[0], m.deepScatterColor[1], m.deepScatterColor[2]};
+    material.deepScatterColor = vectorOf(m.deepScatterColor);
     material.deepScatterRadius = m.deepScatterRadius;
     material.specular = m.specular * value(PEL_SLOT_SPECULAR, 1);
     material.roughness = m.roughness * value(PEL_SLOT_ROUGHNESS, 1);
@@ -193,8 +211,7 @@ inline reference::Shaded truth(const Frame& f, const Tables& tables, size_t i) {
     pixel.blurred =
         s[PEL_SLOT_NORMAL_BLURRED].values.empty() ? pixel.geometric : unit(PEL_SLOT_NORMAL_BLURRED);
     if (material.specular > 0) {
-        const Vec3 eye{f.camera.position[0], f.camera.position[1], f.camera.position[2]};
-        pixel.toViewer = reference::normalized(eye - s[PEL_SLOT_POSITION].vec(i));
+        pixel.toViewer = reference::normalized(vectorOf(f.camera.position) - s[PEL_SLOT_POSITION].vec(i));
     }
     pixel.curvature = value(PEL_SLOT_CURVATURE, 0);
     pixel.ambientOcclusion = value(PEL_SLOT_AMBIENT_OCCLUSION, 1);
@@ -202,10 +219,9 @@ inline reference::Shaded truth(const Frame& f, const Tables& tables, size_t i) {
     pixel.thickness = value(PEL_SLOT_THICKNESS, 0);
     std::vector<reference::PixelLight> lights;
     for (const Light& light : f.lights) lights.push_back(truthLight(f, m, light, i));
-    reference::Ambient ambient{{f.ambient.constant[0], f.ambient.constant[1], f.ambient.constant[2]}, {}};
+    reference::Ambient ambient{vectorOf(f.ambient.constant), {}};
     if (f.cube.size) ambient.cube = &f.cube;
-    for (int k = 0; k < 9; ++k)
-        ambient.harmonics[k] = {f.ambient.sh[k][0], f.ambient.sh[k][1], f.ambient.sh[k][2]};
+    for (int k = 0; k < 9; ++k) ambient.harmonics[k] = vectorOf(f.ambient.sh[k]);
     reference::Shaded shaded = reference::shadePixel(material, pixel, lights, ambient);
     if (!scatters) {
         // Without a curvature table direct light is Lambert's, of the shading normal.

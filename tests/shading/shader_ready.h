@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <initializer_list>
 
 #include "shade_scene.h"
 
@@ -11,16 +10,16 @@ namespace shade_test {
 
 struct Ready {
     Frame frame = randomFrame(1, 32, 16, 1);
-    pellucid::Shader shader{device()};
-    pellucid::Buffer target{device(), 32 * 16 * 12};
+    Shader shader{device()};
+    Buffer target{device(), 32 * 16 * 12};
     Ready() {
         setFrame(device(), shader, frame, tables());
-        shader.set(PEL_SLOT_RADIANCE, pellucid::imageDesc(target, PEL_FORMAT_RGB32F, 32, 16));
+        shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, 32, 16));
     }
 };
 
 // The call fails with this code and says all of `words`.
-inline void expectError(PelError code, std::initializer_list<const char*> words,
+inline void expectError(PelError code, const std::vector<const char*>& words,
                         const std::function<void()>& call) {
     try {
         call();

@@ -25,15 +25,6 @@ inline Frame formFrame(uint32_t seed = 1, uint32_t width = 120, uint32_t height 
     return f;
 }
 
-inline Vec3 vectorOf(const float (&v)[3]) {
-    return {v[0], v[1], v[2]};
-}
-inline reference::Matrix4 matrixOf(const float (&m)[16]) {
-    reference::Matrix4 out;
-    for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = m[i];
-    return out;
-}
-
 // Adds black lights with tiny maps of all forms, so that every test runs the same program, the one with all
 // forms.
 inline std::vector<Light> withAllForms(std::vector<Light> lights) {
@@ -59,7 +50,7 @@ inline std::vector<Light> withAllForms(std::vector<Light> lights) {
 }
 
 // Puts the maps of the first light side by side into one buffer.
-inline void setAtlas(pellucid::Shader& shader, const std::vector<MapImage>& maps) {
+inline void setAtlas(Shader& shader, const std::vector<MapImage>& maps) {
     uint32_t row = 0, offset = 0;  // floats
     for (const MapImage& m : maps) row += m.width * m.components;
     std::vector<float> all(size_t(row) * maps[0].height);
@@ -69,11 +60,11 @@ inline void setAtlas(pellucid::Shader& shader, const std::vector<MapImage>& maps
             std::copy_n(&m.values[y * length], length, &all[size_t(y) * row + offset]);
         offset += uint32_t(length);
     }
-    const pellucid::Buffer shared(device(), all);
+    const Buffer shared(device(), all);
     offset = 0;
     for (const MapImage& m : maps) {
-        PelImageDesc desc = pellucid::imageDesc(shared, floatFormats[m.components], m.width, m.height,
-                                                offset * sizeof(float));
+        PelImageDesc desc =
+            imageDesc(shared, floatFormats[m.components], m.width, m.height, offset * sizeof(float));
         desc.rowStride = row * sizeof(float);
         shader.set(0, m.slot, desc);
         offset += m.width * m.components;
@@ -94,8 +85,8 @@ inline Seen shadeForms(Frame f, std::vector<Light> lights, bool atlas = false) {
         for (int c = 0; c < 3; ++c) f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i + c] = float(toLight[c]);
     }
     Seen seen;
-    pellucid::Buffer diffuse, thickness;
-    shade(device(), f, tables(), &seen.stats, [&](pellucid::Shader& shader) {
+    Buffer diffuse, thickness;
+    shade(device(), f, tables(), &seen.stats, [&](Shader& shader) {
         if (atlas) setAtlas(shader, f.lights[0].maps);
         diffuse = setTarget(device(), shader, f, PEL_SLOT_OUT_DIFFUSE);
         thickness = setTarget(device(), shader, f, PEL_SLOT_OUT_THICKNESS);
@@ -246,17 +237,13 @@ struct ContentLight {
 };
 
 // Each texel of the map holds the means over 2 x 2 depths of `from`, whose size is twice that.
-inline ContentLight contentLight(PelShadowContent content, bool perspective, bool reversed, uint32_t size,
-                                 bool flat = false) {
+inline ContentLight contentLight(PelShadowContent content, bool perspective, bool reversed, uint32_t size) {
     ContentLight out;
     out.from = mapLight(size, perspective, reversed, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 2 * size);
     auto& depth = out.from.map.depth;
     if (reversed && !perspective) startAtOne(out.from);
     Light& l = out.light;
     l.params = out.from.light.params;
-    if (flat)
-        std::fill(depth.begin(), depth.end(),
-                  perspective || !reversed ? depthOf(out.from, 130) : 1 - 130 / 300.0);
     l.params.shadowContent = content;
     l.params.shadowExponent = reversed ? -80 : 80;
     const uint32_t components = content == PEL_SHADOW_CONTENT_MOMENTS ? 2 : 1;

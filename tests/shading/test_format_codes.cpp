@@ -1,4 +1,5 @@
-// Packed images, tight and padded, with every code of every component.
+// Packed images, tight and padded, with every code of every component; and colours written as halves: every
+// half, and what lies between two of them, rounds to the nearest, at a tie to the even one.
 #include <gtest/gtest.h>
 
 #include "half_bits.h"
@@ -6,9 +7,6 @@
 #include "tolerances.h"
 
 using namespace shade_test;
-using pellucid::Buffer;
-using pellucid::imageDesc;
-using pellucid::Shader;
 
 namespace {
 
@@ -31,9 +29,50 @@ double signedUnit(uint32_t code) {
     return std::max(-1.0, int16_t(code) / 32767.0);
 }
 
-// Halves from -1 to 1.
-uint16_t signedHalf(uint32_t i, uint32_t k) {
-    return uint16_t(code(i, k, 0x3c01) | (code(i, k + 1, 2) << 15));
+// Appends code k of pixel i to the bytes: what it stands for, 0 to 1; halves that are signed, -1 to 1.
+double component(PelFormat format, std::vector<uint8_t>& to, uint32_t i, uint32_t k, bool isSigned = false) {
+    switch (format) {
+        case PEL_FORMAT_RGBA8_UNORM:
+        case PEL_FORMAT_R8_UNORM:
+        case PEL_FORMAT_RGBA8_SRGB:
+            append(to, uint8_t(code(i, k, 256)));
+            return format == PEL_FORMAT_RGBA8_SRGB ? fromSrgb(to.back() / 255.0) : to.back() / 255.0;
+        case PEL_FORMAT_R16_UNORM:
+            append(to, uint16_t(code(i, k, 65536)));
+            return code(i, k, 65536) / 65535.0;
+        case PEL_FORMAT_R32F:
+            append(to, float(code(i, k, 65536)) / 65535);
+            return float(code(i, k, 65536)) / 65535;
+        default:
+            const auto h = uint16_t(code(i, k, 0x3c01) | isSigned * code(i, (k + 1) % 6, 2) << 15);
+            append(to, h);
+            return fromHalf(h);
+    }
+}
+void appendAlpha(PelFormat format, std::vector<uint8_t>& to) {
+    if (format == PEL_FORMAT_RGBA8_UNORM || format == PEL_FORMAT_RGBA8_SRGB) append(to, uint8_t(9));
+    if (format == PEL_FORMAT_RGBA16F) append(to, uint16_t(0x7e00));  // NaN: alpha is not read
+}
+Vec3 normalOf(PelFormat format, std::vector<uint8_t>& to, uint32_t i) {
+    if (format == PEL_FORMAT_OCT16X2_SNORM) {
+        for (uint32_t k = 4; k < 6; ++k) append(to, uint16_t(code(i, k, 65536)));
+        const double u = signedUnit(code(i, 4, 65536)), v = signedUnit(code(i, 5, 65536)),
+                     z = 1 - std::abs(u) - std::abs(v);
+        return {z < 0 ? (1 - std::abs(v)) * std::copysign(1, u) : u,
+                z < 0 ? (1 - std::abs(u)) * std::copysign(1, v) : v, z};
+    }
+    if (format == PEL_FORMAT_A2B10G10R10_UNORM) {
+        const uint32_t n[3] = {code(i, 4, 1024), code(i, 5, 1024), code(i / 64 + 31 * i, 3, 1024)};
+        append(to, n[0] | n[1] << 10 | n[2] << 20);
+        return {2 * (n[0] / 1023.0) - 1, 2 * (n[1] / 1023.0) - 1, 2 * (n[2] / 1023.0) - 1};
+    }
+    Vec3 out;
+    for (uint32_t c = 0; c < 3; ++c) {
+        const double v = component(format, to, c < 2 ? i : i / 256 + 7 * i, c < 2 ? 4 + c : 3, true);
+        out[int(c)] = format == PEL_FORMAT_RGBA16F ? v : 2 * v - 1;
+    }
+    appendAlpha(format, to);
+    return out;
 }
 
 // What the codes of a pixel stand for, and all pixels' bytes.
@@ -48,70 +87,24 @@ struct Bytes {
 struct Formats {
     const char* name;
     PelFormat albedo, occlusion, normal, id;
-    Pixel (*pack)(uint32_t i, Bytes& to);
+    Pixel pack(uint32_t i, Bytes& to) const {
+        Pixel out;
+        for (uint32_t c = 0; c < 3; ++c) out.albedo[int(c)] = component(albedo, to.albedo, i, c);
+        appendAlpha(albedo, to.albedo);
+        out.occlusion = component(occlusion, to.occlusion, i, 3);
+        out.normal = normalOf(normal, to.normal, i);
+        return out;
+    }
 };
 
 const Formats formats[] = {
     {"Srgb8Unorm16Octahedral", PEL_FORMAT_RGBA8_SRGB, PEL_FORMAT_R16_UNORM, PEL_FORMAT_OCT16X2_SNORM,
-     PEL_FORMAT_R8_UINT,
-     [](uint32_t i, Bytes& to) {
-         Pixel out;
-         for (uint32_t c = 0; c < 3; ++c)
-             append(to.albedo, uint8_t(code(i, c, 256))),
-                 out.albedo[int(c)] = fromSrgb(to.albedo.back() / 255.0);
-         append(to.albedo, uint8_t(9));
-         append(to.occlusion, uint16_t(code(i, 3, 65536)));
-         out.occlusion = code(i, 3, 65536) / 65535.0;
-         for (uint32_t k = 4; k < 6; ++k) append(to.normal, uint16_t(code(i, k, 65536)));
-         const double u = signedUnit(code(i, 4, 65536)), v = signedUnit(code(i, 5, 65536)),
-                      z = 1 - std::abs(u) - std::abs(v);
-         out.normal = {z < 0 ? (1 - std::abs(v)) * std::copysign(1, u) : u,
-                       z < 0 ? (1 - std::abs(u)) * std::copysign(1, v) : v, z};
-         return out;
-     }},
+     PEL_FORMAT_R8_UINT},
     {"Half3Unorm8A2B10G10R10", PEL_FORMAT_RGB16F, PEL_FORMAT_R8_UNORM, PEL_FORMAT_A2B10G10R10_UNORM,
-     PEL_FORMAT_R16_UINT,
-     [](uint32_t i, Bytes& to) {
-         Pixel out;
-         for (uint32_t c = 0; c < 3; ++c) {
-             const auto h = uint16_t(code(i, c, 0x3c01));  // 0 to 1
-             append(to.albedo, h), out.albedo[int(c)] = fromHalf(h);
-         }
-         append(to.occlusion, uint8_t(code(i, 3, 256)));
-         out.occlusion = to.occlusion.back() / 255.0;
-         const uint32_t n[3] = {code(i, 4, 1024), code(i, 5, 1024), code(i / 64 + 31 * i, 3, 1024)};
-         append(to.normal, n[0] | n[1] << 10 | n[2] << 20);
-         for (int c = 0; c < 3; ++c) out.normal[c] = 2 * (n[c] / 1023.0) - 1;
-         return out;
-     }},
+     PEL_FORMAT_R16_UINT},
     {"Unorm8HalfUnorm8Normal", PEL_FORMAT_RGBA8_UNORM, PEL_FORMAT_R16F, PEL_FORMAT_RGBA8_UNORM,
-     PEL_FORMAT_R32_UINT,
-     [](uint32_t i, Bytes& to) {
-         Pixel out;
-         for (uint32_t c = 0; c < 3; ++c)
-             append(to.albedo, uint8_t(code(i, c, 256))), out.albedo[int(c)] = to.albedo.back() / 255.0;
-         append(to.albedo, uint8_t(9));
-         const auto h = uint16_t(code(i, 3, 0x3c01));
-         append(to.occlusion, h);
-         out.occlusion = fromHalf(h);
-         const uint32_t n[3] = {code(i, 4, 256), code(i, 5, 256), code(i / 256 + 7 * i, 3, 256)};
-         for (int c = 0; c < 3; ++c) append(to.normal, uint8_t(n[c])), out.normal[c] = 2 * (n[c] / 255.0) - 1;
-         append(to.normal, uint8_t(9));
-         return out;
-     }},
-    {"HalvesWithAlpha", PEL_FORMAT_RGBA16F, PEL_FORMAT_R32F, PEL_FORMAT_RGBA16F, PEL_FORMAT_R32F,
-     [](uint32_t i, Bytes& to) {
-         Pixel out;
-         for (uint32_t c = 0; c < 3; ++c) {
-             const auto albedo = uint16_t(code(i, c, 0x3c01)), normal = signedHalf(i, c + 2);
-             append(to.albedo, albedo), out.albedo[int(c)] = fromHalf(albedo);
-             append(to.normal, normal), out.normal[int(c)] = fromHalf(normal);
-         }
-         append(to.albedo, uint16_t(0x7e00)), append(to.normal, uint16_t(0x7e00));  // NaN: alpha is not read
-         append(to.occlusion, float(code(i, 3, 65536)) / 65535);
-         out.occlusion = float(code(i, 3, 65536)) / 65535;
-         return out;
-     }}};
+     PEL_FORMAT_R32_UINT},
+    {"HalvesWithAlpha", PEL_FORMAT_RGBA16F, PEL_FORMAT_R32F, PEL_FORMAT_RGBA16F, PEL_FORMAT_R32F}};
 
 uint32_t idOf(uint32_t i) {
     return code(i, 2, 65536) % 3;  // 0 is background
@@ -206,3 +199,39 @@ INSTANTIATE_TEST_SUITE_P(All, FormatCodes,
                              return std::string(std::get<0>(info.param).name) +
                                     (std::get<1>(info.param) ? "Padded" : "Tight");
                          });
+
+TEST(HalfStores, RoundToNearestEven) {
+    constexpr uint16_t largest = 0x7bff;
+    std::vector<float> values;
+    for (uint16_t h = 0; h < largest; ++h) {
+        const float low = fromHalf(h), high = fromHalf(uint16_t(h + 1)), tie = low + (high - low) / 2;
+        values.insert(values.end(), {low, tie, std::nextafter(tie, low), std::nextafter(tie, high)});
+    }
+    constexpr uint32_t width = 211;  // no multiple of a vector
+    const uint32_t height = uint32_t((values.size() / 3 + width) / width);
+    values.resize(size_t(3) * width * height);
+    // Irradiance given by the host, albedo 1, nothing else: what is written is what was given.
+    std::vector<float> normals(values.size());
+    for (size_t i = 2; i < normals.size(); i += 3) normals[i] = 1;
+    PelMaterial material = pelMaterialDefaults();
+    material.scattering = PEL_SCATTERING_NONE;
+    material.specular = 0;
+    std::fill_n(material.albedo, 3, 1.0f);
+    Shader shader(device());
+    const Buffer out(device(), std::vector<uint16_t>(values.size()));
+    const auto image = [&](const Buffer& buffer, PelFormat format) {
+        return imageDesc(buffer, format, width, height);
+    };
+    shader.set(PEL_SLOT_NORMAL_SHADING, image(Buffer(device(), normals), PEL_FORMAT_RGB32F))
+        .set(PEL_SLOT_IRRADIANCE, image(Buffer(device(), values), PEL_FORMAT_RGB32F))
+        .set(PEL_SLOT_RADIANCE, image(out, PEL_FORMAT_RGB16F))
+        .setMaterial(1, material)
+        .commit()
+        .execute();
+    const auto halves = out.readAll<uint16_t>();
+    size_t wrong = 0;
+    for (size_t i = 0; i < values.size(); ++i)
+        if (halves[i] != toHalf(values[i]) && ++wrong <= 5)
+            ADD_FAILURE() << values[i] << " is " << halves[i] << ", not " << toHalf(values[i]);
+    EXPECT_EQ(wrong, 0u);
+}

@@ -57,6 +57,24 @@ TEST_P(PoissonDisk, SeesEdgesBetterThanRandomTaps) {
     EXPECT_LE(std::sqrt(ours / random), tolerance::diskEdge);
 }
 
+TEST(TurnedTaps, TheAnglesFillTheCircle) {
+    // Any 4 x 4 pixels: the largest gap between angles is far below that of random ones (about 76 degrees of
+    // 16).
+    const reference::Vec2 tap{1, 0};
+    for (uint32_t x0 : {0u, 1u, 777u, 16380u})
+        for (uint32_t y0 : {0u, 5u, 16380u}) {
+            std::vector<double> turns;
+            for (uint32_t k = 0; k < 16; ++k) {
+                const auto turned = reference::turnedTaps({tap}, x0 + k % 4, y0 + k / 4)[0];
+                turns.push_back(std::atan2(turned.y, turned.x) / (2 * M_PI));
+            }
+            std::sort(turns.begin(), turns.end());
+            double gap = 1 + turns[0] - turns[15];
+            for (size_t k = 1; k < 16; ++k) gap = std::max(gap, turns[k] - turns[k - 1]);
+            EXPECT_LT(gap, 0.13) << x0 << ' ' << y0;
+        }
+}
+
 INSTANTIATE_TEST_SUITE_P(Disks, PoissonDisk, testing::Values(8u, 16u, 32u),
                          [](const auto& info) { return std::to_string(info.param); });
 

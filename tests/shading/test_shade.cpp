@@ -1,134 +1,110 @@
-// The shading pass against the oracle: each term alone, their sum, and what must not change a bit of it.
+// The shading pass against the oracle: each term alone, their sum, outputs beside radiance, irradiance per
+// pixel; and what must not change a bit: layouts of images, and what is in the target.
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <functional>
 
+#include "device_lanes.h"
+#include "half_bits.h"
 #include "shade_scene.h"
 #include "tolerances.h"
 
 using namespace shade_test;
-using pellucid::Buffer;
-using pellucid::Device;
-using pellucid::imageDesc;
-using pellucid::Shader;
 
 namespace {
 
-void darken(Frame& f) {
-    f.ambient = pelAmbientDefaults();
-    for (auto& [id, m] : f.materials) {
-        m.specular = 0;
-        for (float& c : m.deepScatterColor) c = 0;
-    }
-    for (Light& light : f.lights) light.wide = {};
-}
+// What is in the frame; else only Lambert's light.
+enum Part : uint32_t {
+    CURVATURE = 1,
+    WIDE = 2,
+    LUT = 4,
+    AMBIENT = 8,
+    DEEP = 16,
+    SPECULAR = 32,
+    THICKNESS = 64
+};
 
 struct Term {
     const char* name;
-    uint32_t features;
-    std::function<void(Frame&, const Frame&)> light;  // darkened frame, the full one
+    uint32_t features, parts;
+    std::function<void(Frame&)> change = [](Frame&) {};
 };
 void PrintTo(const Term& term, std::ostream* out) {
     *out << term.name;
 }
 
+void scaleThickness(Frame& f, float most) {
+    f.slots[PEL_SLOT_THICKNESS] = f.slots[PEL_SLOT_AMBIENT_OCCLUSION];
+    for (float& t : f.slots[PEL_SLOT_THICKNESS].values) t *= most;
+}
+void blacken(float (&color)[3]) {
+    std::fill_n(color, 3, 0.0f);
+}
+
 class ShadeTerm : public testing::TestWithParam<Term> {};
 
 TEST_P(ShadeTerm, MatchesTheOracle) {
-    const Frame full = randomFrame(11, 203, 77, 3);
-    Frame f = full;
-    darken(f);
-    GetParam().light(f, full);
-    PelShaderStats stats = pelShaderStatsDefaults();
-    const auto result = shade(device(), f, tables(), &stats);
+    Frame f = randomFrame(11, 203, 77, 3);
+    const auto has = [](Part part) { return (GetParam().parts & part) != 0; };
+    if (!has(CURVATURE)) f.slots[PEL_SLOT_CURVATURE] = {};
+    f.shadowLut = has(LUT);
+    if (has(AMBIENT))
+        f.lights.clear();
+    else
+        f.ambient = pelAmbientDefaults();
+    for (Light& light : f.lights)
+        if (!has(WIDE)) light.wide = {};
+    if (has(THICKNESS)) scaleThickness(f, 60);
+    if (has(SPECULAR)) f.slots[PEL_SLOT_ALBEDO].values.assign(f.pixels() * 3, 0.0f);
+    for (auto& [id, m] : f.materials) {
+        if (!has(SPECULAR)) m.specular = 0;
+        if (!has(DEEP)) blacken(m.deepScatterColor);
+    }
+    GetParam().change(f);
+    const auto [result, stats] = shadeCounted(f);
     EXPECT_EQ(stats.features, GetParam().features);
     EXPECT_LE(worstError(f, result), tolerance::shadeTerm);
     EXPECT_GT(*std::max_element(result.begin(), result.end()), 0.01f) << "the term is there at all";
 }
 
-void noCurvature(Frame& f) {
-    f.slots[PEL_SLOT_CURVATURE] = {};
-}
-void onlyAmbient(Frame& f, const Frame& full) {
-    f.ambient = full.ambient;
-    f.lights.clear();
-}
-void black(Frame& f) {
-    f.slots[PEL_SLOT_ALBEDO].values.assign(f.pixels() * 3, 0.0f);
-}
-
 INSTANTIATE_TEST_SUITE_P(
     Terms, ShadeTerm,
-    testing::Values(Term{"Lambert", 0, [](Frame& f, const Frame&) { noCurvature(f); }},
-                    Term{"Direct", PEL_FEATURE_DIRECT_SCATTER, [](Frame&, const Frame&) {}},
-                    Term{"PlainShadow", PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SHADOW,
-                         [](Frame& f, const Frame& full) {
-                             f.shadowLut = false;
-                             for (size_t i = 0; i < f.lights.size(); ++i)
-                                 f.lights[i].wide = full.lights[i].wide;
-                         }},
-                    Term{"ShadowLut", PEL_FEATURE_SHADOW | PEL_FEATURE_SHADOW_LUT,
-                         [](Frame& f, const Frame& full) {
-                             noCurvature(f);
-                             for (size_t i = 0; i < f.lights.size(); ++i)
-                                 f.lights[i].wide = full.lights[i].wide;
-                         }},
-                    Term{"Ambient", PEL_FEATURE_AMBIENT, onlyAmbient},
-                    Term{"AmbientConstant", PEL_FEATURE_AMBIENT,
-                         [](Frame& f, const Frame& full) {
-                             onlyAmbient(f, full);
+    testing::Values(Term{"Lambert", 0, 0}, Term{"Direct", PEL_FEATURE_DIRECT_SCATTER, CURVATURE},
+                    Term{"PlainShadow", PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SHADOW, CURVATURE | WIDE},
+                    Term{"ShadowLut", PEL_FEATURE_SHADOW | PEL_FEATURE_SHADOW_LUT, WIDE | LUT},
+                    Term{"Ambient", PEL_FEATURE_AMBIENT, AMBIENT},
+                    Term{"AmbientConstantWithoutIds", PEL_FEATURE_AMBIENT, AMBIENT,
+                         [](Frame& f) {
                              std::memset(f.ambient.sh, 0, sizeof f.ambient.sh);
+                             f.slots[PEL_SLOT_MATERIAL] = {};
                          }},
-                    Term{"DeepScatterTaps", PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS,
-                         [](Frame& f, const Frame& full) {
-                             noCurvature(f);
-                             f.materials = full.materials;
-                             for (auto& [id, m] : f.materials) m.specular = 0;
-                         }},
-                    Term{"DeepScatterImage", PEL_FEATURE_DEEP_SCATTER,
-                         [](Frame& f, const Frame& full) {
-                             noCurvature(f);
-                             f.materials = full.materials;
-                             for (auto& [id, m] : f.materials) m.specular = 0;
-                             f.slots[PEL_SLOT_THICKNESS] = f.slots[PEL_SLOT_AMBIENT_OCCLUSION];
-                             for (float& t : f.slots[PEL_SLOT_THICKNESS].values) t *= 20;
-                         }},
+                    Term{"DeepScatterTaps", PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS, DEEP},
+                    Term{"DeepScatterTurnedTaps", PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS, DEEP,
+                         [](Frame& f) { f.options.rotateTaps = 1; }},
+                    Term{"DeepScatterImage", PEL_FEATURE_DEEP_SCATTER, DEEP | THICKNESS},
                     Term{"DeepScatterAmbient", PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_SCATTER,
-                         [](Frame& f, const Frame& full) {
-                             onlyAmbient(f, full);
-                             f.materials = full.materials;
-                             for (auto& [id, m] : f.materials)
-                                 m.deepScatterAmbient = 0.1f * float(id), m.specular = 0;
-                             f.slots[PEL_SLOT_THICKNESS] = f.slots[PEL_SLOT_AMBIENT_OCCLUSION];
-                             for (float& t : f.slots[PEL_SLOT_THICKNESS].values) t *= 60;
+                         AMBIENT | DEEP | THICKNESS,
+                         [](Frame& f) {
+                             for (auto& [id, m] : f.materials) m.deepScatterAmbient = 0.1f * float(id);
+                         }},
+                    // Shadow maps and taps are there, but measure along the lights.
+                    Term{"NoAmbientScatterWithoutAThicknessImage",
+                         PEL_FEATURE_AMBIENT | PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS, DEEP,
+                         [](Frame& f) {
+                             f.ambient.constant[0] = 0.3f;
+                             for (auto& [id, m] : f.materials) m.deepScatterAmbient = 0.7f;
                          }},
                     Term{"SpecularGgx", PEL_FEATURE_SPECULAR | PEL_FEATURE_SHADOW | PEL_FEATURE_GGX,
-                         [](Frame& f, const Frame& full) {
-                             noCurvature(f);
-                             f.shadowLut = false;
-                             black(f);
-                             f.materials = full.materials;
+                         SPECULAR | WIDE,
+                         [](Frame& f) {
                              for (auto& [id, m] : f.materials) {
-                                 for (float& c : m.deepScatterColor) c = 0;
                                  if (id == 2) continue;  // one material of the other model
                                  m.specularModel = PEL_SPECULAR_GGX;
                                  m.roughness2 = 0.1f * float(id);
                              }
-                             for (size_t i = 0; i < f.lights.size(); ++i)
-                                 f.lights[i].wide = full.lights[i].wide;
                          }},
-                    Term{"Specular", PEL_FEATURE_SPECULAR | PEL_FEATURE_SHADOW,
-                         [](Frame& f, const Frame& full) {
-                             noCurvature(f);
-                             f.shadowLut = false;
-                             black(f);
-                             f.materials = full.materials;
-                             for (auto& [id, m] : f.materials)
-                                 for (float& c : m.deepScatterColor) c = 0;
-                             for (size_t i = 0; i < f.lights.size(); ++i)
-                                 f.lights[i].wide = full.lights[i].wide;
-                         }}),
+                    Term{"Specular", PEL_FEATURE_SPECULAR | PEL_FEATURE_SHADOW, SPECULAR | WIDE}),
     [](const auto& info) { return info.param.name; });
 
 TEST(Shade, EverythingAMillionPixels) {
@@ -140,75 +116,304 @@ TEST(Shade, EverythingAMillionPixels) {
     double worst = 0;
     for (uint32_t seed = 1; seed <= 4; ++seed) {
         const Frame f = randomFrame(seed, 640, height, seed);
-        worst = std::max(worst, worstError(f, shade(device(), f, tables())));
+        worst = std::max(worst, worstError(f, shade(f)));
     }
     std::printf("worst error of the sum: %.2e\n", worst);
     EXPECT_LE(worst, tolerance::shadeSum);
 }
 
-TEST(Shade, SkippingChangesNoBitAndIsCounted) {
-    for (uint32_t seed = 20; seed < 26; ++seed) {
-        Frame f = randomFrame(seed, 150 + seed, 90, seed % 4);
-        f.options.countPixels = 1;
-        PelShaderStats with = pelShaderStatsDefaults(), without = with;
-        const auto skipped = shade(device(), f, tables(), &with);
-        f.options.disableSkipping = 1;
-        EXPECT_EQ(skipped, shade(device(), f, tables(), &without)) << "seed " << seed;
-        uint64_t materials = 0;
-        for (float id : f.slots[PEL_SLOT_MATERIAL].values) materials += id != 0;
-        EXPECT_EQ(with.pixelsShaded, materials);
-        EXPECT_EQ(without.pixelsShaded, materials);
-        EXPECT_LE(with.tilesShaded, with.tilesTotal);
-        EXPECT_EQ(without.tilesShaded, without.tilesTotal);
-        if (f.lights.empty()) continue;
-        EXPECT_LT(with.pixelsThickness, without.pixelsThickness);
-        EXPECT_GT(with.pixelsThickness, 0u);
-        EXPECT_GT(with.pixelsShadowLut, 0u);
-        EXPECT_LT(with.pixelsShadowLut, f.lights.size() * materials);
+// --- outputs beside radiance ---
+
+struct Shaded {
+    std::vector<float> radiance, diffuse, deepScatter, specular, thickness;
+    PelShaderStats stats = pelShaderStatsDefaults();
+};
+
+// RGB float32 over zeros; -1 in the thickness of pixels that are left alone.
+Shaded shadeParts(const Frame& f) {
+    Shader shader(device());
+    setFrame(device(), shader, f, tables());
+    const size_t bytes = f.pixels() * 12;
+    const Buffer targets[4] = {Buffer(device(), bytes), Buffer(device(), bytes), Buffer(device(), bytes),
+                               Buffer(device(), bytes)};
+    const Buffer thickness(device(), std::vector<float>(f.pixels(), -1));
+    const PelImageSlot slots[4] = {PEL_SLOT_RADIANCE, PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER,
+                                   PEL_SLOT_OUT_SPECULAR};
+    for (int i = 0; i < 4; ++i)
+        shader.set(slots[i], imageDesc(targets[i], PEL_FORMAT_RGB32F, f.width, f.height));
+    shader.set(PEL_SLOT_OUT_THICKNESS, imageDesc(thickness, PEL_FORMAT_R32F, f.width, f.height));
+    shader.commit().execute();
+    return {targets[0].readAll<float>(), targets[1].readAll<float>(), targets[2].readAll<float>(),
+            targets[3].readAll<float>(), thickness.readAll<float>(),  shader.stats()};
+}
+
+Frame partsFrame(uint32_t seed) {
+    Frame f = randomFrame(seed, 211, 60, 2);
+    for (auto& [id, m] : f.materials) {
+        m.deepScatterAmbient = 0.3f;
+        m.specularModel = id == 2 ? PEL_SPECULAR_GGX : PEL_SPECULAR_KSK;
+    }
+    if (seed % 2) scaleThickness(f, 60);
+    f.options.rotateTaps = 1;
+    return f;
+}
+
+TEST(ShadeOutputs, EachMatchesTheOracleAndRadianceStaysWhatItIs) {
+    for (uint32_t seed : {1u, 2u}) {
+        const Frame f = partsFrame(seed);
+        const Shaded shaded = shadeParts(f);
+        if (seed == 2) {
+            EXPECT_EQ(shaded.radiance, shade(f)) << "to the bit";
+        }
+        EXPECT_TRUE(shaded.stats.features & PEL_FEATURE_OUTPUTS);
+        for (size_t i = 0; i < f.pixels(); ++i) {
+            if (f.slots[PEL_SLOT_MATERIAL].values[i] == 0) {
+                EXPECT_EQ(shaded.thickness[i], -1) << "background is left alone";
+                continue;
+            }
+            const reference::Shaded truth = shade_test::truth(f, tables(), i);
+            const Rgb diffuse = truth.scattered + truth.ambient;
+            const PelMaterial& m = f.materials.at(uint32_t(f.slots[PEL_SLOT_MATERIAL].at(i)));
+            EXPECT_NEAR(shaded.thickness[i], truthLight(f, m, f.lights[0], i).thickness,
+                        tolerance::shadeThickness)
+                << i;
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_NEAR(shaded.diffuse[3 * i + c], diffuse[c], tolerance::shadeSum);
+                EXPECT_NEAR(shaded.deepScatter[3 * i + c], truth.deepScatter[c], tolerance::shadeTerm);
+                EXPECT_NEAR(shaded.specular[3 * i + c], truth.specular[c], tolerance::shadeTerm);
+            }
+        }
     }
 }
 
-TEST(Shade, BackgroundIsLeftAlone) {
-    Frame f = randomFrame(31, 64, 48);
-    for (size_t i = 0; i < f.pixels(); ++i)
-        f.slots[PEL_SLOT_MATERIAL].values[i] = i == 40 * 64 + 5 ? 2.0f : i % 2 * 9.0f;
+TEST(ShadeOutputs, OneAloneInHalf) {
+    const Frame f = partsFrame(2);
+    const Shaded all = shadeParts(f);
     Shader shader(device());
-    setFrame(device(), shader, f, tables());
-    const std::vector<float> before(f.pixels() * 4, -3.5f);
-    const Buffer target(device(), before);
-    shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGBA32F, 64, 48));
+    const Buffer radiance(device(), f.pixels() * 12), specular(device(), f.pixels() * 8),
+        thickness(device(), f.pixels() * 2);
+    setFrame(shader, f, radiance);
+    shader.set(PEL_SLOT_OUT_SPECULAR, imageDesc(specular, PEL_FORMAT_RGBA16F, f.width, f.height));
+    shader.set(PEL_SLOT_OUT_THICKNESS, imageDesc(thickness, PEL_FORMAT_R16F, f.width, f.height));
     shader.commit().execute();
-    const auto after = target.readAll<float>();
+    EXPECT_EQ(radiance.readAll<float>(), all.radiance);
+    const auto s = specular.readAll<uint16_t>(), t = thickness.readAll<uint16_t>();
     for (size_t i = 0; i < f.pixels(); ++i) {
-        EXPECT_EQ(after[4 * i + 3], -3.5f) << "alpha is kept";
-        EXPECT_EQ(after[4 * i] != -3.5f, i == 40 * 64 + 5) << i;
-    }
-    EXPECT_EQ(shader.stats().tilesShaded, 1u);
-}
-
-TEST(Shade, EveryWidthAndHeight) {
-    for (const auto& [width, height] : std::vector<std::pair<uint32_t, uint32_t>>{
-             {1, 1}, {1, 9}, {7, 1}, {8, 2}, {9, 3}, {15, 17}, {16, 16}, {17, 33}, {31, 5}}) {
-        Frame f = randomFrame(width, width, height, 2);
-        f.slots[PEL_SLOT_MATERIAL] = {};
-        EXPECT_LE(worstError(f, shade(device(), f, tables())), tolerance::shadeSum)
-            << width << " x " << height;
+        EXPECT_EQ(s[4 * i], toHalf(all.specular[3 * i]));
+        EXPECT_EQ(t[i], f.slots[PEL_SLOT_MATERIAL].values[i] == 0 ? 0 : toHalf(all.thickness[i]));
     }
 }
 
-TEST(Shade, AccumulateAddsOnce) {
-    Frame f = randomFrame(8, 45, 20);
-    const auto once = shade(device(), f, tables());
-    f.options.accumulate = 1;
+TEST(ShadeOutputs, OfBadPixelsAndWithoutAThickness) {
+    Frame f = partsFrame(2);
+    for (auto& light : f.lights) light.mapSize = 0, light.map.values.clear();
+    f.options.invalidColor[2] = -7;
+    const size_t bad = f.height / 2 * f.width + 50;
+    f.slots[PEL_SLOT_MATERIAL].values[bad] = 1;
+    f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * bad] = NAN;
+    const Shaded shaded = shadeParts(f);
+    for (const auto* part : {&shaded.radiance, &shaded.diffuse, &shaded.deepScatter, &shaded.specular}) {
+        EXPECT_EQ((*part)[3 * bad + 2], -7);
+        for (float v : *part) EXPECT_TRUE(std::isfinite(v));
+    }
+    for (size_t i = 0; i < f.pixels(); ++i)
+        EXPECT_EQ(shaded.thickness[i], f.slots[PEL_SLOT_MATERIAL].values[i] == 0 ? -1 : 0) << i;
+}
+
+// --- irradiance per pixel: made here, or the host's ---
+
+// Without tables and with unblurred normals the pre-integrated method is Lambert's, too, and has an oracle.
+Frame lambert(uint32_t seed, uint32_t lights = 2) {
+    Frame f = randomFrame(seed, 211, 60, lights);
+    f.curvatureLut = f.shadowLut = false;
+    for (auto& [id, m] : f.materials)
+        for (float& blend : m.normalBlend) blend = 0;
+    return f;
+}
+
+void setScattering(Frame& f, PelScattering scattering) {
+    for (auto& [id, m] : f.materials) m.scattering = scattering;
+}
+
+// With the device's own lanes, and others: a vector may be one pixel, which is the last of a tile, too.
+TEST(ShadeIrradiance, UnscatteredIsLambert) {
+    for (int count : {0, 1, 8, 16})
+        for (const bool beside : {false, true}) {  // other materials, which are not changed
+            const Device narrow = count ? lanes::deviceOf(count) : device();
+            Frame f = lambert(uint32_t(1 + count));
+            setScattering(f, PEL_SCATTERING_NONE);
+            if (beside) f.materials[2].scattering = PEL_SCATTERING_PREINTEGRATED;
+            f.options.countPixels = 1;
+            f.options.tileLists = beside ? PEL_TILES_PER_VARIANT : PEL_TILES_ONE_LIST;
+            PelShaderStats stats = pelShaderStatsDefaults();
+            const std::vector<float> result = shade(narrow, f, makeTables(narrow, 8, 8), &stats);
+            EXPECT_LT(worstError(f, result), tolerance::shadeSum) << count;
+            EXPECT_EQ(stats.features & (PEL_FEATURE_IRRADIANCE | PEL_FEATURE_MAKE_IRRADIANCE),
+                      uint32_t(PEL_FEATURE_IRRADIANCE | PEL_FEATURE_MAKE_IRRADIANCE));
+            const auto& ids = f.slots[PEL_SLOT_MATERIAL].values;
+            const auto others = beside ? uint64_t(std::count(ids.begin(), ids.end(), 2.0f)) : 0;
+            EXPECT_EQ(stats.pixelsIrradiance, stats.pixelsShaded - others) << count;
+            EXPECT_EQ(stats.pixelsByScattering[PEL_SCATTERING_NONE], stats.pixelsShaded - others);
+            EXPECT_EQ(stats.pixelsByScattering[PEL_SCATTERING_PREINTEGRATED], others);
+        }
+}
+
+// The host's irradiance takes the place of lights and ambient in the diffuse part, and in no other.
+TEST(ShadeIrradiance, TheHostsIsUsedAsItIs) {
+    Frame f = lambert(7);
+    setScattering(f, PEL_SCATTERING_NONE);
+    f.slots[PEL_SLOT_ALBEDO] = {};
+    for (auto& [id, m] : f.materials) blacken(m.deepScatterColor);
+    Frame dark = f;  // specular light alone
+    for (auto& [id, m] : dark.materials) blacken(m.albedo);
+    Random random(9);
+    Image& e = f.slots[PEL_SLOT_IRRADIANCE] = {3, std::vector<float>(f.pixels() * 3)};
+    for (float& v : e.values) v = random.uniform(0, 3);
+    PelShaderStats stats = pelShaderStatsDefaults();
+    const std::vector<float> result = shade(f, &stats), rest = shade(dark);
+    EXPECT_FALSE(stats.features & PEL_FEATURE_MAKE_IRRADIANCE);
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        const auto id = uint32_t(f.slots[PEL_SLOT_MATERIAL].at(i));
+        for (int c = 0; id && c < 3; ++c)
+            EXPECT_NEAR(result[3 * i + c], f.materials[id].albedo[c] * e.values[3 * i + c] + rest[3 * i + c],
+                        tolerance::shadeSum)
+                << i;
+    }
+    // A NaN in the irradiance gives the invalid colour in its own pixel alone; materials that scatter by
+    // tables do not read it.
+    e.values[3 * 1000 + 1] = NAN;
+    f.slots[PEL_SLOT_MATERIAL].values[1000] = 2;
+    f.options.invalidColor[1] = 7;
+    std::vector<float> corrupted = shade(f);
+    EXPECT_EQ(corrupted[3 * 1000 + 1], 7);
+    EXPECT_EQ(corrupted[3 * 999 + 1], result[3 * 999 + 1]);
+    f.materials[2].scattering = PEL_SCATTERING_PREINTEGRATED;
+    corrupted = shade(f);
+    EXPECT_NE(corrupted[3 * 1000 + 1], 7);
+}
+
+// --- layouts of images (packed formats: test_format_codes.cpp) ---
+
+constexpr PelImageSlot floatSlots[] = {
+    PEL_SLOT_POSITION,  PEL_SLOT_NORMAL_GEOMETRIC, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_BLURRED,
+    PEL_SLOT_CURVATURE, PEL_SLOT_ALBEDO,           PEL_SLOT_ROUGHNESS,      PEL_SLOT_AMBIENT_OCCLUSION,
+    PEL_SLOT_SPECULAR,  PEL_SLOT_MATERIAL};
+
+std::vector<float> shadeInto(Shader& shader, const Frame& f) {
+    const auto target = setTarget(device(), shader, f);
+    shader.commit().execute();
+    return target.readAll<float>();
+}
+
+// One interleaved record per pixel, rows padded, an odd start: the G-buffer of a host that keeps structures.
+TEST(ShadeLayouts, InterleavedAndPaddedGivesTheSameBits) {
+    const Frame f = randomFrame(3, 101, 37, 2);
+    uint32_t words = 1;
+    for (PelImageSlot slot : floatSlots) words += f.slots[slot].components;
+    const uint32_t row = words * f.width + 5;
+    std::vector<float> memory(3 + size_t(row) * f.height, NAN);
+    uint32_t at = 3, offsets[PEL_SLOT_COUNT] = {};
+    for (PelImageSlot slot : floatSlots) {
+        const Image& image = f.slots[slot];
+        offsets[slot] = at;
+        for (uint32_t y = 0; y < f.height; ++y)
+            for (uint32_t x = 0; x < f.width; ++x)
+                for (uint32_t c = 0; c < image.components; ++c)
+                    memory[at + size_t(y) * row + x * words + c] =
+                        float(image.at(size_t(y) * f.width + x, c));
+        at += image.components;
+    }
+    const Buffer buffer(device(), memory);
     Shader shader(device());
     setFrame(device(), shader, f, tables());
-    const Buffer target(device(), std::vector<float>(f.pixels() * 3, 0.25f));
-    shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+    for (PelImageSlot slot : floatSlots) {
+        PelImageDesc desc =
+            imageDesc(buffer, floatFormats[f.slots[slot].components], f.width, f.height, offsets[slot] * 4);
+        desc.pixelStride = words * 4;
+        desc.rowStride = row * 4;
+        shader.set(slot, desc);
+    }
+    EXPECT_EQ(shadeInto(shader, f), shade(f));
+}
+
+TEST(ShadeLayouts, PlanarAndRgbaGiveTheSameBits) {
+    const Frame f = randomFrame(4, 90, 21, 1);
+    Shader shader(device());
+    setFrame(device(), shader, f, tables());
+    for (PelImageSlot slot : {PEL_SLOT_POSITION, PEL_SLOT_ALBEDO, PEL_SLOT_NORMAL_BLURRED}) {
+        std::vector<float> planes(f.pixels() * 3);
+        for (size_t i = 0; i < f.pixels(); ++i)
+            for (int c = 0; c < 3; ++c) planes[c * f.pixels() + i] = float(f.slots[slot].at(i, c));
+        shader.set(slot, imageDesc(Buffer(device(), planes), PEL_FORMAT_PLANAR_RGB32F, f.width, f.height));
+    }
+    std::vector<float> four(f.pixels() * 4, NAN);
+    for (size_t i = 0; i < f.pixels(); ++i)
+        for (int c = 0; c < 3; ++c) four[4 * i + c] = float(f.slots[PEL_SLOT_NORMAL_SHADING].at(i, c));
+    shader.set(PEL_SLOT_NORMAL_SHADING,
+               imageDesc(Buffer(device(), four), PEL_FORMAT_RGBA32F, f.width, f.height));
+    const auto expected = shade(f);
+    EXPECT_EQ(shadeInto(shader, f), expected);
+
+    const Buffer planar(device(), f.pixels() * 3 * sizeof(float));
+    shader.set(PEL_SLOT_RADIANCE, imageDesc(planar, PEL_FORMAT_PLANAR_RGB32F, f.width, f.height));
     shader.commit().execute();
-    const auto sum = target.readAll<float>();
-    for (size_t i = 0; i < sum.size(); ++i) {
-        const bool material = f.slots[PEL_SLOT_MATERIAL].values[i / 3] != 0;
-        EXPECT_EQ(sum[i], material ? once[i] + 0.25f : 0.25f);
+    const auto planes = planar.readAll<float>();
+    for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(planes[i % 3 * f.pixels() + i / 3], expected[i]);
+}
+
+TEST(ShadeLayouts, OutputOverAnInput) {
+    const Frame f = randomFrame(6, 75, 30, 1);
+    const auto expected = shade(f);
+    Shader shader(device());
+    setFrame(device(), shader, f, tables());
+    const Buffer both = upload(device(), f.slots[PEL_SLOT_ALBEDO]);
+    const PelImageDesc desc = imageDesc(both, PEL_FORMAT_RGB32F, f.width, f.height);
+    shader.set(PEL_SLOT_ALBEDO, desc).set(PEL_SLOT_RADIANCE, desc).commit().execute();
+    const auto result = both.readAll<float>();
+    for (size_t i = 0; i < result.size(); ++i)
+        EXPECT_EQ(result[i], f.slots[PEL_SLOT_MATERIAL].values[i / 3] != 0
+                                 ? expected[i]
+                                 : f.slots[PEL_SLOT_ALBEDO].values[i]);
+}
+
+// Depth of a perspective camera, ordinary and reversed, instead of positions.
+TEST(ShadeLayouts, PositionsFromDepth) {
+    for (const bool reversed : {false, true}) {
+        Frame f = randomFrame(14, 64, 40, 2);
+        // Camera at z = 500 looking down -z: x_clip = 4 x / w, w = 500 - z, depth = A + B / w.
+        const float nearPlane = reversed ? 1000 : 100, farPlane = reversed ? 100 : 1000;
+        const float a = farPlane / (farPlane - nearPlane), b = -nearPlane * a;
+        const float inverse[16] = {0.25f, 0, 0,     0,     0, 0.25f, 0, 0, 0, 0, 500 / b, -500 * a / b - 1,
+                                   0,     0, 1 / b, -a / b};
+        std::copy_n(inverse, 16, f.camera.inverseViewProjection);
+        Image depth{1, std::vector<float>(f.pixels())};
+        for (size_t i = 0; i < f.pixels(); ++i) {
+            float* p = &f.slots[PEL_SLOT_POSITION].values[3 * i];
+            const double d = depth.values[i] = a + b / (500 - p[2]);
+            const double w = b / (d - a);
+            p[0] = float(((double(i % f.width) + 0.5) * 2 / f.width - 1) * w / 4);
+            p[1] = float((1 - (double(i / f.width) + 0.5) * 2 / f.height) * w / 4);
+            p[2] = float(500 - w);
+        }
+        Shader shader(device());
+        setFrame(device(), shader, f, tables());
+        shader.clear(PEL_SLOT_POSITION);
+        shader.set(PEL_SLOT_DEPTH, imageDesc(upload(device(), depth), PEL_FORMAT_R32F, f.width, f.height));
+        const auto result = shadeInto(shader, f);
+        EXPECT_LE(worstError(f, result), tolerance::shadeFromDepth) << "reversed " << reversed;
+        // A NaN in the depth makes its own pixel invalid and no other.
+        size_t at = 0;
+        while (f.slots[PEL_SLOT_MATERIAL].values[at] == 0) ++at;
+        for (const float bad : {NAN, INFINITY}) {
+            depth.values[at] = bad;
+            f.options.invalidColor[2] = -7;
+            shader.set(f.options);
+            shader.set(PEL_SLOT_DEPTH,
+                       imageDesc(upload(device(), depth), PEL_FORMAT_R32F, f.width, f.height));
+            const auto corrupted = shadeInto(shader, f);
+            for (size_t i = 0; i < result.size(); ++i)
+                EXPECT_EQ(corrupted[i], i / 3 != at ? result[i] : i % 3 == 2 ? -7 : 0) << i;
+        }
     }
 }
 

@@ -1,12 +1,15 @@
-// Every counter of PelShaderStats against the host's own count of the same frame.
+// Counters of PelShaderStats against the host's own counts; and materials in the last column alone, of frames
+// one pixel wider than the vectors: nothing is left out, and nothing else is touched. On devices of all
+// widths.
 #include <gtest/gtest.h>
 
-#include <limits>
-
-#include "lanes.h"
+#include "device_lanes.h"
+#include "shadow_forms.h"
 #include "shared/shade.h"
+#include "tolerances.h"
 
 using namespace shade_test;
+using lanes::deviceOf;
 
 namespace {
 
@@ -58,8 +61,7 @@ Frame countedFrame(uint32_t seed, uint32_t width, uint32_t height) {
     Frame f = randomFrame(seed, width, height, 3);
     f.curvatureLut = false;
     f.options.countPixels = 1;
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    for (size_t i = seed; i < f.pixels(); i += 41) f.slots[PEL_SLOT_ALBEDO].values[3 * i + i % 3] = nan;
+    for (size_t i = seed; i < f.pixels(); i += 41) f.slots[PEL_SLOT_ALBEDO].values[3 * i + i % 3] = NAN;
     for (size_t i = seed; i < f.pixels(); i += 53)
         f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i + i % 3] = INFINITY;
     return f;
@@ -68,7 +70,7 @@ Frame countedFrame(uint32_t seed, uint32_t width, uint32_t height) {
 class ShadeCounts : public testing::TestWithParam<int> {};
 
 TEST_P(ShadeCounts, PixelsAreTheHostsOwn) {
-    const pellucid::Device device = deviceOf(GetParam());
+    const Device device = deviceOf(GetParam());
     const Tables tables = makeTables(device);
     for (uint32_t seed = 1; seed <= 3; ++seed) {
         Frame f = countedFrame(seed, 97 + 8 * seed, 41);
@@ -87,44 +89,17 @@ TEST_P(ShadeCounts, PixelsAreTheHostsOwn) {
                 EXPECT_EQ(stats.pixelsInvalid, c.invalid) << where;
                 EXPECT_NEAR(double(stats.pixelsShadowLut), double(c.shadowLut), double(c.doubtful)) << where;
                 EXPECT_NEAR(double(stats.pixelsSpecular), double(c.specular), double(c.doubtful)) << where;
-                if (skip) {
-                    EXPECT_NEAR(double(stats.pixelsThickness), double(c.thickness), double(c.doubtful))
-                        << where;
-                } else {
-                    EXPECT_EQ(stats.pixelsThickness, (c.shaded - c.invalid) * f.lights.size()) << where;
-                }
+                const uint64_t thick = skip ? c.thickness : (c.shaded - c.invalid) * f.lights.size();
+                EXPECT_NEAR(double(stats.pixelsThickness), double(thick), double(skip * c.doubtful)) << where;
                 EXPECT_EQ(stats.pixelsWideShadow, 0u);
                 EXPECT_EQ(stats.pixelsShadowTexels, 0u);
             }
     }
 }
 
-// A second execution counts from 0. Without the option only what is always counted is counted.
-TEST_P(ShadeCounts, AnExecutionStartsAtZero) {
-    const pellucid::Device device = deviceOf(GetParam());
-    const Tables tables = makeTables(device);
-    const Frame f = countedFrame(5, 70, 33);
-    pellucid::Shader shader(device);
-    setFrame(device, shader, f, tables);
-    const auto target = setTarget(device, shader, f);
-    shader.commit().execute();
-    const PelShaderStats first = shader.stats();
-    shader.execute();
-    const PelShaderStats second = shader.stats();
-    EXPECT_GT(first.pixelsSpecular, 0u);
-    EXPECT_EQ(second.pixelsSpecular, first.pixelsSpecular);
-    EXPECT_EQ(second.pixelsShaded, first.pixelsShaded);
-    EXPECT_EQ(second.pixelsInvalid, first.pixelsInvalid);
-    EXPECT_EQ(second.launches, first.launches);
-    EXPECT_EQ(second.tilesShaded, first.tilesShaded);
-    EXPECT_EQ(second.programsBuilt, first.programsBuilt);
-    EXPECT_EQ(second.bytesUploaded, 0u) << "nothing has changed";
-    EXPECT_GT(first.bytesUploaded, 0u);
-}
-
 // Tiles with a material, and those whose materials need less than the whole shader.
 TEST_P(ShadeCounts, TilesAreTheHostsOwn) {
-    const pellucid::Device device = deviceOf(GetParam());
+    const Device device = deviceOf(GetParam());
     const Tables tables = makeTables(device);
     Frame f = randomFrame(9, 7 * PEL_TILE_WIDTH + 3, 5 * PEL_TILE_HEIGHT + 1);
     Random random(4);
@@ -157,18 +132,94 @@ TEST_P(ShadeCounts, TilesAreTheHostsOwn) {
         EXPECT_EQ(stats.tilesTotal, ofTile.size());
         EXPECT_EQ(stats.tilesShaded, lists == PEL_TILES_NO_LIST ? ofTile.size() : with + less);
         EXPECT_EQ(stats.bands, 1u);
-        if (lists == PEL_TILES_PER_VARIANT) {
-            EXPECT_GT(stats.variants, 1u);
-            EXPECT_LE(stats.tilesPartial, less);
-        } else {
-            EXPECT_EQ(stats.variants, 1u);
-            EXPECT_EQ(stats.tilesPartial, 0u);
-        }
+        EXPECT_EQ(stats.variants > 1, lists == PEL_TILES_PER_VARIANT);
+        EXPECT_LE(stats.tilesPartial, lists == PEL_TILES_PER_VARIANT ? less : 0);
         EXPECT_EQ(stats.launches, stats.variants + (lists != PEL_TILES_NO_LIST))
             << "the list, and each variant";
     }
 }
 
+// --- the last column ---
+
+class LastColumn : public testing::TestWithParam<int> {};
+
+constexpr uint32_t widths[] = {1, 2, 7, 8, 9, 15, 16, 17, 31, 33, PEL_TILE_WIDTH + 1, 2 * PEL_TILE_WIDTH + 1};
+
+// Material 1 where `where` says so, and nothing elsewhere.
+template <class Where>
+void onlyAt(Frame& f, Where where) {
+    for (size_t i = 0; i < f.pixels(); ++i)
+        f.slots[PEL_SLOT_MATERIAL].values[i] =
+            where(uint32_t(i % f.width), uint32_t(i / f.width)) ? 1.0f : 0.0f;
+}
+
+TEST_P(LastColumn, IsShaded) {
+    const Device device = deviceOf(GetParam());
+    const Tables tables = makeTables(device);
+    for (const uint32_t width : widths)
+        for (const PelTileLists lists : {PEL_TILES_ONE_LIST, PEL_TILES_PER_VARIANT, PEL_TILES_NO_LIST}) {
+            Frame f = randomFrame(width, width, 2 * PEL_TILE_HEIGHT + 1);
+            f.options.countPixels = 1;
+            f.options.tileLists = lists;
+            onlyAt(f, [&](uint32_t x, uint32_t) { return x + 1 == f.width; });
+            PelShaderStats stats = pelShaderStatsDefaults();
+            const std::vector<float> shown = shade(device, f, tables, &stats);
+            const std::string where = std::to_string(width) + " wide, lists " + std::to_string(lists);
+            EXPECT_EQ(stats.pixelsShaded, f.height) << where;
+            if (lists != PEL_TILES_NO_LIST) {
+                EXPECT_EQ(stats.tilesShaded, (f.height + PEL_TILE_HEIGHT - 1) / PEL_TILE_HEIGHT) << where;
+            }
+            for (size_t i = 0; i < f.pixels(); ++i) {
+                const Rgb right = i % width + 1 == width ? truth(f, tables, i).sum() : Rgb{0, 0, 0};
+                for (int c = 0; c < 3; ++c)
+                    ASSERT_NEAR(shown[3 * i + c], right[c], tolerance::shadeSum) << where << ", pixel " << i;
+            }
+        }
+}
+
+// Of every column alone, with what the passes make before.
+TEST_P(LastColumn, HasItsPasses) {
+    const Device device = deviceOf(GetParam());
+    const Tables none = makeTables(device, 8, 8);
+    const MapLight from = mapLight(3, false, false, {0.5, 0.2, 0.9}, {3, 2, 5}, 40, 61);
+    for (const uint32_t width : {1u, 9u, 17u, 33u})
+        for (const uint32_t column : {0u, width / 2, width - 1}) {
+            Frame f = reliefFrame(1, width, PEL_TILE_HEIGHT + 3, 0.4f);
+            onlyAt(f, [&](uint32_t x, uint32_t) { return x == column; });
+            f.lights = {from.light};
+            f.options.countPixels = 1;
+            const std::string where = std::to_string(width) + " wide, column " + std::to_string(column);
+
+            Frame lit = f;
+            showWideShadow(lit);
+            PelShaderStats stats = pelShaderStatsDefaults();
+            const std::vector<float> shadow = shade(device, lit, none, &stats);
+            EXPECT_EQ(stats.pixelsWideShadow, f.height) << where;
+            Frame soft = f;
+            showBlurredNormal(soft);
+            soft.options.blurNormals = 1;
+            const std::vector<float> blurred = shade(device, soft, none);
+            std::vector<bool> doubtful;
+            const auto normals = reference::blurredNormals(surfaceOf(soft), &doubtful);
+            for (size_t i = 0; i < f.pixels(); ++i) {
+                if (i % width != column) {
+                    ASSERT_EQ(shadow[3 * i], 0.0f) << where;
+                    ASSERT_EQ(blurred[3 * i], 0.0f) << where;
+                    continue;
+                }
+                const Vec3 p = f.slots[PEL_SLOT_POSITION].vec(i),
+                           n = f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i);
+                ASSERT_NEAR(shadow[3 * i], truthOf(from).wide(f.materials[1], p, n), tolerance::wideShadow)
+                    << where << ", pixel " << i;
+                ASSERT_TRUE(normals[i].has_value());
+                if (doubtful[i]) continue;
+                ASSERT_LE(reference::magnitude(shownNormal(blurred, i) - *normals[i]), tolerance::shadeTerm)
+                    << where << ", " << i;
+            }
+        }
+}
+
 INSTANTIATE_TEST_SUITE_P(Lanes, ShadeCounts, testing::Values(1, 8, 16), testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Lanes, LastColumn, testing::Values(1, 8, 16), testing::PrintToStringParamName());
 
 }  // namespace

@@ -14,9 +14,6 @@
 #include "pass_scene.h"
 
 using namespace shade_test;
-using pellucid::Buffer;
-using pellucid::imageDesc;
-using pellucid::Shader;
 
 namespace {
 
@@ -112,12 +109,11 @@ TEST_P(ShadeFaults, EachAllocationInTurn) {
     f.curvatureLut = f.shadowLut = true;
     f.slots[PEL_SLOT_CURVATURE] = f.slots[PEL_SLOT_MATERIAL];
     f.cube = {2, std::vector<Rgb>(24, Rgb{0.25, 0.5, 0.125})};
-    const auto right = shade(device(), f, tables());  // the programs are built by now
+    const auto right = shade(f);  // the programs are built by now
 
     Shader shader(device());
-    setFrame(device(), shader, f, tables());
     const Buffer target(device(), f.pixels() * 12), curvature(device(), f.slots[PEL_SLOT_CURVATURE].values);
-    shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+    setFrame(shader, f, target);
     shader.commit();
     int failures = 0, recovered = 0;
     for (int n = 1; n < 2000; ++n) {
@@ -130,8 +126,7 @@ TEST_P(ShadeFaults, EachAllocationInTurn) {
         std::string message;
         try {
             fresh = Shader(device());
-            setFrame(device(), fresh, f, tables());
-            fresh.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+            setFrame(fresh, f, target);
             fresh.commit().execute();
         } catch (const pellucid::Error& e) {
             fault = Fault::none;
@@ -157,17 +152,17 @@ TEST_P(ShadeFaults, EachAllocationInTurn) {
             EXPECT_EQ(target.readAll<float>(), right) << "after call " << n;
         }
         if (!fresh.get()) continue;
-        setFrame(device(), fresh, f, tables());
-        fresh.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+        setFrame(fresh, f, target);
         fresh.commit().execute();
         EXPECT_EQ(target.readAll<float>(), right) << "after call " << n;
     }
     std::printf("%d calls failed, each in its turn; %d times it went on with less memory\n", failures,
                 recovered);
-    if (lasting)
+    if (lasting) {
         EXPECT_EQ(recovered, 0);
-    else if (kind != Fault::hostMemory)
+    } else if (kind != Fault::hostMemory) {
         EXPECT_GT(recovered, 2);
+    }
     lasting = false;
     EXPECT_GT(failures, 3);
 }

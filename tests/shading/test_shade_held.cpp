@@ -33,6 +33,15 @@ void expectFrames(const char* what, size_t floats, const Make& make, const Chang
     EXPECT_EQ(held.readAll<float>(), plain.readAll<float>()) << what;
 }
 
+// What a call makes of a buffer behind the event, and the same at once.
+template <class Call>
+void expectHeld(const char* what, size_t floats, const Call& call) {
+    const Buffer held(own(), floats * sizeof(float)), plain(own(), floats * sizeof(float));
+    expectReturns(own(), what, [&](const PelSubmit* submit) { call(held, submit); });
+    call(plain, nullptr);
+    EXPECT_EQ(held.readAll<float>(), plain.readAll<float>()) << what;
+}
+
 TEST(ShadeHeld, FramesInBandsWithPasses) {
     using namespace shade_test;
     Frame f = reliefFrame(1, 70, 61, 0.4f);
@@ -50,11 +59,10 @@ TEST(ShadeHeld, FramesInBandsWithPasses) {
                 shader.set(PEL_SLOT_RADIANCE, imageDesc(out, PEL_FORMAT_RGB32F, f.width, f.height));
             },
             [&](Shader& shader) {
-                PelAmbient ambient = f.ambient;
-                ambient.constant[1] = 0.7f;
-                PelMaterial material = f.materials.at(1);
-                material.albedo[0] = 0.3f;
-                shader.set(ambient).setMaterial(1, material, made.curvature, made.shadow);
+                Frame other = f;
+                other.ambient.constant[1] = 0.7f;
+                other.materials[1].albedo[0] = 0.3f;
+                setFrame(own(), shader, other, made);
             });
     }
 }
@@ -68,61 +76,53 @@ TEST(ShadeHeld, FramesWithProfilesThatScatter) {
     for (float& n : normals) n /= float(radius);
     const Profile skin = Profile::skin();
     for (PelScattering method : {PEL_SCATTERING_PREINTEGRATED, PEL_SCATTERING_SCREEN, PEL_SCATTERING_LIGHT,
-                                 PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_AUTO})
-        expectFrames(
-            ("scattering method " + std::to_string(method)).c_str(), p.pixels() * 3,
-            [&](Shader& shader, const Buffer& out) {
-                const auto set = [&](PelImageSlot slot, const auto& values, PelFormat format) {
-                    shader.set(slot, imageDesc(Buffer(own(), values), format, p.width, p.height));
-                };
-                set(PEL_SLOT_POSITION, p.positions, PEL_FORMAT_RGB32F);
-                set(PEL_SLOT_NORMAL_SHADING, normals, PEL_FORMAT_RGB32F);
-                set(PEL_SLOT_NORMAL_GEOMETRIC, normals, PEL_FORMAT_RGB32F);
-                set(PEL_SLOT_IRRADIANCE, p.irradiance, PEL_FORMAT_RGB32F);
-                set(PEL_SLOT_MATERIAL, p.ids, PEL_FORMAT_R8_UINT);
-                set(PEL_SLOT_CURVATURE, curvature, PEL_FORMAT_R32F);
-                PelMaterial material = whiteMaterial(skin, method);
-                material.specular = 0;
-                shader.setMaterial(1, material).set(ball.light);
-                shader.set(0, PEL_LIGHT_SHADOW_MAP,
-                           imageDesc(Buffer(own(), ball.maps[0]), PEL_FORMAT_R32F, ball.width, ball.height));
-                shader.set(PEL_SLOT_RADIANCE, imageDesc(out, PEL_FORMAT_RGB32F, p.width, p.height));
-            },
-            [&](Shader& shader) {
-                PelMaterial material = whiteMaterial(skin, method);
-                material.specular = 0, material.diffusionRadius = 1.5f;
-                PelLight light = ball.light;
-                light.color[0] = 0.5f;
-                shader.setMaterial(1, material).set(light);
-                shader.set(0, PEL_LIGHT_SHADOW_MAP,
-                           imageDesc(Buffer(own(), ball.maps[0]), PEL_FORMAT_R32F, ball.width, ball.height));
-            });
+                                 PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_AUTO}) {
+        const auto lit = [&](Shader& shader, float red, float diffusionRadius) {
+            PelMaterial material = whiteMaterial(skin, method);
+            material.specular = 0, material.diffusionRadius = diffusionRadius;
+            PelLight light = ball.light;
+            light.color[0] = red;
+            shader.setMaterial(1, material).set(light);
+            shader.set(0, PEL_LIGHT_SHADOW_MAP,
+                       imageDesc(Buffer(own(), ball.maps[0]), PEL_FORMAT_R32F, ball.width, ball.height));
+        };
+        expectFrames(("scattering method " + std::to_string(method)).c_str(), p.pixels() * 3,
+                     [&](Shader& shader, const Buffer& out) {
+                         const auto set = [&](PelImageSlot slot, const auto& values, PelFormat format) {
+                             shader.set(slot, imageDesc(Buffer(own(), values), format, p.width, p.height));
+                         };
+                         set(PEL_SLOT_POSITION, p.positions, PEL_FORMAT_RGB32F);
+                         set(PEL_SLOT_NORMAL_SHADING, normals, PEL_FORMAT_RGB32F);
+                         set(PEL_SLOT_NORMAL_GEOMETRIC, normals, PEL_FORMAT_RGB32F);
+                         set(PEL_SLOT_IRRADIANCE, p.irradiance, PEL_FORMAT_RGB32F);
+                         set(PEL_SLOT_MATERIAL, p.ids, PEL_FORMAT_R8_UINT);
+                         set(PEL_SLOT_CURVATURE, curvature, PEL_FORMAT_R32F);
+                         lit(shader, ball.light.color[0], 0);
+                         shader.set(PEL_SLOT_RADIANCE, imageDesc(out, PEL_FORMAT_RGB32F, p.width, p.height));
+                     },
+                     [&](Shader& shader) { lit(shader, 0.5f, 1.5f); });
+    }
 }
 
 TEST(ShadeHeld, ScatteringAlone) {
     using namespace scatter_scene;
     const Picture p = ball(24, 10, 0.9, reference::normalized(Vec3{1, 0.3, 0.2}));
-    const Buffer e(own(), p.irradiance), x(own(), p.positions), ids(own(), p.ids),
-        out(own(), p.pixels() * 12);
+    const Buffer e(own(), p.irradiance), x(own(), p.positions), ids(own(), p.ids);
     const auto rgb = [&](const Buffer& b) { return imageDesc(b, PEL_FORMAT_RGB32F, p.width, p.height); };
     const auto id = imageDesc(ids, PEL_FORMAT_R8_UINT, p.width, p.height);
-    const auto execute = [&](Scatter& scatter, float targetError, const PelSubmit* submit) {
-        PelScatterParams params = p.params;
-        params.targetError = targetError, params.frameIndex = targetError < 0.01f;
-        scatter.execute(params, rgb(e), rgb(x), nullptr, id, rgb(out), submit);
-    };
     for (PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE}) {
-        PelScatterControls controls = pelScatterControlsDefaults();
-        controls.scattering = method;
-        Scatter scatter(own()), plain(own());
-        for (Scatter* s : {&scatter, &plain}) s->setMaterial(1, Profile::skin()), s->setControls(1, controls);
-        expectReturns(own(), "pelScatterExecute", [&](const PelSubmit* submit) {
-            execute(scatter, 0.05f, submit);
-            execute(scatter, 0.001f, submit);
+        Scatter scatter(own());
+        expectHeld("pelScatterExecute", p.pixels() * 3, [&](const Buffer& out, const PelSubmit* submit) {
+            PelScatterControls controls = pelScatterControlsDefaults();
+            controls.scattering = method;
+            scatter.setMaterial(1, Profile::skin());
+            scatter.setControls(1, controls);
+            PelScatterParams params = p.params;
+            for (const float targetError : {0.05f, 0.001f}) {
+                params.targetError = targetError, params.frameIndex = targetError < 0.01f;
+                scatter.execute(params, rgb(e), rgb(x), nullptr, id, rgb(out), submit);
+            }
         });
-        const std::vector<float> held = out.readAll<float>();
-        execute(plain, 0.001f, nullptr);
-        EXPECT_EQ(held, out.readAll<float>()) << int(method);
     }
 }
 
@@ -134,14 +134,10 @@ TEST(ShadeHeld, OtherSubmissions) {
     };
     const auto normals = image(PEL_SLOT_NORMAL_GEOMETRIC, PEL_FORMAT_RGB32F),
                positions = image(PEL_SLOT_POSITION, PEL_FORMAT_RGB32F);
-    const Buffer curvature(own(), f.pixels() * 4), again(own(), f.pixels() * 4);
-    const auto measure = [&](const Buffer& out, const PelSubmit* submit) {
+    expectHeld("pelScreenCurvature", f.pixels(), [&](const Buffer& out, const PelSubmit* submit) {
         screenCurvature(own(), pelScreenCurvatureParamsDefaults(), normals, positions, nullptr, nullptr,
                         imageDesc(out, PEL_FORMAT_R32F, f.width, f.height), submit);
-    };
-    expectReturns(own(), "pelScreenCurvature", [&](const PelSubmit* submit) { measure(curvature, submit); });
-    measure(again, nullptr);
-    EXPECT_EQ(curvature.readAll<float>(), again.readAll<float>());
+    });
 
     // A square of two triangles, which is the whole texture.
     const std::vector<float> corners{0, 0, 0, 4, 0, 0, 4, 4, 0, 0, 4, 0}, uvs{0, 0, 1, 0, 1, 1, 0, 1},
@@ -151,36 +147,27 @@ TEST(ShadeHeld, OtherSubmissions) {
     integral.numVertices = 4, integral.positions = corners.data();
     integral.numIndices = 6, integral.indices = triangles.data();
     integral.irradiance = light.data(), integral.irradianceAt = PEL_IRRADIANCE_VERTEX;
-    const Buffer at(own(), points), sums(own(), 24), sumsAgain(own(), 24);
-    const auto integrate = [&](const Buffer& out, const PelSubmit* submit) {
+    const Buffer at(own(), points);
+    expectHeld("pelSurfaceIntegral", 6, [&](const Buffer& out, const PelSubmit* submit) {
         integral.points = vertexView(at, 2), integral.result = vertexView(out, 2);
         surfaceIntegral(own(), integral, submit);
-    };
-    expectReturns(own(), "pelSurfaceIntegral", [&](const PelSubmit* submit) { integrate(sums, submit); });
-    integrate(sumsAgain, nullptr);
-    EXPECT_EQ(sums.readAll<float>(), sumsAgain.readAll<float>());
+    });
 
     PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
     desc.width = desc.height = 32;
     desc.numVertices = 4, desc.uvs = uvs.data();
     desc.numIndices = 6, desc.indices = triangles.data();
-    const Buffer vertices(own(), corners), values(own(), light), drawn(own(), 32 * 32 * 12),
-        scattered(own(), 32 * 32 * 12);
-    const PelImageDesc from = imageDesc(drawn, PEL_FORMAT_RGB32F, 32, 32),
-                       to = imageDesc(scattered, PEL_FORMAT_RGB32F, 32, 32);
-    const auto scatter = [&](TextureScatter& texture, const PelSubmit* submit) {
-        texture.setPositions(vertexView(vertices, 4), submit);
-        texture.draw(vertexView(values, 4), false, from, submit);
-        texture.execute(pelTextureScatterParamsDefaults(), from, nullptr, to, submit);
-    };
-    TextureScatter held(own(), desc), plain(own(), desc);
-    expectReturns(own(), "texture scattering", [&](const PelSubmit* submit) {
-        scatter(held, submit);
-        scatter(held, submit);
+    const Buffer vertices(own(), corners), values(own(), light), drawn(own(), 32 * 32 * 12);
+    const PelImageDesc from = imageDesc(drawn, PEL_FORMAT_RGB32F, 32, 32);
+    TextureScatter texture(own(), desc);
+    expectHeld("texture scattering", 32 * 32 * 3, [&](const Buffer& out, const PelSubmit* submit) {
+        for (int i = 0; i < 2; ++i) {
+            texture.setPositions(vertexView(vertices, 4), submit);
+            texture.draw(vertexView(values, 4), false, from, submit);
+            texture.execute(pelTextureScatterParamsDefaults(), from, nullptr,
+                            imageDesc(out, PEL_FORMAT_RGB32F, 32, 32), submit);
+        }
     });
-    const std::vector<float> first = scattered.readAll<float>();
-    scatter(plain, nullptr);
-    EXPECT_EQ(first, scattered.readAll<float>());
 }
 
 TEST(ShadeHeld, Tables) {

@@ -1,13 +1,11 @@
-// What must change no bit of a frame: skipping, lists of tiles, bands, a second run, and the frames that the
-// shader made before.
-#include <gtest/gtest.h>
+// What must change no bit of a frame: skipping, lists of tiles, bands of rows within a budget of scratch
+// memory, a second run, and the frames that the shader made before; and what interpolation may change.
 
-#include "pass_scene.h"
+#include "shader_ready.h"
+#include "shadow_forms.h"
+#include "tolerances.h"
 
 using namespace shade_test;
-using pellucid::Buffer;
-using pellucid::imageDesc;
-using pellucid::Shader;
 
 namespace {
 
@@ -80,6 +78,8 @@ Scene randomScene(uint32_t seed, uint32_t parts, uint32_t width, uint32_t height
         f.cube.size = 4;
         for (int i = 0; i < 6 * 16; ++i) f.cube.texels.push_back({random.uniform(), random.uniform(), 0.3});
     }
+    for (size_t i = 0; s.has(PLAIN) && i < f.pixels(); ++i)  // whole tiles of that material
+        if (i / f.width / 4 % 3 == 1) f.slots[PEL_SLOT_MATERIAL].values[i] = 2;
     for (auto& [id, m] : f.materials) {
         const bool plain = s.has(PLAIN) && id == 2;
         m.specular = plain ? 0.0f : 0.5f;
@@ -113,6 +113,7 @@ Bytes run(const Scene& s, const PelShaderOptions& options, PelShaderStats* stats
     clearFrame(shader);
     setFrame(device(), shader, f, tables());
     shader.set(options);
+    if (s.has(PLAIN)) shader.setMaterial(2, f.materials.at(2));  // without tables
     if (s.has(NORMAL_MAP)) {
         shader.setNormalMap(2, {imageDesc(Buffer(device(), s.texels), PEL_FORMAT_RGB32F, 64, 64)});
         shader.set(PEL_SLOT_UV, imageDesc(Buffer(device(), s.uv), PEL_FORMAT_RG32F, f.width, f.height));
@@ -149,9 +150,9 @@ struct Kind {
     uint32_t parts;
 };
 const Kind kinds[] = {{"MapOutputsThickness", NORMAL_MAP | OUTPUTS | THICKNESS},
-                      {"BlurAndMapHalfPlain", NORMAL_MAP | BLUR | HALF | PLAIN},
+                      {"BlurAndMapHalfPlainCube", NORMAL_MAP | BLUR | HALF | PLAIN | CUBE},
                       {"FilteredShadowsTurnedOutputs", OUTPUTS | FILTER | PLAIN | TURNED},
-                      {"InterpolatedCubeIrradiance", FILTER | BETWEEN | IRRADIANCE | CUBE}};
+                      {"InterpolatedCubeIrradiance", FILTER | BETWEEN | IRRADIANCE | CUBE | HALF}};
 
 class ShadeInvariants : public testing::TestWithParam<Kind> {};
 
@@ -169,7 +170,13 @@ TEST_P(ShadeInvariants, SkippingListsBandsAndRunsChangeNoBit) {
         EXPECT_EQ(bool(stats.features & PEL_FEATURE_MAKE_IRRADIANCE), s.has(IRRADIANCE));
         for (const PelTileLists lists : {PEL_TILES_PER_VARIANT, PEL_TILES_NO_LIST}) {
             options.tileLists = lists;
-            EXPECT_EQ(run(s, options), right) << "tile lists " << int(lists);
+            PelShaderStats tiles = stats;
+            EXPECT_EQ(run(s, options, &tiles), right) << "tile lists " << int(lists);
+            EXPECT_EQ(tiles.pixelsShaded, stats.pixelsShaded);
+            EXPECT_EQ(tiles.pixelsInvalid, stats.pixelsInvalid);
+            if (s.has(PLAIN) && !s.has(OUTPUTS) && lists == PEL_TILES_PER_VARIANT) {
+                EXPECT_GT(tiles.tilesPartial, 0u);
+            }
         }
         options = s.frame.options;
         if ((options.scratchBudget = budgetOf(s))) {
@@ -249,24 +256,6 @@ TEST(ShadeSequences, OneChangeIsSeenAndForgotten) {
     }
 }
 
-// Pixels of a frame of their own are the same pixels: single ones, lines, and two tiles.
-TEST(ShadeShapes, APartOfAFrameHasTheSameBits) {
-    const uint32_t shapes[][4] = {{0, 0, 1, 1},    {5, 3, 1, 9},   {9, 2, 17, 1},
-                                  {60, 4, 129, 1}, {3, 1, 256, 2}, {1, 0, 128, 3}};
-    Scene whole = randomScene(4, FILTER | PLAIN, 270, 12);
-    const std::vector<float> all = shade(device(), whole.frame, tables());
-    for (const auto& [x0, y0, width, height] : shapes) {
-        if (y0 + height > whole.frame.height) continue;
-        const Frame part = cropped(whole.frame, x0, y0, width, height);
-        const std::vector<float> some = shade(device(), part, tables());
-        for (size_t i = 0; i < part.pixels(); ++i) {
-            const size_t at = (y0 + i / width) * whole.frame.width + x0 + i % width;
-            for (size_t c = 0; c < 3; ++c)
-                ASSERT_EQ(some[3 * i + c], all[3 * at + c]) << width << " x " << height << ", pixel " << i;
-        }
-    }
-}
-
 INSTANTIATE_TEST_SUITE_P(Scenes, ShadeInvariants, testing::ValuesIn(kinds),
                          [](const auto& info) { return info.param.name; });
 
@@ -282,7 +271,7 @@ TEST(ShadeSkipping, TracesOfLightInFullShadowAreNone) {
         const std::vector<float> texels(size_t(3) * 96 * 64, trace ? 9e-7f : 1e-6f);
         const pellucid::Lut shadow(device(), tables().shadow.info(), texels);
         for (f.options.disableSkipping = 0; f.options.disableSkipping < 2; ++f.options.disableSkipping) {
-            const auto radiance = shade(device(), f, tables(), nullptr, [&](Shader& shader) {
+            const auto radiance = shade(f, nullptr, [&](Shader& shader) {
                 for (const auto& [id, m] : f.materials) shader.setMaterial(id, m, tables().curvature, shadow);
             });
             const auto some = size_t(std::ranges::count_if(radiance, [](float r) { return r > 0; }));
@@ -291,6 +280,173 @@ TEST(ShadeSkipping, TracesOfLightInFullShadowAreNone) {
             else
                 EXPECT_GT(some, f.pixels());
         }
+    }
+}
+
+// --- bands ---
+
+// Blurred normals, two wide shadows to filter; lit by both lights.
+Frame passesFrame(uint32_t seed, uint32_t width, uint32_t height) {
+    Frame f = reliefFrame(seed, width, height, 0.4f);
+    for (const bool perspective : {false, true})
+        f.lights.push_back(mapLight(seed, perspective, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 61).light);
+    f.options.blurNormals = f.options.countPixels = 1;
+    f.curvatureLut = f.shadowLut = true;
+    f.slots[PEL_SLOT_CURVATURE] = f.slots[PEL_SLOT_MATERIAL];
+    for (int c = 0; c < 3; ++c) f.ambient.constant[c] = 0.2f;
+    return f;
+}
+
+struct Result {
+    std::vector<float> radiance;
+    PelShaderStats stats;
+};
+
+Result run(const Frame& f, uint64_t budget) {
+    Shader shader(device());
+    Frame limited = f;
+    limited.options.scratchBudget = budget;
+    setFrame(device(), shader, limited, tables());
+    const auto target = setTarget(device(), shader, f);
+    shader.commit().execute();
+    Result result{target.readAll<float>(), shader.stats()};
+    shader.execute();  // what the bands left behind does not matter
+    EXPECT_EQ(target.readAll<float>(), result.radiance);
+    return result;
+}
+
+void expectSame(const Result& bands, const Result& whole) {
+    EXPECT_EQ(bands.radiance, whole.radiance);
+    EXPECT_EQ(bands.stats.tilesShaded, whole.stats.tilesShaded);
+    EXPECT_EQ(bands.stats.pixelsShaded, whole.stats.pixelsShaded);
+    EXPECT_EQ(bands.stats.pixelsShadowLut, whole.stats.pixelsShadowLut);
+    EXPECT_EQ(bands.stats.pixelsWideShadow, whole.stats.pixelsWideShadow);
+    EXPECT_EQ(bands.stats.tilesTotal, whole.stats.tilesTotal);
+}
+
+TEST(ShadeBands, WideShadowsOfEveryBudget) {
+    Frame f = passesFrame(1, 150, 61);
+    f.options.blurNormals = 0;
+    const Result whole = run(f, 0);
+    EXPECT_EQ(whole.stats.bands, 1u);
+    const uint64_t rowBytes = 150 * 8;  // two lights
+    for (const auto& [rows, bands] : {std::pair{2u, 31u}, {3u, 31u}, {10u, 7u}, {60u, 2u}, {61u, 1u}}) {
+        const Result some = run(f, rows * rowBytes);
+        EXPECT_EQ(some.stats.bands, bands) << rows;
+        EXPECT_LT(some.stats.scratchBytes, whole.stats.scratchBytes + (bands == 1));
+        expectSame(some, whole);
+    }
+}
+
+// The blur reads up to 384 rows to each side: the frame is taller than that, and seen from far enough for
+// wide steps.
+TEST(ShadeBands, BlurredNormalsWithTheirHalo) {
+    Frame f = passesFrame(2, 70, 1000);
+    for (float& p : f.slots[PEL_SLOT_POSITION].values) p *= 0.02f;  // a close-up: steps of many pixels
+    const Result whole = run(f, 0);
+    EXPECT_TRUE(whole.stats.features & PEL_FEATURE_BLUR_NORMALS);
+    const uint64_t rowBytes = 70 * (40 + 8),
+                   guards = 2 * 400 * 40;  // of PEL_PLANE_GUARD values round each plane
+    for (const auto& [rows, bands] : {std::pair{770u, 500u}, {786u, 56u}, {968u, 5u}}) {
+        const Result some = run(f, rows * rowBytes + guards);
+        EXPECT_EQ(some.stats.bands, bands) << rows;
+        expectSame(some, whole);
+    }
+}
+
+TEST(ShadeBands, ABudgetThatIsTooSmallSaysWhatWouldDo) {
+    Frame f = passesFrame(1, 150, 61);
+    f.options.scratchBudget = 1000;
+    Shader shader(device());
+    setFrame(device(), shader, f, tables());
+    const auto target = setTarget(device(), shader, f);
+    expectError(PEL_ERROR_OUT_OF_MEMORY,
+                {("at least " + std::to_string(150 * 48 * 61 + 2 * 400 * 40)).c_str()},
+                [&] { shader.commit(); });
+    f.options.scratchBudget = 150 * 48 * 61 + 2 * 400 * 40;
+    shader.set(f.options).commit().execute();
+    // Without passes there is no scratch memory to limit.
+    f.options.blurNormals = 0;
+    f.options.scratchBudget = 1;
+    for (Light& light : f.lights) light.params.shadowFilterTexels = 0;
+    setFrame(device(), shader, f, tables());
+    shader.commit().execute();
+    EXPECT_EQ(shader.stats().bands, 1u);
+}
+
+// --- wide shadows at every second pixel, with interpolation between them ---
+
+Frame interpolated(Frame f) {
+    f.options.everyPixel = 0;
+    return f;
+}
+
+struct Difference {
+    double rms = 0, share = 0;  // share of pixels more than a hundredth off
+};
+Difference between(const Frame& f, const std::vector<float>& a, const std::vector<float>& b,
+                   double scale = 1) {
+    double sum = 0, off = 0, count = 0;
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        if (f.materials.count(uint32_t(f.slots[PEL_SLOT_MATERIAL].at(i))) == 0) continue;
+        double d2 = 0;
+        for (int c = 0; c < 3; ++c) d2 += std::pow(scale * (double(a[3 * i + c]) - b[3 * i + c]), 2) / 3;
+        sum += d2, off += d2 > 1e-4, count += 1;
+    }
+    return {std::sqrt(sum / count), off / count};
+}
+
+Frame shadowed(uint32_t seed, const Light& light, uint32_t width = 230, uint32_t height = 91,
+               float pixel = 0.21f) {
+    Frame f = reliefFrame(seed, width, height, pixel);
+    f.lights = {light};
+    f.options.countPixels = 1;
+    showWideShadow(f);
+    return f;
+}
+
+TEST(BetweenPixels, WideShadowsAreThoseOfEveryPixel) {
+    double filtered = 0, all = 0;
+    for (uint32_t seed = 0; seed < 8; ++seed) {
+        const MapLight from =
+            mapLight(seed, seed & 1, seed & 2, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 97 + 50 * seed);
+        const Frame f = shadowed(seed, from.light);
+        PelShaderStats every = pelShaderStatsDefaults(), some = every;
+        const auto exact = shade(f, &every), shown = shade(device(), interpolated(f), tables(), &some);
+        const Difference d = between(f, exact, shown);
+        EXPECT_LE(d.rms, tolerance::betweenShadowRms) << seed;
+        EXPECT_LE(d.share, tolerance::betweenShadowShare) << seed;
+        EXPECT_EQ(some.launches, every.launches + 1);
+        filtered += double(some.pixelsWideShadow), all += double(every.pixelsWideShadow);
+    }
+    EXPECT_LT(filtered, 0.5 * all) << "most pixels are interpolated";
+}
+
+TEST(BetweenPixels, BadPixelsStayAlone) {
+    Frame f =
+        interpolated(shadowed(5, mapLight(5, false, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 97).light));
+    const auto before = shade(f);
+    const size_t normal = 22 * f.width + 60, position = sized(41, 9) * f.width + 121;
+    f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values[3 * normal] = NAN;
+    f.slots[PEL_SLOT_POSITION].values[3 * position + 1] = INFINITY;
+    const auto after = shade(f);
+    expectFarOnesSame(f, before, after, {normal, position}, 3);
+}
+
+TEST(BetweenPixels, SharpShadowsAndNarrowFramesAreComputedEverywhere) {
+    const MapLight from = mapLight(2, false, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 97);
+    Frame sharp = shadowed(2, from.light);
+    for (auto& [id, m] : sharp.materials) m.scattering = PEL_SCATTERING_NONE;
+    EXPECT_EQ(shade(sharp), shade(device(), interpolated(sharp), tables()));
+    for (const auto& [width, height] : {std::pair{1u, 1u}, {17u, 40u}, {63u, 9u}}) {
+        const Frame f = shadowed(2, from.light, width, height);
+        EXPECT_EQ(shade(f), shade(device(), interpolated(f), tables())) << width;
+    }
+    for (const auto& [width, height] : {std::pair{64u, 1u}, {65u, 2u}, {97u, 5u}, {128u, 7u}}) {
+        const Frame f = shadowed(2, from.light, width, height);
+        EXPECT_LE(between(f, shade(f), shade(device(), interpolated(f), tables())).rms,
+                  tolerance::betweenShadowRms)
+            << width;
     }
 }
 

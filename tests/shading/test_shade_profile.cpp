@@ -51,26 +51,36 @@ class Shading {
     Shading(const PelMaterial& material, const Inputs& in = {}, const Lut& curvatureLut = {},
             const Lut& shadowLut = {})
         : shader(device), out(device, width * height * 3 * sizeof(float)) {
-        const auto image = [&](PelImageSlot slot, std::vector<float> values, PelFormat format, float scale) {
-            for (float& v : values) v *= scale;
-            buffers.emplace_back(device, values);
-            shader.set(slot, imageDesc(buffers.back(), format, width, height));
-        };
         shader.set(in.options);
         shader.set(PEL_SLOT_RADIANCE, imageDesc(out, PEL_FORMAT_RGB32F, width, height));
-        image(PEL_SLOT_NORMAL_SHADING, scene.normals, PEL_FORMAT_RGB32F, 1);
-        image(PEL_SLOT_CURVATURE, scene.curvature, PEL_FORMAT_R32F, 1 / in.perMillimetre);
-        if (in.meanCurvature)
-            image(PEL_SLOT_MEAN_CURVATURE, scene.meanCurvature, PEL_FORMAT_R32F, 1 / in.perMillimetre);
-        if (in.thickness) image(PEL_SLOT_THICKNESS, scene.thickness, PEL_FORMAT_R32F, in.perMillimetre);
+        set(PEL_SLOT_NORMAL_SHADING, scene.normals);
+        set(PEL_SLOT_CURVATURE, scene.curvature, 1 / in.perMillimetre);
+        if (in.meanCurvature) set(PEL_SLOT_MEAN_CURVATURE, scene.meanCurvature, 1 / in.perMillimetre);
+        if (in.thickness) set(PEL_SLOT_THICKNESS, scene.thickness, in.perMillimetre);
         PelLight light = pelLightDefaults();
         std::copy(scene.toLight, scene.toLight + 3, light.toLight);
         shader.set(std::vector<PelLight>{light});
-        if (in.shadow) {
-            buffers.emplace_back(device, scene.shadow);
-            shader.set(0, PEL_LIGHT_WIDE_SHADOW, imageDesc(buffers.back(), PEL_FORMAT_R32F, width, height));
-        }
+        if (in.shadow)
+            shader.set(0, PEL_LIGHT_WIDE_SHADOW,
+                       imageDesc(Buffer(device, scene.shadow), PEL_FORMAT_R32F, width, height));
         shader.setMaterial(1, material, curvatureLut, shadowLut).commit();
+    }
+    void set(PelImageSlot slot, std::vector<float> values, float scale = 1) {
+        for (float& v : values) v *= scale;
+        const PelFormat format = values.size() == width * height ? PEL_FORMAT_R32F : PEL_FORMAT_RGB32F;
+        shader.set(slot, imageDesc(Buffer(device, values), format, width, height));
+    }
+    // A square map over `extent` a side about the origin, of a light that looks down.
+    void setMap(const std::vector<float>& depth, uint32_t side, float extent) {
+        PelLight light = pelLightDefaults();
+        light.worldToShadow[0] = 1 / extent;
+        light.worldToShadow[5] = light.worldToShadow[10] = -1 / extent;
+        light.worldToShadow[3] = light.worldToShadow[7] = light.worldToShadow[11] = 0.5f;
+        light.shadowDepthRange = extent;
+        const Buffer map(device, depth);
+        shader.set(std::vector<PelLight>{light})
+            .set(0, PEL_LIGHT_SHADOW_MAP, imageDesc(map, PEL_FORMAT_R32F, side, side))
+            .commit();
     }
     std::vector<float> radiance() {
         shader.execute();
@@ -80,7 +90,6 @@ class Shading {
     Device device{""};
     Shader shader;
     Buffer out;
-    std::vector<Buffer> buffers;
 };
 
 PelMaterial materialOf(const Profile& profile) {
@@ -120,15 +129,6 @@ TEST(ShadeProfile, TheProfileAloneGivesItsTablesAndWidths) {
     EXPECT_EQ(resolved.diffusionRadius, info.radius);
     EXPECT_FLOAT_EQ(resolved.shadowFilterWidth, 1.3f * info.width[0]);
     for (int c = 0; c < 3; ++c) EXPECT_EQ(resolved.normalBlend[c], info.normalBlend[c]);
-}
-
-TEST(ShadeProfile, WithoutAProfileNothingChanges) {
-    PelMaterial plain = pelMaterialDefaults();
-    const PelMaterial resolved = Shading(plain).shader.material(1);
-    const float blend[3] = {1, 0.3f, 0};
-    EXPECT_EQ(resolved.diffusionRadius, 2.7f);
-    EXPECT_EQ(resolved.shadowFilterWidth, 8);
-    for (int c = 0; c < 3; ++c) EXPECT_EQ(resolved.normalBlend[c], blend[c]);
 }
 
 // A table of another profile than skin, read by a material that does not specify a radius, is not stretched.
@@ -226,8 +226,9 @@ TEST(ShadeProfile, LitSkinLosesNothingToTheShadow) {
     const auto shadowed = shading.radiance();
     for (size_t i = 0; i < width * height; ++i)
         for (size_t c = 0; c < 3; ++c) {
-            if (shading.scene.shadow[i] == 1)
+            if (shading.scene.shadow[i] == 1) {
                 EXPECT_NEAR(shadowed[3 * i + c], lit[3 * i + c], tolerance::unitRoundTrip);
+            }
             EXPECT_LE(shadowed[3 * i + c], lit[3 * i + c] + tolerance::unitRoundTrip);
         }
 }
@@ -305,9 +306,7 @@ TEST(ShadeProfile, AutoKeepsToTheScratchBudget) {
     Inputs in;
     in.thickness = false;
     Shading shading(material, in);
-    shading.buffers.emplace_back(shading.device, shading.scene.position);
-    shading.shader.set(PEL_SLOT_POSITION,
-                       imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
+    shading.set(PEL_SLOT_POSITION, shading.scene.position);
     const auto said = [&](uint64_t budget) {
         PelShaderOptions options = pelShaderOptionsDefaults();
         options.scratchBudget = budget;
@@ -334,49 +333,30 @@ TEST(ShadeProfile, AutoKeepsToTheScratchBudget) {
     EXPECT_EQ(shading.shader.material(2).scattering, PEL_SCATTERING_PREINTEGRATED);
 }
 
-TEST(ShadeProfile, TexelsLongerThanTheReachAreSaid) {
-    const Profile profile = Profile::burleyDistance(distance);
-    Inputs in;
-    in.thickness = false;
-    Shading shading(materialOf(profile), in);
-    const std::vector<float> depth(4 * 4, 0.5f);
-    shading.buffers.emplace_back(shading.device, depth);
-    const PelImageDesc map = imageDesc(shading.buffers.back(), PEL_FORMAT_R32F, 4, 4);
-    shading.buffers.emplace_back(shading.device, shading.scene.position);
-    shading.shader.set(PEL_SLOT_POSITION,
-                       imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
-    for (float extent : {4.0f, 400.0f}) {  // texels of 1 and of 100 mm
-        PelLight light = pelLightDefaults();
-        light.worldToShadow[0] = light.worldToShadow[5] = 1 / extent;
-        light.worldToShadow[3] = light.worldToShadow[7] = 0.5f;
-        light.worldToShadow[10] = -1 / extent;
-        light.shadowDepthRange = extent;
-        shading.shader.set(std::vector<PelLight>{light}).set(0, PEL_LIGHT_SHADOW_MAP, map).commit();
-        EXPECT_EQ(shading.shader.warnings().find("texel") != std::string::npos, extent > 100)
-            << shading.shader.warnings();
-    }
-}
-
-// A map that is smaller than light reaches holds no body of that profile: the unit is wrong.
-TEST(ShadeProfile, MapsThatAreTooSmallForTheProfileAreSaid) {
-    const Profile skin = Profile::skin();
-    Inputs in;
-    for (const auto& [unit, likely] : {std::pair{1.0f, true}, {3.0f, true}, {0.01f, false}}) {
-        in.options.millimetresPerUnit = unit;
-        Shading shading(materialOf(skin), in);
-        shading.buffers.emplace_back(shading.device, std::vector<float>(512 * 512, 0.5f));
-        const PelImageDesc map = imageDesc(shading.buffers.back(), PEL_FORMAT_R32F, 512, 512);
-        PelLight light = pelLightDefaults();
-        light.worldToShadow[0] = light.worldToShadow[5] = 1 / 300.0f;  // 300 units a side
-        light.worldToShadow[3] = light.worldToShadow[7] = 0.5f;
-        light.worldToShadow[10] = -1 / 300.0f;
-        light.shadowDepthRange = 300;
-        shading.buffers.emplace_back(shading.device, shading.scene.position);
-        shading.shader.set(PEL_SLOT_POSITION,
-                           imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
-        shading.shader.set(std::vector<PelLight>{light}).set(0, PEL_LIGHT_SHADOW_MAP, map).commit();
-        EXPECT_EQ(shading.shader.warnings().find("millimetresPerUnit") == std::string::npos, likely)
-            << unit << ": " << shading.shader.warnings();
+// Texels that are longer than light reaches; and a map that is smaller, which holds no body of that profile:
+// the unit is wrong.
+TEST(ShadeProfile, MapsThatDoNotFitTheProfileAreSaid) {
+    const Profile profile = Profile::burleyDistance(distance), skin = Profile::skin();
+    const struct {
+        const Profile& profile;
+        uint32_t side;
+        float extent, unit;
+        const char* word;
+        bool said;
+    } cases[] = {{profile, 4, 4, 1, "texel", false},
+                 {profile, 4, 400, 1, "texel", true},
+                 {skin, 512, 300, 1, "millimetresPerUnit", false},
+                 {skin, 512, 300, 3, "millimetresPerUnit", false},
+                 {skin, 512, 300, 0.01f, "millimetresPerUnit", true}};
+    for (const auto& c : cases) {
+        Inputs in;
+        in.thickness = c.side > 4;
+        in.options.millimetresPerUnit = c.unit;
+        Shading shading(materialOf(c.profile), in);
+        shading.set(PEL_SLOT_POSITION, shading.scene.position);
+        shading.setMap(std::vector<float>(c.side * c.side, 0.5f), c.side, c.extent);
+        EXPECT_EQ(shading.shader.warnings().find(c.word) != std::string::npos, c.said)
+            << c.extent << ' ' << c.unit << ": " << shading.shader.warnings();
     }
 }
 
@@ -393,8 +373,6 @@ TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
     std::vector<float> depth(side * side);
     for (uint32_t i = 0; i < depth.size(); ++i)
         depth[i] = i % side < side / 2 ? 0.25f : 0.5f;  // z = 16 and z = 0
-    shading.buffers.emplace_back(shading.device, depth);
-    const PelImageDesc map = imageDesc(shading.buffers.back(), PEL_FORMAT_R32F, side, side);
     std::vector<float> position(width * height * 3), normals;
     for (uint32_t i = 0; i < width * height; ++i) {
         position[3 * i] = -30 + 60 * (float(i % width) + 0.5f) / float(width);
@@ -402,21 +380,10 @@ TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
         const float n[3] = {0, 0, -1};
         normals.insert(normals.end(), n, n + 3);
     }
-    shading.buffers.emplace_back(shading.device, position);
-    shading.shader.set(PEL_SLOT_POSITION,
-                       imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
-    shading.buffers.emplace_back(shading.device, normals);
-    shading.shader.set(PEL_SLOT_NORMAL_SHADING,
-                       imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
-    shading.buffers.emplace_back(
-        shading.device, std::vector<float>(width * height, 0.0f));  // flat: the table's dark side is 0
-    shading.shader.set(PEL_SLOT_CURVATURE, imageDesc(shading.buffers.back(), PEL_FORMAT_R32F, width, height));
-    PelLight light = pelLightDefaults();
-    light.worldToShadow[0] = 1 / extent, light.worldToShadow[5] = -1 / extent,
-    light.worldToShadow[10] = -1 / extent;
-    light.worldToShadow[3] = light.worldToShadow[7] = light.worldToShadow[11] = 0.5f;
-    light.shadowDepthRange = extent;
-    shading.shader.set(std::vector<PelLight>{light}).set(0, PEL_LIGHT_SHADOW_MAP, map).commit();
+    shading.set(PEL_SLOT_POSITION, position);
+    shading.set(PEL_SLOT_NORMAL_SHADING, normals);
+    shading.set(PEL_SLOT_CURVATURE, std::vector<float>(width * height, 0.0f));  // the table's dark side is 0
+    shading.setMap(depth, side, extent);
     const auto radiance = shading.radiance();
     for (uint32_t x = 0; x < width; ++x) {
         const float at = position[3 * x];

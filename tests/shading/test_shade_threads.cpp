@@ -1,16 +1,12 @@
-// Shaders used from several threads, on one device and on several; and objects that outlive the caller's
-// device.
-#include <gtest/gtest.h>
-
+// Shaders used from several threads, on one device and on several; objects that outlive the caller's device;
+// progress and cancelling; and what a second frame costs.
 #include <thread>
 
-#include "shade_scene.h"
+#include "cl/cl_spy.h"
+#include "pass_scene.h"
+#include "shader_ready.h"
 
 using namespace shade_test;
-using pellucid::Buffer;
-using pellucid::Device;
-using pellucid::imageDesc;
-using pellucid::Shader;
 
 namespace {
 
@@ -30,15 +26,21 @@ void shadeOften(const Device& device, const Tables& tables, const Frame& f, cons
     }
 }
 
-TEST(ShadeThreads, ShadersOnOneDeviceAndOnTwo) {
-    std::vector<Frame> frames;
-    std::vector<std::vector<float>> right;
-    for (uint32_t seed = 1; seed <= 4; ++seed) {
-        frames.push_back(randomFrame(seed, 150, 20 + seed, 1));
-        frames.back().lights[0].params.type = PEL_LIGHT_DIRECTIONAL;  // one variant
-        frames.back().options.countPixels = 1;
-        right.push_back(shade(device(), frames.back(), tables()));
+// Frames that one variant shades.
+std::vector<Frame> frames(uint32_t count) {
+    std::vector<Frame> made;
+    for (uint32_t seed = 1; seed <= count; ++seed) {
+        made.push_back(randomFrame(seed, 150, 20 + seed, 1));
+        made.back().lights[0].params.type = PEL_LIGHT_DIRECTIONAL;
+        made.back().options.countPixels = 1;
     }
+    return made;
+}
+
+TEST(ShadeThreads, ShadersOnOneDeviceAndOnTwo) {
+    const std::vector<Frame> all = frames(4);
+    std::vector<std::vector<float>> right;
+    for (const Frame& f : all) right.push_back(shade(f));
     const Device first(""), second("");
     const Tables firstTables = makeTables(first), secondTables = makeTables(second);
     for (const bool two : {false, true}) {
@@ -50,8 +52,8 @@ TEST(ShadeThreads, ShadersOnOneDeviceAndOnTwo) {
             for (size_t i = 0; i < 4; ++i)
                 threads.emplace_back([&, i] {
                     const bool other = two && i % 2;
-                    shadeOften(other ? second : first, other ? secondTables : firstTables, frames[i],
-                               right[i], &wrong[i]);
+                    shadeOften(other ? second : first, other ? secondTables : firstTables, all[i], right[i],
+                               &wrong[i]);
                 });
         }
         for (int i = 0; i < 4; ++i)
@@ -64,30 +66,23 @@ TEST(ShadeThreads, ShadersOnOneDeviceAndOnTwo) {
 
 // Constants are written between the bands of a frame. Another shader's must not be overwritten.
 TEST(ShadeThreads, SubmissionsOfSeveralShadersInOneQueue) {
-    std::vector<Frame> frames;
+    const std::vector<Frame> all = frames(3);
     std::vector<Shader> shaders;
     std::vector<Buffer> targets;
-    for (uint32_t seed = 1; seed <= 3; ++seed) {
-        frames.push_back(randomFrame(seed, 150, 20 + seed, 1));
-        frames.back().lights[0].params.type = PEL_LIGHT_DIRECTIONAL;
-        frames.back().options.countPixels = 1;
+    for (const Frame& f : all) {
         shaders.emplace_back(device());
-        targets.emplace_back(device(), frames.back().pixels() * 12);
-        setFrame(device(), shaders.back(), frames.back(), tables());
-        shaders.back()
-            .set(PEL_SLOT_RADIANCE, imageDesc(targets.back(), PEL_FORMAT_RGB32F, 150, 20 + seed))
-            .commit();
+        targets.emplace_back(device(), f.pixels() * 12);
+        setFrame(shaders.back(), f, targets.back()).commit();
     }
     const PelSubmit submit{};
     for (int round = 0; round < 3; ++round)
         for (const Shader& shader : shaders) shader.execute(&submit);
-    for (size_t i = 0; i < frames.size(); ++i)
-        EXPECT_EQ(targets[i].readAll<float>(), shade(device(), frames[i], tables())) << i;
+    for (size_t i = 0; i < all.size(); ++i) EXPECT_EQ(targets[i].readAll<float>(), shade(all[i])) << i;
 }
 
 TEST(ReleasedDevice, IsKeptByWhatIsMadeOfIt) {
     const Frame f = randomFrame(1, 60, 20, 1);
-    const auto right = shade(device(), f, tables());
+    const auto right = shade(f);
     PelDevice handle = nullptr;
     Tables own;
     Shader shader;
@@ -121,7 +116,7 @@ TEST(ReleasedDevice, IsKeptByWhatIsMadeOfIt) {
 // Work that is queued when its objects are released is done all the same.
 TEST(ReleasedDevice, QueuedWorkIsDone) {
     const Frame f = randomFrame(1, 60, 20, 1);
-    const auto right = shade(device(), f, tables());
+    const auto right = shade(f);
     std::vector<float> result(f.pixels() * 3);
     {
         const Device own("");
@@ -135,6 +130,107 @@ TEST(ReleasedDevice, QueuedWorkIsDone) {
         if (!own.info().sharedMemory) target.read(result.data(), result.size() * 4);
     }
     EXPECT_EQ(result, right);
+}
+
+// --- progress ---
+
+struct Listener {
+    int calls = 0, stopAt = 0;
+    double last = -1;
+};
+int listen(void* user, double fraction, const char* what) {
+    auto& listener = *static_cast<Listener*>(user);
+    EXPECT_STREQ(what, "shading");
+    EXPECT_GT(fraction, listener.last);
+    listener.last = fraction;
+    return ++listener.calls != listener.stopAt;
+}
+
+// Of a frame of more than two million pixels, and of one in bands.
+TEST(ShadeProgress, IsToldAndMayCancel) {
+    const Device own("");
+    const Tables ownTables = makeTables(own, 32, 32);
+    for (const bool bands : {false, true}) {
+        Frame f = bands ? reliefFrame(4, 64, 40, 0.4f) : randomFrame(9, 2100, 1024, 1);
+        if (bands) f.lights = {mapLight(4, false, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 61).light};
+        f.options.scratchBudget = bands ? 64 * 4 * 8 : 0;
+        for (auto& [id, m] : f.materials) m.thicknessTaps = 0;
+        const auto right = shade(own, f, ownTables);
+        Shader shader(own);
+        setFrame(own, shader, f, ownTables);
+        const Buffer target(own, std::vector<float>(f.pixels() * 3, -3));
+        shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height)).commit();
+        // Pixels that are made, and those that are not.
+        const auto made = [&] {
+            size_t is[2] = {};
+            const auto shown = target.readAll<float>();
+            for (size_t i = 0; i < shown.size(); ++i) {
+                if (f.slots[PEL_SLOT_MATERIAL].values[i / 3] == 0) continue;
+                ++is[shown[i] != -3];
+                if (shown[i] != -3 && shown[i] != right[i])
+                    ADD_FAILURE() << "the same bits in parts as at once";
+            }
+            return std::pair(is[0], is[1]);
+        };
+        Listener listener{0, 3};
+        pellucid::check(pelDeviceSetProgress(own.get(), listen, &listener));
+        expectError(PEL_ERROR_CANCELLED, {"shading"}, [&] { shader.execute(); });
+        EXPECT_GT(made().first, 0u) << "not all";
+        EXPECT_GT(made().second, 0u) << "what was made before";
+        listener = {};
+        shader.execute();
+        EXPECT_EQ(listener.calls, bands ? 6 : 4);
+        EXPECT_EQ(listener.last, 1);
+        EXPECT_EQ(made().first, 0u);
+        // Work that is submitted without waiting tells no progress, so it cannot be cancelled.
+        listener = {};
+        PelEvent done = nullptr;
+        const PelSubmit submit{nullptr, 0, &done};
+        shader.execute(&submit);
+        pellucid::Event(done).wait();
+        EXPECT_EQ(listener.calls, 0);
+        pellucid::check(pelDeviceSetProgress(own.get(), nullptr, nullptr));
+        EXPECT_EQ(made().first, 0u);
+    }
+}
+
+TEST(ShadeStats, NothingIsSentOrBuiltTwice) {
+    Frame f = randomFrame(5, 120, 60, 1);
+    f.options.countPixels = 1;
+    Shader shader(device());
+    setFrame(device(), shader, f, tables());
+    const auto target = setTarget(device(), shader, f);
+    shader.commit().execute();
+    PelShaderStats stats = shader.stats();
+    const uint64_t shiny = stats.pixelsSpecular, tiles = stats.tilesShaded;
+    EXPECT_GT(shiny, 0u);
+    EXPECT_GT(stats.bytesUploaded, 0u);
+    EXPECT_EQ(stats.launches, 2u);
+    const uint64_t built = stats.programsBuilt;
+    const uint64_t sent = device().stats().bytesToDevice, allocated = device().stats().bytesAllocated;
+    const spy::Counts asked = spy::counts();
+    shader.set(f.ambient).commit().execute();
+    shader.execute();
+    EXPECT_EQ(spy::counts().transfers, asked.transfers);
+    EXPECT_EQ(spy::counts().buffersMade, asked.buffersMade);
+    stats = shader.stats();
+    EXPECT_EQ(stats.bytesUploaded, 0u);
+    EXPECT_EQ(stats.programsBuilt, built);
+    EXPECT_EQ(stats.launches, 2u);
+    EXPECT_EQ(stats.pixelsSpecular, shiny) << "an execution counts from 0";
+    EXPECT_EQ(stats.tilesShaded, tiles);
+    EXPECT_EQ(device().stats().bytesToDevice, sent);
+    EXPECT_EQ(device().stats().bytesAllocated, allocated);
+    f.ambient.constant[0] += 1;
+    shader.set(f.ambient).commit().execute();
+    EXPECT_GT(shader.stats().bytesUploaded, 0u);
+    EXPECT_LT(shader.stats().bytesUploaded, 4096u) << "the tables are not sent again";
+
+    f.slots[PEL_SLOT_MATERIAL].values.assign(f.pixels(), 0.0f);
+    shader.set(PEL_SLOT_MATERIAL,
+               imageDesc(upload(device(), f.slots[PEL_SLOT_MATERIAL]), PEL_FORMAT_R32F, f.width, f.height));
+    shader.commit().execute();
+    EXPECT_EQ(shader.stats().tilesShaded, 0u);
 }
 
 }  // namespace

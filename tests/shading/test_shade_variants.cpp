@@ -1,5 +1,4 @@
-// Variants of the shading kernel: few, equal for shaders that mean the same; and tiles shaded by those with
-// less in them.
+// Variants of the shading kernel: few, equal for shaders that mean the same.
 //
 // This program defines clBuildProgram itself, which is linked before libOpenCL's: it counts programs without
 // compiling them.
@@ -12,10 +11,6 @@
 #include "shade_scene.h"
 
 using namespace shade_test;
-using pellucid::Buffer;
-using pellucid::Device;
-using pellucid::imageDesc;
-using pellucid::Shader;
 
 namespace {
 std::atomic<bool> pretend{false};
@@ -141,6 +136,7 @@ TEST(ShadeVariants, EqualMeaningIsOneProgram) {
     add([](Frame& f) { f.options.invalidColor[0] = 1; });
     add([](Frame& f) { f.options.scratchBudget = 1 << 20; });
     add([](Frame& f) { f.options.tileLists = PEL_TILES_NO_LIST; });
+    add([](Frame& f) { f.options.rotateTaps = 1; });  // of taps that nothing takes
     EXPECT_EQ(programsOf(frames), 1u);
     // The blurred normal matters to nothing here.
     std::vector<Frame> plain;
@@ -157,75 +153,8 @@ TEST(ShadeVariants, EqualMeaningIsOneProgram) {
     EXPECT_EQ(programsOf(frames), 2u) << "an input that is read";
 }
 
-// --- tiles by variant ---
-
-// Skin (1), a material without tables or deep scatter (2), and one that is not even shiny (7), in runs that
-// share tiles here and there; pixels with NaN in every input.
-Frame mixedFrame(uint32_t seed) {
-    Frame f = randomFrame(seed, 700, 40, 2);
-    for (float& c : f.materials[2].deepScatterColor) c = 0;
-    f.materials[7] = f.materials[2];
-    f.materials[7].specular = 0;
-    Random random(seed);
-    auto& ids = f.slots[PEL_SLOT_MATERIAL].values;
-    for (uint32_t y = 0; y < f.height; ++y)
-        for (uint32_t x = 0; x < f.width; ++x) {
-            constexpr float kinds[] = {1, 2, 7, 0, 7, 2, 2, 7};
-            float& id = ids[size_t(y) * f.width + x];
-            if (random.below(300) > 0) id = kinds[(x / 128 + y / 2 * 3) % 8];
-        }
-    for (int slot = PEL_SLOT_POSITION; slot < PEL_SLOT_OUT_DIFFUSE; ++slot)
-        for (float& v : f.slots[slot].values)
-            if (random.below(400) == 0) v = std::nanf("");
-    f.options.countPixels = 1;
-    f.options.tileLists = PEL_TILES_PER_VARIANT;
-    f.options.invalidColor[1] = 5;
-    return f;
-}
-
-// Curvature and deep scatter with materials 1 only: setFrame gives all materials the tables.
-std::vector<float> shadeMixed(const Frame& f, PelShaderStats& stats) {
-    Shader shader(device());
-    setFrame(device(), shader, f, tables());
-    for (const uint32_t id : {2u, 7u}) shader.setMaterial(id, f.materials.at(id));
-    const auto target = setTarget(device(), shader, f);
-    shader.commit().execute();
-    stats = shader.stats();
-    return target.readAll<float>();
-}
-
-TEST(ShadeVariants, TilesThatNeedLessGetTheSameBits) {
-    for (uint32_t seed : {1u, 2u}) {
-        Frame f = mixedFrame(seed);
-        for (Light& light : f.lights)
-            light.params.type = PelLightType(seed == 1 ? PEL_LIGHT_DIRECTIONAL : PEL_LIGHT_SPOT);
-        PelShaderStats lists = pelShaderStatsDefaults(), one = lists, none = lists, all = lists;
-        const auto right = shadeMixed(f, lists);
-        EXPECT_EQ(lists.variants, 3u);
-        EXPECT_GT(lists.tilesPartial, lists.tilesShaded / 3);
-        EXPECT_LT(lists.tilesPartial, lists.tilesShaded) << "some hold skin";
-        EXPECT_GT(lists.pixelsInvalid, 0u);
-        f.options.tileLists = PEL_TILES_ONE_LIST;
-        EXPECT_EQ(shadeMixed(f, one), right);
-        EXPECT_EQ(one.variants, 1u);
-        EXPECT_EQ(one.tilesPartial, 0u);
-        EXPECT_EQ(one.tilesShaded, lists.tilesShaded);
-        f.options.tileLists = PEL_TILES_NO_LIST;
-        EXPECT_EQ(shadeMixed(f, none), right);
-        EXPECT_EQ(none.tilesShaded, none.tilesTotal);
-        EXPECT_EQ(none.launches, 1u) << "nothing is classified";
-        f.options.tileLists = PEL_TILES_PER_VARIANT;
-        f.options.disableSkipping = 1;
-        EXPECT_EQ(shadeMixed(f, all), right);
-        for (const PelShaderStats& s : {one, none, all}) {
-            EXPECT_EQ(s.pixelsShaded, lists.pixelsShaded);
-            EXPECT_EQ(s.pixelsInvalid, lists.pixelsInvalid);
-        }
-    }
-}
-
 // NaN in an image that the pixel's material does not read does not make the pixel invalid.
-TEST(ShadeVariants, InputsThatAMaterialDoesNotReadMayBeNoNumbers) {
+TEST(ShadeVariants, InputsThatAMaterialDoesNotReadMayBeNan) {
     Frame f = randomFrame(3, 64, 4, 1);
     for (float& id : f.slots[PEL_SLOT_MATERIAL].values) id = 1;
     f.materials[2].specular = 0;
@@ -233,26 +162,28 @@ TEST(ShadeVariants, InputsThatAMaterialDoesNotReadMayBeNoNumbers) {
     f.lights[0].params.type = PEL_LIGHT_DIRECTIONAL;
     const size_t at = 2 * 64 + 33;
     f.slots[PEL_SLOT_MATERIAL].values[at] = 2;  // amid skin
-    PelShaderStats stats = pelShaderStatsDefaults();
-    const auto right = shadeMixed((f.materials[7] = f.materials[2], f), stats);
+    // Curvature and deep scatter with skin only: setFrame gives all materials the tables.
+    const auto noTables = [&](Shader& shader) { shader.setMaterial(2, f.materials.at(2)); };
+    const auto right = shade(f, nullptr, noTables);
     for (const PelImageSlot unread :
          {PEL_SLOT_POSITION, PEL_SLOT_CURVATURE, PEL_SLOT_ROUGHNESS, PEL_SLOT_SPECULAR}) {
         Image& image = f.slots[unread];
         for (uint32_t c = 0; c < image.components; ++c)
             image.values[at * image.components + c] = std::nanf("");
     }
-    EXPECT_EQ(shadeMixed(f, stats), right);
+    EXPECT_EQ(shade(f, nullptr, noTables), right);
 }
 
 // A frame without skin: the ids are read, and nothing else is done.
 TEST(ShadeVariants, AFrameWithoutMaterialsCostsOneClassification) {
-    Frame f = mixedFrame(4);
+    Frame f = randomFrame(4, 700, 40, 2);
+    f.options.countPixels = 1;
     for (float& id : f.slots[PEL_SLOT_MATERIAL].values) id = 0;
     for (int slot = PEL_SLOT_POSITION; slot < PEL_SLOT_OUT_DIFFUSE; ++slot)
         for (float& v : f.slots[slot].values) v = std::nanf("");
     f.options.tileLists = PEL_TILES_ONE_LIST;
     PelShaderStats stats = pelShaderStatsDefaults();
-    for (float v : shadeMixed(f, stats)) ASSERT_EQ(v, 0);
+    for (float v : shade(f, &stats)) ASSERT_EQ(v, 0);
     EXPECT_EQ(stats.launches, 2u) << "the classification, and the kernel that finds its list empty";
     EXPECT_EQ(stats.tilesShaded, 0u);
     for (const uint64_t touched : {stats.pixelsShaded, stats.pixelsShadowLut, stats.pixelsThickness,
