@@ -24,8 +24,7 @@ constexpr uint32_t width = 300, height = 200;
 // n, l, v, m per evaluation: ten floats each.
 std::vector<float> evaluate(const pellucid::Device& device, const std::vector<float>& table,
                             const std::vector<float>& inputs, int lanes) {
-    const char* source = R"(
-#include "lib/shading/specular_table.clh"
+    const char* source = R"(#include "lib/shading/specular_table.clh"
 #define V(i) vec3(loadw(at, in + (i) * n), loadw(at, in + (i + 1) * n), loadw(at, in + (i + 2) * n))
 __kernel void evaluate(__global const float* in, __global const float* table, uint width, uint height,
                        __global float* out) {
