@@ -117,7 +117,8 @@ std::vector<io::SceneMaterial> materialsOf(const DemoHead& head) {
     if (materials.size() > 1) {
         // Their gloss is that of the film of tears.
         materials[demo::DEMO_EYES - 1].material = materials[demo::DEMO_RIGHT_EYE - 1].material = glossy(0, 1);
-        materials[demo::DEMO_EYES - 1].profile = materials[demo::DEMO_RIGHT_EYE - 1].profile = "cream";  // sclera
+        // The sclera: white, and it scatters about as far.
+        materials[demo::DEMO_EYES - 1].profile = materials[demo::DEMO_RIGHT_EYE - 1].profile = "cream";
         materials[demo::DEMO_TEETH - 1].material = materials[demo::DEMO_TONGUE - 1].material =
             glossy(0.05f, 0.2f);
         materials[demo::DEMO_CUT - 1].material = glossy(0, 1);

@@ -175,7 +175,8 @@ PEL_CALL(cl_int, clGetDeviceIDs, (cl_platform_id a, cl_device_type b, cl_uint c,
          (a, b, c, d, e))
 PEL_CALL(cl_command_queue, clCreateCommandQueue,
          (cl_context a, cl_device_id b, cl_command_queue_properties c, cl_int* d), (a, b, c, d))
-PEL_CALL(cl_mem, clCreateBuffer, (cl_context a, cl_mem_flags b, size_t c, void* d, cl_int* e), (a, b, c, d, e))
+PEL_CALL(cl_mem, clCreateBuffer, (cl_context a, cl_mem_flags b, size_t c, void* d, cl_int* e),
+         (a, b, c, d, e))
 PEL_CALL(cl_int, clSetMemObjectDestructorCallback,
          (cl_mem a, void (CL_CALLBACK* b)(cl_mem, void*), void* c), (a, b, c))
 PEL_CALL(cl_program, clCreateProgramWithSource,
@@ -187,7 +188,8 @@ PEL_CALL(cl_int, clBuildProgram,
          (cl_program a, cl_uint b, const cl_device_id* c, const char* d,
           void (CL_CALLBACK* e)(cl_program, void*), void* f), (a, b, c, d, e, f))
 PEL_CALL(cl_int, clGetProgramBuildInfo,
-         (cl_program a, cl_device_id b, cl_program_build_info c, size_t d, void* e, size_t* f), (a, b, c, d, e, f))
+         (cl_program a, cl_device_id b, cl_program_build_info c, size_t d, void* e, size_t* f),
+         (a, b, c, d, e, f))
 PEL_CALL(cl_kernel, clCreateKernel, (cl_program a, const char* b, cl_int* c), (a, b, c))
 PEL_CALL(cl_int, clSetKernelArg, (cl_kernel a, cl_uint b, size_t c, const void* d), (a, b, c, d))
 PEL_CALL(cl_int, clFlush, (cl_command_queue a), (a))

@@ -40,7 +40,7 @@ class Device final : public Object {
                cl_command_queue queue = nullptr);
     // The first bytes of memory that no queued command uses, at once: on another queue, and with shared
     // memory without a transfer.
-    void readAside(cl_mem memory, size_t bytes, void* destination) {
+    void readOnSideQueue(cl_mem memory, size_t bytes, void* destination) {
         exchange(memory, bytes, nullptr, destination);
     }
     void writeAside(cl_mem memory, size_t bytes, const void* source) {

@@ -205,7 +205,7 @@ const MeshTopology::TwoRings& twoRings(MeshTopology& topology, const cl::Program
     run(PEL_TWO_RING_LINK, {}, {});
     run(PEL_TWO_RING_COUNT, {}, {});
     cl::check(clFinish(queue.get()), "clFinish");
-    device.readAside(counted.get(), counts.size() * sizeof(uint32_t), counts.data());
+    device.readOnSideQueue(counted.get(), counts.size() * sizeof(uint32_t), counts.data());
     const std::vector<uint32_t> starts = startsOf(counts);
     const size_t entries = std::max<size_t>(size_t(starts.back()) * PEL_POINT_LANES, 1);
     const cl::Memory begin = device.allocate(starts.size() * sizeof(uint32_t)),

@@ -153,7 +153,7 @@ namespace {
 std::vector<uint32_t> readBack(Device& device, const cl::Memory& memory) {
     if (!memory) return {};
     std::vector<uint32_t> values(cl::info<size_t>(memory.get(), CL_MEM_SIZE) / sizeof(uint32_t));
-    device.readAside(memory.get(), values.size() * sizeof(uint32_t), values.data());
+    device.readOnSideQueue(memory.get(), values.size() * sizeof(uint32_t), values.data());
     return values;
 }
 

@@ -64,7 +64,7 @@ std::vector<char> MeshTopology::save() const {
     size_t at = 0;
     for (int a = 0; a < 6; ++a) {
         if (header.words[a] > 0)
-            device_->readAside(arrays[a]->get(), header.words[a] * sizeof(uint32_t), words.data() + at);
+            device_->readOnSideQueue(arrays[a]->get(), header.words[a] * sizeof(uint32_t), words.data() + at);
         at += header.words[a];
     }
     header.checksum = checksumOf(words.data(), words.size());

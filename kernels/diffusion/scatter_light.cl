@@ -24,7 +24,8 @@
 // A map locates an edge to a fifth of a texel, pixels to a step over the root of 12: the factor of the
 // squared step.
 #define STEP_OVER_TEXEL 2.0f
-// Of the accumulated weight of pixels from that of a plane: fully trusted; not at all from three times that on.
+// Of the accumulated weight of pixels from that of a plane: fully trusted; not at all from three times
+// that on.
 #define WEIGHT_OFF 0.1f
 // Of light at normal incidence: triangles of a mesh lean by so much from its smooth normals.
 #define AGREE 0.02f

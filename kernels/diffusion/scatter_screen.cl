@@ -42,8 +42,9 @@ static inline floatw lightOf(floatw light, floatw weight, floatw centre, floatw 
 // Splits the central share of level 1 into the share of the pixel itself and the rest, whose light is the
 // mean of the near pixels. These are too few for their weights to add up to the share. A pixel without a
 // block, such as one of a thin strand, has only the near pixels.
-static inline void addNear(floatw* light, floatw* weight, floatw* centre, floatw nearLight, floatw nearWeight,
-                           floatw own, maskw on) {
+static inline __attribute__((always_inline)) void addNear(floatw* light, floatw* weight, floatw* centre,
+                                                          floatw nearLight, floatw nearWeight, floatw own,
+                                                          maskw on) {
     on &= nearWeight > 0.0f;
     const floatw rest =
         selectw(nearWeight, fmin(max0w(*centre - own), MAX_PER_WEIGHT * nearWeight), *centre > 0.0f);

@@ -23,7 +23,8 @@ typedef struct PelConvention {
     /* 1: the first row of the image in memory is its lowest, as glReadPixels gives it; 0: its highest */
     int bottomFirst;
     /* 1: the 16 numbers are columns one after another (glm, OpenGL, Godot, bgfx), or rows of a matrix that
-     * multiplies row vectors (DirectXMath); 0: rows of one that multiplies column vectors, as in this library */
+     * multiplies row vectors (DirectXMath); 0: rows of one that multiplies column vectors, as in this
+     * library */
     int columnMajor;
 } PelConvention;
 

@@ -102,7 +102,8 @@ static inline float pelLengthOr_(float length, double otherwise) {
 /* A description with the lengths of that profile in the place of those that are 0. Radii of curvature from
  * that of an ear's helix to flat surface; penumbrae from light that falls straight in to light at a cosine of
  * a thousandth. Look-ups beyond are clamped. */
-static inline PelCurvatureLutDesc pelCurvatureLutDescFilled(PelCurvatureLutDesc s, const PelProfileInfo* profile) {
+static inline PelCurvatureLutDesc pelCurvatureLutDescFilled(PelCurvatureLutDesc s,
+                                                            const PelProfileInfo* profile) {
     s.diffusionRadius = pelLengthOr_(s.diffusionRadius, profile->radius);
     s.radiusMin = pelLengthOr_(s.radiusMin, 0.25 * s.diffusionRadius);
     s.radiusMax = pelLengthOr_(s.radiusMax, 1000.0 * s.diffusionRadius);
@@ -110,7 +111,8 @@ static inline PelCurvatureLutDesc pelCurvatureLutDescFilled(PelCurvatureLutDesc 
 }
 static inline PelShadowLutDesc pelShadowLutDescFilled(PelShadowLutDesc s, const PelProfileInfo* profile) {
     s.diffusionRadius = pelLengthOr_(s.diffusionRadius, profile->radius);
-    s.widthMin = pelLengthOr_(s.widthMin, (double)pelShadowFilterWidthOf(profile) * s.diffusionRadius / profile->radius);
+    s.widthMin = pelLengthOr_(
+        s.widthMin, (double)pelShadowFilterWidthOf(profile) * s.diffusionRadius / profile->radius);
     s.widthMax = pelLengthOr_(s.widthMax, 1000.0 * s.widthMin);
     return s;
 }

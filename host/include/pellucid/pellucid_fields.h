@@ -16,8 +16,8 @@
  *
  * From these rows follow the defaults (pellucid_defaults.h), the checks and their messages
  * (host/fields/field_ranges.h), the keys of scene files (host/io/scene/scene_keys.h), the sliders of the
- * viewer and the tables of the guide. A new field is its documented declaration in pellucid.h, a row here, and
- * the code that reads it. */
+ * viewer and the tables of the guide. A new field is its documented declaration in pellucid.h, a row here,
+ * and the code that reads it. */
 #ifndef PELLUCID_FIELDS_H
 #define PELLUCID_FIELDS_H
 /* clang-format off */
