@@ -17,8 +17,7 @@ from xml.etree import ElementTree
 ROOT = Path(__file__).resolve().parents[3]
 FOLDERS = ["bindings/python/tests", "apps/viewer/tests", "apps/batch/tests", "apps/blender/tests"]
 NEEDS = ["numpy", "pytest>=7", "tqdm", "pyopencl", "pillow", "distributed", "fsspec", "matplotlib", "nicegui",
-         "moderngl",
-         "selenium", "dask-jobqueue", "cryptography", "dask-kubernetes", "jsonschema"]
+         "moderngl", "selenium"]
 
 
 def prepare(environment):
