@@ -65,7 +65,8 @@ struct ShadedView {
 // Before a dark backdrop that is lighter in the middle.
 io::Picture developed(const DemoView& view, std::vector<float> radiance);
 
-// The complete picture of a view, NAME.png in `folder`. Returns the file name, as do the next two.
+// The complete picture of a view, NAME.png in `folder`, and NAME_lambert.png without scattering. Returns the
+// name of the first, as do the next two.
 std::string writePicture(const std::string& folder, const ShadedView& view);
 
 // The contact sheet, demo.png: a row per view with its difference, where light comes through most, curvature,

@@ -117,10 +117,11 @@ Crop timesTwo(const Crop& c) {
     return {2 * c.left, 2 * c.top, 2 * c.right, 2 * c.bottom};
 }
 
-// The complete picture, its edges smooth where there is a finer one.
-io::Picture smooth(const ShadedView& view, const Crop& part) {
-    if (view.fine.empty()) return cropped(developed(view.view, view.complete), part);
-    return io::shrunk(cropped(view.fine[2], timesTwo(part)), 2);
+// A picture, its edges smooth where there is a finer one. `which`: of ShadedView::fine.
+io::Picture smooth(const ShadedView& view, const std::vector<float>& radiance, size_t which) {
+    const Crop part = coveredPart(view.view);
+    if (view.fine.empty()) return cropped(developed(view.view, radiance), part);
+    return io::shrunk(cropped(view.fine[which], timesTwo(part)), 2);
 }
 
 std::string write(const std::string& file, const io::Picture& p) {
@@ -149,7 +150,9 @@ std::string writeParts(const std::string& folder, const DemoView& view, const io
 }
 
 std::string writePicture(const std::string& folder, const ShadedView& view) {
-    return write(folder + "/" + view.view.name + ".png", smooth(view, coveredPart(view.view)));
+    const std::string name = folder + "/" + view.view.name;
+    write(name + "_lambert.png", smooth(view, view.lambert, 0));
+    return write(name + ".png", smooth(view, view.complete, 2));
 }
 
 std::string writeSheet(const std::string& folder, const std::vector<ShadedView>& views,

@@ -20,8 +20,8 @@ def main(command, work):
     if not complete.exists():
         venv.create(environment, clear=True, with_pip=True)
         for reader in READERS:
-            command = "-m pip --disable-pip-version-check install -q --only-binary :all:".split()
-            found = subprocess.run([python, *command, reader], capture_output=True)
+            install = "-m pip --disable-pip-version-check install -q --only-binary :all:".split()
+            found = subprocess.run([python, *install, reader], capture_output=True)
             if found.returncode and reader == "numpy":
                 print("tests/foreign::packages_from_PyPI SKIPPED (pip cannot reach what the tests need)")
                 return 77
