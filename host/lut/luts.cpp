@@ -15,7 +15,7 @@ namespace {
 constexpr int curvatureNodes = 64;
 
 // What the kernel calls the forms.
-#define NUMBER(name, number, key) {"PEL_FORM_" #name, #number},
+#define FORM_NUMBER(name, number, key) {"PEL_FORM_" #name, #number},
 
 CurvatureLutParams paramsOf(const PelCurvatureLutDesc& desc, double curvatureMin, double curvatureMax,
                             size_t terms) {
@@ -56,7 +56,7 @@ Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& de
     const uint32_t lanes = device->info().mathWidth;
     const size_t group = launchPolicy(*device).group, columnsPerItem = launchPolicy(*device).columns;
     const cl::Program program = device->programs().get(
-        "lut/curvature_lut.cl", {PEL_EACH_CURVATURE_FORM(NUMBER){"PEL_FORM", int(desc.form)},
+        "lut/curvature_lut.cl", {PEL_EACH_CURVATURE_FORM(FORM_NUMBER){"PEL_FORM", int(desc.form)},
                                  {"PEL_GROUP", group},
                                  {"PEL_NODES", curvatureNodes},
                                  {"PEL_COLUMNS", columnsPerItem}});

@@ -10,9 +10,9 @@ namespace {
 
 // Gauss-Legendre on [-1, 1], 4 points.
 constexpr double inner = 0.3399810435848563, outer = 0.8611363115940526;
-constexpr double gaussAt[4] = {-outer, -inner, inner, outer};
+constexpr double fourAt[4] = {-outer, -inner, inner, outer};
 constexpr double innerWeight = 0.6521451548625461, outerWeight = 0.3478548451374538;
-constexpr double gaussWeight[4] = {outerWeight, innerWeight, innerWeight, outerWeight};
+constexpr double fourWeight[4] = {outerWeight, innerWeight, innerWeight, outerWeight};
 // Below these angles chords are too near to the diameter for differences of moments, and of total, in float.
 constexpr double nearAntipode = 0.8, antipodalAngle = 0.02;
 constexpr size_t maxKnots = 128;  // a table with more distances is finer than the meshes here
@@ -50,7 +50,7 @@ Rgb lineSpread(const Profile& profile, double distance) {
 void eachPoint(const Profile& profile, double a, double b, auto&& visit) {
     const double h = b - a;
     for (int q = 0; q < 4; ++q) {
-        const double x = 0.5 + 0.5 * gaussAt[q], t = h * (1 - x * x), weight = gaussWeight[q] * h * x;
+        const double x = 0.5 + 0.5 * fourAt[q], t = h * (1 - x * x), weight = fourWeight[q] * h * x;
         Rgb m = lineSpread(profile, a + t);
         for (double& value : m) value *= weight;
         visit(t, m);
@@ -199,12 +199,12 @@ std::vector<TableInterval> tableMesh(int nodes, bool chord) {
             const auto fit = [&](auto&& weight) {
                 double sum = 0, moment = 0;
                 for (int q = 0; q < 4; ++q) {
-                    const double x = nearest + length * (1 + gaussAt[q]) / 2;
+                    const double x = nearest + length * (1 + fourAt[q]) / 2;
                     double t = x, perDistance = 1;
                     if (chord) t = 2 * std::asin(std::min(x / 2, 1.0)), perDistance = 1 / std::cos(t / 2);
                     if (back) t = std::numbers::pi - t;
-                    const double w = weight(t) * perDistance * gaussWeight[q] / 2;
-                    sum += w, moment += w * gaussAt[q];
+                    const double w = weight(t) * perDistance * fourWeight[q] / 2;
+                    sum += w, moment += w * fourAt[q];
                 }
                 const double slope = 6 * moment / length;
                 return TableWeight{float(sum - slope * length / 2), float(slope)};
@@ -235,8 +235,8 @@ std::vector<RampWeight> rampWeights() {
     std::vector<std::array<double, 4>> sums(2 * parts + 1);
     for (int k = 0; k < 2 * parts; ++k)
         for (int q = 0; q < 4; ++q) {
-            const double t = (1 + gaussAt[q]) / 2, u = 1 - t, y = (k + t) / parts - 1;
-            const double w = 0.75 * (1 - y * y) * gaussWeight[q] / (2 * parts);
+            const double t = (1 + fourAt[q]) / 2, u = 1 - t, y = (k + t) / parts - 1;
+            const double w = 0.75 * (1 - y * y) * fourWeight[q] / (2 * parts);
             const double value[2] = {u * u * (1 + 2 * t), t * t * (3 - 2 * t)},
                          slope[2] = {u * u * t, -t * t * u};
             const double valueToSlope[2] = {-6 * t * u, 6 * t * u},
@@ -277,10 +277,10 @@ std::vector<cl_float4> tablePoints(const std::vector<cl_float4>& knots, double d
             const cl_float4 &low = knots[piece], &high = knots[piece + 1];
             const double b = std::min<double>(borders[i + 1], high.s[3]), h = (b - a) / 2;
             for (int q = 0; q < 4; ++q) {
-                const double d = (a + b) / 2 + h * gaussAt[q],
+                const double d = (a + b) / 2 + h * fourAt[q],
                              f = (d - low.s[3]) / (double(high.s[3]) - low.s[3]);
                 for (int c = 0; c < 3; ++c) {
-                    const double m = gaussWeight[q] * h * d * (low.s[c] + f * (double(high.s[c]) - low.s[c]));
+                    const double m = fourWeight[q] * h * d * (low.s[c] + f * (double(high.s[c]) - low.s[c]));
                     sum[c] += m;
                     moment[c] += m * (d - middle) / half;
                 }

@@ -10,7 +10,7 @@ namespace pel {
 namespace {
 
 // What the kernel calls the quantities.
-#define NUMBER(name, number, key) {"PEL_QUANTITY_" #name, #number},
+#define QUANTITY_NUMBER(name, number, key) {"PEL_QUANTITY_" #name, #number},
 
 // Beside what estimators have counted in `memory`.
 MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, const VertexView& given,
@@ -87,7 +87,8 @@ cl::Defines passDefines(const MeshTopology& topology, const PelCurvatureParams& 
             {"PEL_MESH_STRIDE", stride},
             {"PEL_MESH_PLANES", planesOf(params.quantity)},
             {"PEL_MESH_QUANTITY", params.quantity},
-            PEL_EACH_QUANTITY(NUMBER) PEL_EACH_QUANTITY_OF_SEVERAL(NUMBER){"PEL_MESH_LISTED", "0"},
+            PEL_EACH_QUANTITY(QUANTITY_NUMBER)
+                PEL_EACH_QUANTITY_OF_SEVERAL(QUANTITY_NUMBER){"PEL_MESH_LISTED", "0"},
             {"PEL_MESH_RUNS", haveRuns(topology)},
             {"PEL_WIDTH", width(topology.device())}};
 }
