@@ -1,5 +1,5 @@
 # Turns every file under kernels/ into bytes inside the library, so that nothing is read at run time.
-# pellucid_embed_kernels(OUT_CPP) defines: pel::cl::kernelFiles() (name, text) and kernelsHash().
+# pellucid_embed_kernels(OUT_CPP) defines: pel::cl::kernelFiles() (name, text).
 function(pellucid_embed_kernels out_cpp)
   file(GLOB_RECURSE kernel_files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/kernels
        ${PROJECT_SOURCE_DIR}/kernels/*.cl ${PROJECT_SOURCE_DIR}/kernels/*.clh ${PROJECT_SOURCE_DIR}/kernels/shared/*.h)

@@ -5,6 +5,9 @@ include(CMakePackageConfigHelpers)
 install(TARGETS pellucid EXPORT pellucidTargets COMPONENT library
         LIBRARY NAMELINK_COMPONENT development
         ARCHIVE COMPONENT development)
+if(TARGET pellucid_build AND NOT SKBUILD)
+  install(TARGETS pellucid_build RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR}/pellucid COMPONENT library)
+endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/host/include/pellucid DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 # The device functions that a renderer may include in its own kernels.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/kernels/lib ${PROJECT_SOURCE_DIR}/kernels/shared
@@ -67,8 +70,9 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples DEST
         PATTERN "__pycache__" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/apps/blender DESTINATION ${CMAKE_INSTALL_DATADIR}/pellucid COMPONENT command
         PATTERN "__pycache__" EXCLUDE PATTERN "tests" EXCLUDE)
-# What the demo shows.
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/heads DESTINATION ${CMAKE_INSTALL_DATADIR}/pellucid COMPONENT command)
+# What the demo shows, and what the benchmark compares with.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/heads ${PROJECT_SOURCE_DIR}/data/bench DESTINATION ${CMAKE_INSTALL_DATADIR}/pellucid COMPONENT command)
+install(FILES ${PROJECT_SOURCE_DIR}/kernels/lib/shading/poisson_disk.clh DESTINATION ${CMAKE_INSTALL_DATADIR}/pellucid/bench COMPONENT command)
 
 # The viewer among a desktop's programs.
 if(PELLUCID_DEBIAN)

@@ -1,11 +1,15 @@
-# Sums up CTest's LastTest.log: GoogleTest and pytest cases one by one, any other test as one. Names what was skipped and why.
+# Sums up CTest's LastTest.log: GoogleTest and pytest cases one by one, any other test as one. Names what failed, and what was skipped and why.
 # Fails when nothing ran, when something failed, and, with -v may_skip=REGEX, when a reason to skip does not match.
 function close_test() {
     if (!open) return
-    if (ok + bad + skip == 0) { if (good) ok = 1; else bad = 1 }
-    if (!good && bad == 0) bad = 1  # a crash or time-out names no failed case
+    if (ok + bad + skip == 0 && good) ok = 1
+    if (!good && bad == 0) fail("it ended early")  # a crash or time-out names no failed case
     passed += ok; failed += bad; skipped += skip
     open = 0
+}
+function fail(name) {
+    bad++
+    list = list "failed: " test " " name "\n"
 }
 function skip_because(name, reason) {
     skip++
@@ -18,7 +22,7 @@ function skip_because(name, reason) {
 after_skipped { reason = $0; after_skipped = 0 }
 /: Skipped$/ { after_skipped = 1 }
 /^\[  SKIPPED \] .*\([0-9]+ ms\)/ { skip_because(test " " $4, reason); reason = "" }
-/^\[  FAILED  \] .*\([0-9]+ ms\)/ { bad++ }
+/^\[  FAILED  \] .*\([0-9]+ ms\)/ { fail($4) }
 # Python tests, one a line: PATH::NAME PASSED. What pytest skipped stands in its summary with the whole reason and a count:
 # SKIPPED [2] PATH:LINE: REASON
 /^[^ ]+::.* PASSED( |$)/ { ok++ }
@@ -29,7 +33,7 @@ after_skipped { reason = $0; after_skipped = 0 }
     sub(/^SKIPPED \[[0-9]+\] [^ ]+: /, "")
     while (times-- > 0) skip_because(name, $0)
 }
-/^[^ ]+::.* (FAILED|ERROR)( |$)/ { bad++ }
+/^[^ ]+::.* (FAILED|ERROR)( |$)/ { name = $1; sub(/.*\//, "", name); fail(name) }
 /^Test Passed\./ { good = 1 }
 /^Test Pass Reason:/ { good = 1 }  # ended with 77: skipped
 END {

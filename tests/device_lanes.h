@@ -1,8 +1,6 @@
 // Devices that compute 1, 8 and 16 lanes at a time, as other hardware does.
 #pragma once
-#include <cstdlib>
-#include <pellucid/pellucid.hpp>
-#include <string>
+#include "test.h"
 
 namespace lanes {
 

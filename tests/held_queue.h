@@ -1,10 +1,8 @@
 // A device whose queue waits for an event that the test has yet to set.
 #pragma once
-#ifndef CL_TARGET_OPENCL_VERSION
-#define CL_TARGET_OPENCL_VERSION 120
-#endif
 #include <CL/cl.h>
 #include <gtest/gtest.h>
+#include "test.h"
 
 #include <pellucid/pellucid.hpp>
 

@@ -10,6 +10,8 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <regex>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -23,56 +25,31 @@ struct Array {
     const T* row(size_t i) const { return data.data() + i * (data.size() / shape[0]); }
 };
 
-template <class T>
-constexpr const char* typeCode();
-template <>
-constexpr const char* typeCode<float>() {
-    return "<f4";
-}
-template <>
-constexpr const char* typeCode<double>() {
-    return "<f8";
-}
-template <>
-constexpr const char* typeCode<int32_t>() {
-    return "<i4";
-}
-template <>
-constexpr const char* typeCode<uint8_t>() {
-    return "|u1";
-}
-
-// Throws std::runtime_error that names the file when it is missing, is no .npy, or holds another type.
+// Throws std::runtime_error that names the file when it is missing, is no .npy of version 1, or holds another
+// type.
 template <class T>
 Array<T> read(const std::filesystem::path& path) {
-    auto fail = [&](const std::string& what) { throw std::runtime_error(path.string() + ": " + what); };
+    const std::string type = (std::is_floating_point_v<T> ? "<f"
+                              : sizeof(T) == 1            ? "|u"
+                                                          : "<i") +
+                             std::to_string(sizeof(T));
     std::ifstream file(path, std::ios::binary);
-    if (!file) fail("cannot be opened");
-    const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    if (bytes.size() < 10 || std::memcmp(bytes.data(), "\x93NUMPY", 6) != 0) fail("is not a .npy file");
-    auto byte = [&](size_t i) { return size_t(uint8_t(bytes.at(i))); };
-    const bool longHeader = byte(6) > 1;  // version 2 and later: four bytes of header length instead of two
-    const size_t headerBegin = longHeader ? 12 : 10;
-    size_t headerSize = byte(8) + 256 * byte(9);
-    if (longHeader) headerSize += 65536 * byte(10) + 16777216 * byte(11);
-    if (bytes.size() < headerBegin + headerSize) fail("ends within its header");
-    const std::string header(bytes.data() + headerBegin, headerSize);
-    if (header.find(typeCode<T>()) == std::string::npos)
-        fail(std::string("is not of type ") + typeCode<T>() + ": " + header);
-    if (header.find("'fortran_order': False") == std::string::npos) fail("is not in C order");
-
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    const std::string header = bytes.substr(0, bytes.find('\n') + 1);
+    std::smatch found;
+    static const std::regex form(
+        R"(\x93NUMPY\x01[^]*'descr': '(.*)', 'fortran_order': False, 'shape': \((.*)\))");
+    if (!std::regex_search(header, found, form) || found[1] != type)
+        throw std::runtime_error(path.string() + ": is no .npy file of type " + type);
     Array<T> array;
-    size_t count = 1, at = header.find('(', header.find("'shape'"));
-    while (header.at(++at) != ')') {
-        if (!std::isdigit(uint8_t(header[at]))) continue;
-        array.shape.push_back(std::stoull(header.substr(at)));
-        count *= array.shape.back();
-        while (std::isdigit(uint8_t(header.at(at + 1)))) ++at;
-    }
-    if (bytes.size() - headerBegin - headerSize != count * sizeof(T))
-        fail("its size does not match its shape");
+    size_t count = 1;
+    std::istringstream shape(found[2]);
+    for (std::string number; std::getline(shape, number, ',');)
+        if (number != " " && !number.empty()) count *= array.shape.emplace_back(std::stoull(number));
+    if (bytes.size() - header.size() != count * sizeof(T))
+        throw std::runtime_error(path.string() + ": its size does not match its shape");
     array.data.resize(count);
-    if (count > 0) std::memcpy(array.data.data(), bytes.data() + headerBegin + headerSize, count * sizeof(T));
+    std::memcpy(array.data.data(), bytes.data() + header.size(), count * sizeof(T));
     return array;
 }
 

@@ -1,9 +1,7 @@
 // pellucid batch: makes the look-up tables of a manifest that do not exist yet. The name of a file is a hash
 // of its parameters; a file contains a check sum and is written atomically.
-#include <algorithm>
 #include <atomic>
 #include <csignal>
-#include <cstdio>
 #include <deque>
 #include <filesystem>
 #include <mutex>
@@ -12,7 +10,6 @@
 #include "batch/batch_manifest.h"
 #include "cli/command.h"
 #include "io/atomic_file.h"
-#include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/lut/lut_exr.h"
 #include "system/process.h"
@@ -33,7 +30,8 @@ double seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Standard error: a bar on a terminal, elsewhere a line every ten seconds; messages in between.
+// Standard error: rate and time left, in place on a terminal, elsewhere a line every ten seconds; messages in
+// between.
 class Display {
   public:
     explicit Display(size_t all) : all_(all) {}
@@ -55,13 +53,8 @@ class Display {
         char left[64] = "";
         if (rate > 0 && !last) std::snprintf(left, sizeof left, ", %.0f s left", double(all_ - done) / rate);
         std::lock_guard lock(mutex_);
-        if (terminal_) {
-            const std::string bar = std::string(30 * done / all_, '#');
-            std::fprintf(stderr, "\r\033[K[%s%s] %zu/%zu, %.1f/s%s%s", bar.c_str(),
-                         std::string(30 - bar.size(), '.').c_str(), done, all_, rate, left, last ? "\n" : "");
-        } else {
-            std::fprintf(stderr, "%zu of %zu, %.1f per second%s\n", done, all_, rate, left);
-        }
+        std::fprintf(stderr, "%s%zu of %zu, %.1f per second%s%s", terminal_ ? "\r\033[K" : "", done, all_,
+                     rate, left, terminal_ && !last ? "" : "\n");
     }
 
   private:
@@ -150,8 +143,8 @@ class Batch {
         if (count(failed) < entries)
             throw Error(PEL_ERROR_CANCELLED, "interrupted; the same command goes on from here");
         if (!faults_.empty())
-            throw io::FileError(a_.manifest, std::to_string(faults_.size()) +
-                                                 " of its entries failed; they are listed above");
+            throw io::FileError(a_.manifest,
+                                io::concat(faults_.size(), " of its entries failed; they are listed above"));
     }
 
   private:
@@ -172,7 +165,7 @@ class Batch {
                 states_[i] = handle(entry, device);
             } catch (const Error& e) {  // of this entry; others may be fine
                 std::lock_guard lock(mutex_);
-                fault(a_.manifest + ":" + std::to_string(entry.line) + ": " + e.what());
+                fault(io::concat(a_.manifest, ":", entry.line, ": ", e.what()));
                 states_[i] = failed;
             } catch (...) {  // the folder is full or gone: no entry can succeed
                 std::lock_guard lock(mutex_);

@@ -1,10 +1,10 @@
 // The file of an entry, and the index of all.
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "batch/batch_manifest.h"
 #include "io/lut/lut_describe.h"
 #include "io/lut/lut_exr.h"
-#include "io/shortest.h"
 
 namespace pellucid::io {
 namespace {
@@ -16,61 +16,46 @@ Lut submitted(const Device& device, const PelLutInfo& info) {
     return Lut(device, info.specular, &queued);
 }
 
-std::string quoted(std::string_view value) {
-    constexpr char hex[] = "0123456789abcdef";
-    std::string out = "\"";
-    for (const char c : value) {
-        if (static_cast<unsigned char>(c) < 0x20)
-            ((out += "\\u00") += hex[c >> 4]) += hex[c & 15];
-        else
-            (out += c == '"' || c == '\\' ? "\\" : "") += c;
-    }
-    return out += '"';
+// Floats are written as short as floats can be.
+using Json =
+    nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::string, bool, int64_t, uint64_t, float>;
+
+std::string written(const Json& value) {
+    return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// One object of JSON, key by key. "pellucid:diffusionRadius" is diffusion_radius, as in manifests.
-struct JsonObject {
-    std::string out = "{";
-
-    void text(std::string_view attribute, std::string_view value) { raw(attribute, quoted(value)); }
-    template <class Number>
-    void number(std::string_view attribute, Number value) {
-        raw(attribute, shortest(value));
-    }
-    void raw(std::string_view attribute, const std::string& value) {
-        if (out.size() > 1) out += ", ";
-        out += '"';
-        for (const char c : attribute.substr(attribute.find(':') + 1))
-            (out += c >= 'A' && c <= 'Z' ? "_" : "") += c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-        (out += "\": ") += value;
-    }
-};
+// "pellucid:diffusionRadius" is diffusion_radius, as in manifests.
+std::string keyOf(std::string_view attribute) {
+    std::string key;
+    for (const char c : attribute.substr(attribute.find(':') + 1))
+        (key += c >= 'A' && c <= 'Z' ? "_" : "") += c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+    return key;
+}
 
 std::string described(const BatchEntry& entry) {
     PelLutInfo info = entry.info;
-    JsonObject table;
-    table.text("file", entry.file);
-    if (!entry.name.empty()) table.text("name", entry.name);
-    table.number("line", entry.line);
-    table.text("kind", lutKinds[info.kind]);
+    Json table{{"file", entry.file}};
+    if (!entry.name.empty()) table["name"] = entry.name;
+    table["line"] = entry.line;
+    table["kind"] = lutKinds[info.kind];
     const auto [width, height] = lutSize(info);
-    table.number("width", width);
-    table.number("height", height);
-    table.text("encoding", lutEncodings[entry.encoding]);
-    if (info.kind == PEL_LUT_SPECULAR) return table.out + "}";
+    table["width"] = width;
+    table["height"] = height;
+    table["encoding"] = lutEncodings[entry.encoding];
+    if (info.kind == PEL_LUT_SPECULAR) return written(table);
     const PelProfileInfo profile = entry.profile.info();
     info.curvature = pelCurvatureLutDescFilled(info.curvature, &profile);
     info.shadow = pelShadowLutDescFilled(info.shadow, &profile);
-    table.text("profile", profile.name);
+    table["profile"] = profile.name;
     if (info.kind == PEL_LUT_CURVATURE) {
-        table.text("form", curvatureForms[info.curvature.form]);
-        table.text("axis", lutAxes[info.curvature.axis]);
+        table["form"] = curvatureForms[info.curvature.form];
+        table["axis"] = lutAxes[info.curvature.axis];
     } else {
-        table.text("axis", lutAxes[info.shadow.axis]);
-        table.number("closed_ends", info.shadow.closedEnds);
+        table["axis"] = lutAxes[info.shadow.axis];
+        table["closed_ends"] = info.shadow.closedEnds;
     }
-    visitLutNumbers(info, [&](std::string_view attribute, float value) { table.number(attribute, value); });
-    return table.out + "}";
+    visitLutNumbers(info, [&](std::string_view attribute, float value) { table[keyOf(attribute)] = value; });
+    return written(table);
 }
 
 }  // namespace
@@ -100,14 +85,13 @@ std::string batchIndex(const BatchManifest& manifest, const std::string& manifes
         if (there[i]) tables += (tables.empty() ? "\n" : ",\n") + described(manifest.entries[i]);
     }
     const uint32_t v = pelVersion();
-    JsonObject head;
-    head.number("version", 1);  // of this format
-    head.text("manifest", std::filesystem::path(manifestPath).filename().string());
-    head.text("pellucid", std::to_string(v / 10000) + "." + std::to_string(v / 100 % 100) + "." +
-                              std::to_string(v % 100));
-    head.number("missing", missing);
-    head.raw("tables", "[" + tables + "\n]");
-    return head.out + "}\n";
+    Json head{{"version", 1},  // of this format
+              {"manifest", std::filesystem::path(manifestPath).filename().string()},
+              {"pellucid", concat(v / 10000, ".", v / 100 % 100, ".", v % 100)},
+              {"missing", missing},
+              {"tables", nullptr}};
+    std::string all = written(head);
+    return all.replace(all.rfind("null"), 4, "[" + tables + "\n]") + "\n";
 }
 
 }  // namespace pellucid::io

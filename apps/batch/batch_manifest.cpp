@@ -1,15 +1,10 @@
 #include "batch/batch_manifest.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
-#include <map>
 #include <optional>
-#include <sstream>
 
 #include "io/content_hash.h"
-#include "io/file_error.h"
-#include "io/input_file.h"
 #include "io/lut/lut_describe.h"
 #include "io/lut/lut_preset.h"
 #include "io/lut/profile_file.h"
@@ -26,9 +21,7 @@ constexpr std::string_view encodingNames[] = {"float", "half"};  // PelLutEncodi
 
 struct Size {
     uint32_t width, height;  // texels
-    std::string text() const {
-        return width == height ? std::to_string(width) : std::to_string(width) + "x" + std::to_string(height);
-    }
+    std::string text() const { return width == height ? std::to_string(width) : concat(width, "x", height); }
 };
 
 // What a [[lut]] or [[grid]] table contains; a grid has several values in some lists.
@@ -36,7 +29,8 @@ struct Request {
     std::string name;  // of the file; in a grid with {key} in it, such as "{profile}-{size}"
     PelLutKind kind = PEL_LUT_CURVATURE;
     std::vector<std::string> profiles{"skin"}, forms, axes, encodings{"half"};
-    std::vector<float> radii{0};  // diffusion radii, mm; 0: the profile's own
+    std::vector<float> radii{0};           // diffusion radii, mm; 0: the profile's own
+    std::map<std::string, PelSkin> skins;  // of those profiles that are computed
     std::vector<Size> sizes;
     PelCurvatureLutDesc curvature;
     PelShadowLutDesc shadow;
@@ -50,6 +44,32 @@ uint32_t indexOf(const TomlReader& reader, const char* key, const std::string& v
     std::string known;
     for (const std::string_view name : names) known.append(known.empty() ? "" : ", ").append(name);
     reader.fail(key, "holds '" + value + "'; one of " + known + " would be right");
+}
+
+// Every combination of the skin's fields, as a profile each: "skin-0.05-0.02-0.75".
+void readSkins(TomlReader& reader, Request& r) {
+    const PelSkin skin = pelSkinDefaults();
+    std::vector<float> melanin{skin.melanin}, blood{skin.blood}, oxygenation{skin.oxygenation};
+    const char* const keys[] = {"melanin", "blood", "oxygenation"};
+    const auto given = std::ranges::find_if(keys, [&](const char* key) { return reader.has(key); });
+    reader.list("melanin", melanin, range::skin::melanin);
+    reader.list("blood", blood, range::skin::blood);
+    reader.list("oxygenation", oxygenation, range::skin::oxygenation);
+    if (given == std::end(keys)) return;
+    if (reader.has("profile")) reader.fail("profile", std::string("cannot stand beside '") + *given + "'");
+    const double count = double(melanin.size()) * double(blood.size()) * double(oxygenation.size());
+    if (count > double(mostEntries))
+        reader.fail(*given, "asks for more skins than a manifest may have tables");
+    r.profiles.clear();
+    for (const float m : melanin)
+        for (const float b : blood)
+            for (const float o : oxygenation) {
+                PelSkin& made = r.skins["skin-" + shortest(m) + "-" + shortest(b) + "-" + shortest(o)] = skin;
+                made.melanin = m;
+                made.blood = b;
+                made.oxygenation = o;
+            }
+    for (const auto& [name, unused] : r.skins) r.profiles.push_back(name);
 }
 
 Request readRequest(TomlReader& reader, LutPreset preset) {
@@ -69,6 +89,7 @@ Request readRequest(TomlReader& reader, LutPreset preset) {
     if (r.name.empty() && reader.has("name"))
         reader.fail("name", "is empty; leave it out for a name by content");
     reader.list("profile", r.profiles);
+    readSkins(reader, r);
     reader.list("form", r.forms);
     if (isShadow) r.forms = {""};
     std::vector<std::string> axes = r.axes;
@@ -123,6 +144,7 @@ class Expansion {
 
     void add(TomlReader& reader, LutPreset preset) {
         const Request r = readRequest(reader, preset);
+        skins_.insert(r.skins.begin(), r.skins.end());
         reader.finish();  // an unknown key makes the entry an error before any table is taken from it
         refuseTooMany(reader, r);
         for (const std::string& encoding : r.encodings)
@@ -156,8 +178,8 @@ class Expansion {
         if (asked_ + asked > double(mostEntries)) {
             char digits[32];
             std::snprintf(digits, sizeof digits, "%.0f", asked);
-            reader.fail("size", std::string("asks for ") + digits + " tables, and a manifest may ask for " +
-                                    std::to_string(mostEntries) + " in all; split it");
+            reader.fail("size", concat("asks for ", digits, " tables, and a manifest may ask for ",
+                                       mostEntries, " in all; split it"));
         }
         asked_ += asked;
     }
@@ -182,13 +204,18 @@ class Expansion {
     }
 
     Profile load(const std::string& name) {
+        if (const auto skin = skins_.find(name); skin != skins_.end()) {
+            Profile made = Profile::skinLayers(skin->second);
+            made.setName(name);
+            return made;
+        }
         if (extensionOf(name) != "toml") return findProfile(name).profile;
         if (folder_) {
             std::string text = readWholeFile((*folder_ / name).string(), textLimit);
             profileBytes_ += text.size();
             if (profileBytes_ > mostProfileBytes)
-                throw FileError(name, "makes the profile files of this manifest more than " +
-                                          std::to_string(mostProfileBytes) + " bytes; split the manifest");
+                throw FileError(name, concat("makes the profile files of this manifest more than ",
+                                             mostProfileBytes, " bytes; split the manifest"));
             manifest_.profiles[name] = std::move(text);
         }
         const auto at = manifest_.profiles.find(name);
@@ -238,7 +265,9 @@ class Expansion {
         } else {
             entry.name = namedBy(reader, r,
                                  {{"kind", std::string(lutKinds[r.kind])},
-                                  {"profile", std::filesystem::path(profileName).stem().string()},
+                                  {"profile", extensionOf(profileName) == "toml"
+                                                  ? std::filesystem::path(profileName).stem().string()
+                                                  : profileName},
                                   {"form", form},
                                   {"axis", axis},
                                   {"size", size.text()},
@@ -253,10 +282,10 @@ class Expansion {
         }
         const BatchEntry& first = manifest_.entries[other->second];
         if (first.key != entry.key)
-            reader.fail("name", "gives two tables the file " + entry.file +
-                                    (first.line == entry.line
-                                         ? "; put what differs into it, such as {size}"
-                                         : "; the one of line " + std::to_string(first.line) + " has it"));
+            reader.fail("name",
+                        "gives two tables the file " + entry.file +
+                            (first.line == entry.line ? "; put what differs into it, such as {size}"
+                                                      : concat("; the one of line ", first.line, " has it")));
         ++manifest_.duplicates;
     }
 
@@ -291,6 +320,7 @@ class Expansion {
     BatchManifest& manifest_;
     std::optional<std::filesystem::path> folder_;
     std::map<std::string, Known> known_;
+    std::map<std::string, PelSkin> skins_;
     std::map<std::string, size_t> files_;  // to the entry
     double asked_ = 0;                     // tables, including repeated ones
     size_t profileBytes_ = 0;

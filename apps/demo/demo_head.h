@@ -1,8 +1,5 @@
 // The head of the demo: one of the two that come with the project, or somebody's mesh.
 #pragma once
-#include <string>
-#include <vector>
-
 #include "io/mesh/mesh_file.h"
 #include "io/scene/scene_file.h"
 #include "sample/camera.h"

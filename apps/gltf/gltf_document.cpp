@@ -1,8 +1,6 @@
 #include "gltf/gltf_document.h"
 
-#include <array>
 #include <charconv>
-#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -27,7 +25,7 @@ GltfValue GltfValue::operator[](const char* key) const {
 }
 
 GltfValue GltfValue::operator[](size_t index) const {
-    return GltfValue(*file_, (*json_)[index], where_ + "[" + std::to_string(index) + "]");
+    return GltfValue(*file_, (*json_)[index], concat(where_, "[", index, "]"));
 }
 
 size_t GltfValue::count(const char* key) const {
@@ -64,8 +62,7 @@ double GltfValue::number(double low, double high) const {
 uint64_t GltfValue::whole(uint64_t most) const {
     const double value = anyNumber();  // some programs write whole numbers with a point
     if (!(value >= 0 && value <= double(most)) || value != std::floor(value))
-        fail("is " + json_->dump() + "; a whole number from 0 to " + std::to_string(most) +
-             " would be right");
+        fail(concat("is ", json_->dump(), "; a whole number from 0 to ", most, " would be right"));
     return uint64_t(value);
 }
 
@@ -96,17 +93,13 @@ bool GltfValue::flag(const char* key) const {
 void GltfValue::numbers(const char* key, double* values, size_t count, double low, double high) const {
     if (!has(key)) return;
     const GltfValue list = (*this)[key];
-    if (list.size() != count)
-        list.fail("has " + std::to_string(list.size()) + " values; " + std::to_string(count) +
-                  " would be right");
+    if (list.size() != count) list.fail(concat("has ", list.size(), " values; ", count, " would be right"));
     for (size_t i = 0; i < count; ++i) values[i] = list[i].number(low, high);
 }
 
-size_t GltfValue::reference(const char* key, const char* array, size_t available) const {
-    const GltfValue value = (*this)[key];
-    const uint64_t index = value.whole(uint64_t{1} << 53);
-    if (index >= available)
-        value.fail("is " + std::to_string(index) + "; there are " + std::to_string(available) + " " + array);
+size_t GltfValue::index(const char* array, size_t available) const {
+    const uint64_t index = whole(uint64_t{1} << 53);
+    if (index >= available) fail(concat("is ", index, "; there are ", available, " ", array));
     return size_t(index);
 }
 
@@ -129,18 +122,16 @@ std::pair<std::string, std::string> chunksOf(const std::string& path, const std:
     if (bytes.size() < 20) throw FileError(path, "ends within the header of a .glb");
     const uint32_t version = wordAt(bytes, 4), total = wordAt(bytes, 8);
     if (version != 2)
-        throw FileError(path,
-                        "is a .glb of version " + std::to_string(version) + "; version 2 would be right");
+        throw FileError(path, concat("is a .glb of version ", version, "; version 2 would be right"));
     if (total > bytes.size())
-        throw FileError(
-            path, "has " + std::to_string(bytes.size()) + " bytes; its header says " + std::to_string(total));
+        throw FileError(path, concat("has ", bytes.size(), " bytes; its header says ", total));
     std::string json, binary;
     bool hasBinary = false;
     for (size_t at = 12, chunk = 0; at + 8 <= total; ++chunk) {
         const uint64_t length = wordAt(bytes, at), end = at + 8 + length;
         const uint32_t kind = wordAt(bytes, at + 4);
         if (end > total)
-            throw FileError(path, "has a chunk of " + std::to_string(length) + " bytes that leaves the file");
+            throw FileError(path, concat("has a chunk of ", length, " bytes that leaves the file"));
         if ((kind == jsonChunk) != (chunk == 0))
             throw FileError(path, "has no JSON in its first chunk alone");
         if (kind == jsonChunk) json = bytes.substr(at + 8, length);
@@ -203,38 +194,30 @@ bool isKnown(const std::string& extension) {
 }
 
 template <class T>
-double stored(const char* at, double largest) {
+double stored(const char* at) {
     T value;
     std::memcpy(&value, at, sizeof value);
-    return std::max(double(value) / largest, std::is_signed_v<T> && largest > 1 ? -1.0 : -INFINITY);
-}
-
-// How components are stored [glTF 2.0, 3.6.2.2], by componentType.
-constexpr struct {
-    uint64_t type, bytes;
-    double largest;  // 1 as a fraction
-    double (*read)(const char* at, double largest);
-} componentTypes[] = {{5120, 1, 127, stored<int8_t>},    {5121, 1, 255, stored<uint8_t>},
-                      {5122, 2, 32767, stored<int16_t>}, {5123, 2, 65535, stored<uint16_t>},
-                      {5125, 4, 1, stored<uint32_t>},    {5126, 4, 1, stored<float>}};
-
-uint64_t bytesOf(const GltfValue& accessor, uint64_t type) {
-    for (const auto& known : componentTypes)
-        if (known.type == type) return known.bytes;
-    accessor["componentType"].fail("is " + std::to_string(type) + "; 5120 to 5123, 5125 and 5126 are known");
-}
-
-double component(const char* at, uint64_t type, bool normalized) {
-    const auto& known = componentTypes[type - 5120 - (type > 5123)];
-    return known.read(at, normalized ? known.largest : 1);
+    return double(value);
 }
 
 }  // namespace
 
-struct GltfDocument::Layout {
-    uint64_t count = 0, type = 0, components = 0, componentBytes = 0;
-    bool normalized = false;
-    uint64_t bytes() const { return components * componentBytes; }
+// How components are stored [glTF 2.0, 3.6.2.2].
+struct GltfDocument::Component {
+    uint64_t type, bytes;
+    double lowest, largest;  // of a normalised one: as a fraction, and 1 as a whole number
+    double (*read)(const char* at);
+
+    static const Component& of(const GltfValue& owner) {
+        static constexpr Component all[] = {
+            {5120, 1, -1, 127, stored<int8_t>},    {5121, 1, 0, 255, stored<uint8_t>},
+            {5122, 2, -1, 32767, stored<int16_t>}, {5123, 2, 0, 65535, stored<uint16_t>},
+            {5125, 4, 0, 1, stored<uint32_t>},     {5126, 4, -INFINITY, 1, stored<float>}};
+        const GltfValue type = owner["componentType"];
+        for (const Component& known : all)
+            if (known.type == type.whole(mostBytes)) return known;
+        type.fail(concat("is ", type.whole(mostBytes), "; 5120 to 5123, 5125 and 5126 are known"));
+    }
 };
 
 GltfDocument::GltfDocument(const std::string& path, const std::string& bytes, const GltfResource& resource)
@@ -266,8 +249,7 @@ GltfDocument::GltfDocument(const std::string& path, const std::string& bytes, co
             data = std::move(binary_);
         else
             buffer.fail("has no 'uri', and is not the first of a .glb");
-        if (data.size() < length)
-            buffer.fail("has " + std::to_string(data.size()) + " bytes, and says " + std::to_string(length));
+        if (data.size() < length) buffer.fail(concat("has ", data.size(), " bytes, and says ", length));
         total += data.size();
         if (total > inputLimit()) buffer.fail("is too large: " + tooLarge(double(total), inputLimit()));
         data.resize(size_t(length));
@@ -303,86 +285,67 @@ GltfDocument::Span GltfDocument::view(const GltfValue& owner, const char* key) c
     const uint64_t offset = view.whole("byteOffset", 0, mostBytes),
                    length = view["byteLength"].whole(mostBytes);
     if (offset > buffer.size() || length > buffer.size() - offset)
-        view.fail("ends at byte " + std::to_string(offset + length) + " of a buffer of " +
-                  std::to_string(buffer.size()));
+        view.fail(concat("ends at byte ", offset + length, " of a buffer of ", buffer.size()));
     return {buffer.data() + offset, length, view.whole("byteStride", 0, 252)};
 }
 
-GltfDocument::Layout GltfDocument::layout(const GltfValue& accessor) const {
-    Layout l;
-    l.count = accessor["count"].whole(mostBytes);
-    l.type = accessor["componentType"].whole(mostBytes);
-    l.componentBytes = bytesOf(accessor, l.type);
-    const std::string& type = accessor["type"].text();
-    l.components = type == "SCALAR" ? 1 : type == "VEC2" ? 2 : type == "VEC3" ? 3 : type == "VEC4" ? 4 : 0;
-    if (!l.components)
-        accessor["type"].fail("is '" + type.substr(0, 20) + "'; SCALAR, VEC2, VEC3 or VEC4 would be right");
-    l.normalized = accessor.flag("normalized");
-    spend(accessor["count"], 4.0 * double(l.count) * double(l.components));
-    return l;
-}
-
-// Calls store(index, bytes) for each element of `owner`, an object with bufferView and byteOffset.
-template <class Store>
-void GltfDocument::read(const GltfValue& owner, const Layout& l, Store&& store) const {
+// `count` elements of `owner`, an object with bufferView and byteOffset.
+std::vector<double> GltfDocument::elements(const GltfValue& owner, uint64_t count, const Component& kind,
+                                           uint64_t components) const {
     const Span span = view(owner, "bufferView");
-    const uint64_t offset = owner.whole("byteOffset", 0, mostBytes), element = l.bytes(),
+    const uint64_t offset = owner.whole("byteOffset", 0, mostBytes), element = components * kind.bytes,
                    stride = span.stride ? span.stride : element;
-    if (l.count == 0) return;
-    if (stride < element)
-        owner.fail("has elements of " + std::to_string(element) + " bytes " + std::to_string(stride) +
-                   " bytes apart");
+    std::vector<double> values;
+    if (count == 0) return values;
+    if (stride < element) owner.fail(concat("has elements of ", element, " bytes ", stride, " bytes apart"));
     // No overflow: the count is below inputLimit() and the stride below 256.
-    const uint64_t end = offset + (l.count - 1) * stride + element;
-    if (end > span.size)
-        owner.fail("ends at byte " + std::to_string(end) + " of a view of " + std::to_string(span.size));
-    for (uint64_t i = 0; i < l.count; ++i) store(i, span.data + offset + i * stride);
+    const uint64_t end = offset + (count - 1) * stride + element;
+    if (end > span.size) owner.fail(concat("ends at byte ", end, " of a view of ", span.size));
+    for (uint64_t i = 0; i < count; ++i)
+        for (uint64_t c = 0; c < components; ++c)
+            values.push_back(kind.read(span.data + offset + i * stride + c * kind.bytes));
+    return values;
 }
 
-// All elements of an accessor, and those that replace some of them if it is sparse.
-template <class Store>
-void GltfDocument::readAll(const GltfValue& accessor, const Layout& l, Store&& store) const {
-    if (accessor.has("bufferView")) read(accessor, l, store);
-    if (!accessor.has("sparse")) return;
-    const GltfValue sparse = accessor["sparse"], where = sparse["indices"];
-    Layout index{sparse["count"].whole(l.count), where["componentType"].whole(mostBytes), 1, 0, false};
-    index.componentBytes = bytesOf(where, index.type);
-    std::vector<uint64_t> at(index.count);
-    read(where, index, [&](uint64_t i, const char* bytes) {
-        const double value = component(bytes, index.type, false);
-        if (!(value >= 0 && value < double(l.count)))
-            where.fail("holds " + std::to_string(int64_t(std::min(value, 9e15))) + " of " +
-                       std::to_string(l.count) + " elements");
-        at[i] = uint64_t(value);
-    });
-    Layout values = l;
-    values.count = index.count;
-    read(sparse["values"], values, [&](uint64_t i, const char* bytes) { store(at[i], bytes); });
+// All elements of an accessor, with those that replace some of them if it is sparse.
+std::vector<double> GltfDocument::numbers(const GltfValue& owner, const char* key, size_t components) const {
+    constexpr const char* types[] = {"SCALAR", "VEC2", "VEC3"};
+    const GltfValue accessor = root().element("accessors", owner, key);
+    const Component& kind = Component::of(accessor);
+    const uint64_t count = accessor["count"].whole(mostBytes);
+    if (accessor["type"].text() != types[components - 1])
+        accessor["type"].fail("is '" + accessor["type"].text().substr(0, 20) + "'; " + owner.where() + "." +
+                              key + " needs " + types[components - 1]);
+    spend(accessor["count"], 8.0 * double(count) * double(components));
+    std::vector<double> values = accessor.has("bufferView") ? elements(accessor, count, kind, components)
+                                                            : std::vector<double>(count * components);
+    if (accessor.has("sparse")) {
+        const GltfValue sparse = accessor["sparse"], where = sparse["indices"];
+        const uint64_t replaced = sparse["count"].whole(count);
+        const std::vector<double> at = elements(where, replaced, Component::of(where), 1),
+                                  with = elements(sparse["values"], replaced, kind, components);
+        for (size_t i = 0; i < replaced; ++i) {
+            if (!(at[i] >= 0 && at[i] < double(count)))
+                where.fail(concat("holds ", int64_t(std::min(at[i], 9e15)), " of ", count, " elements"));
+            std::copy_n(&with[i * components], components, &values[size_t(at[i]) * components]);
+        }
+    }
+    if (accessor.flag("normalized"))
+        for (double& value : values) value = std::max(value / kind.largest, kind.lowest);
+    return values;
 }
 
 std::vector<float> GltfDocument::floats(const GltfValue& owner, const char* key, size_t components) const {
-    const GltfValue accessor = root().element("accessors", owner, key);
-    const Layout l = layout(accessor);
-    if (l.components != components)
-        accessor["type"].fail("has " + std::to_string(l.components) + " numbers each; " + owner.where() +
-                              "." + key + " needs " + std::to_string(components));
-    std::vector<float> values(l.count * components);
-    readAll(accessor, l, [&](uint64_t i, const char* bytes) {
-        for (size_t c = 0; c < components; ++c)
-            values[i * components + c] = float(component(bytes + c * l.componentBytes, l.type, l.normalized));
-    });
-    return values;
+    const std::vector<double> values = numbers(owner, key, components);
+    return {values.begin(), values.end()};
 }
 
 std::vector<uint32_t> GltfDocument::indices(const GltfValue& owner, const char* key) const {
     const GltfValue accessor = root().element("accessors", owner, key);
-    const Layout l = layout(accessor);
-    if (l.components != 1 || l.type == 5126 || l.type == 5120 || l.type == 5122)
+    if (const uint64_t type = Component::of(accessor).type; type == 5126 || type == 5120 || type == 5122)
         accessor.fail("holds no indices: unsigned SCALARs would be right");
-    std::vector<uint32_t> values(l.count);
-    readAll(accessor, l,
-            [&](uint64_t i, const char* bytes) { values[i] = uint32_t(component(bytes, l.type, false)); });
-    return values;
+    const std::vector<double> values = numbers(owner, key, 1);
+    return {values.begin(), values.end()};
 }
 
 GltfImage GltfDocument::image(size_t index) const {

@@ -1,11 +1,8 @@
 // The container of a glTF: its JSON, its buffers, and accessors decoded with every bound checked. A small
 // file can name the same accessor or image many times, so all that is decoded counts towards inputLimit().
 #pragma once
-#include <cstdint>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
-#include <string>
-#include <vector>
 
 #include "gltf/gltf_file.h"
 #include "io/file_error.h"
@@ -43,8 +40,12 @@ class GltfValue {
     std::string text(const char* key, const std::string& otherwise) const;
     bool flag(const char* key) const;  // false without it
     void numbers(const char* key, double* values, size_t count, double low, double high) const;
-    // The index of an element of the document's `array`, which must have it.
-    size_t reference(const char* key, const char* array, size_t available) const;
+    // This number, and that of a member, as the index of an element of the document's `array`, which must
+    // have it.
+    size_t index(const char* array, size_t available) const;
+    size_t reference(const char* key, const char* array, size_t available) const {
+        return (*this)[key].index(array, available);
+    }
     // Of the root: the element of `array` that `owner.key` refers to.
     GltfValue element(const char* array, const GltfValue& owner, const char* key) const {
         return (*this)[array][owner.reference(key, array, count(array))];
@@ -80,15 +81,13 @@ class GltfDocument {
         const char* data = nullptr;
         uint64_t size, stride;
     };
-    struct Layout;
+    struct Component;
 
     std::string resource(const GltfValue& value) const;  // what a "uri" names
     Span view(const GltfValue& owner, const char* key) const;
-    Layout layout(const GltfValue& accessor) const;
-    template <class Store>
-    void read(const GltfValue& owner, const Layout& layout, Store&& store) const;
-    template <class Store>
-    void readAll(const GltfValue& accessor, const Layout& layout, Store&& store) const;
+    std::vector<double> elements(const GltfValue& owner, uint64_t count, const Component& kind,
+                                 uint64_t components) const;
+    std::vector<double> numbers(const GltfValue& owner, const char* key, size_t components) const;
 
     std::string path_;
     const GltfResource& resource_;

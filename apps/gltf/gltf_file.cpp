@@ -1,12 +1,12 @@
 #include "gltf/gltf_file.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <numbers>
 
 #include "gltf/gltf_document.h"
+#include "io/choice_keys.h"
 #include "io/input_file.h"
 
 namespace pellucid::io {
@@ -94,27 +94,6 @@ GltfMaterial readGltfMaterial(const GltfDocument& document, const GltfValue& mat
     return m;
 }
 
-// A light of KHR_lights_punctual, at the origin.
-GltfLight readGltfLight(const GltfValue& light) {
-    GltfLight l;
-    const std::string kinds[] = {"directional", "point", "spot"}, type = light["type"].text();
-    const auto kind = std::ranges::find(kinds, type);
-    if (kind == std::end(kinds))
-        light["type"].fail("is '" + type.substr(0, 20) + "'; directional, point or spot would be right");
-    l.kind = GltfLight::Kind(kind - kinds);
-    light.numbers("color", l.color.data(), 3, 0, 1e6);
-    l.intensity = light.number("intensity", 1, 0, 1e12);
-    l.range = light.number("range", 0, 0, 1e12);
-    l.outerCone = std::numbers::pi / 4;
-    if (light.has("spot")) {
-        const GltfValue spot = light["spot"];
-        l.innerCone = spot.number("innerConeAngle", 0, 0, std::numbers::pi / 2);
-        l.outerCone = spot.number("outerConeAngle", l.outerCone, 0, std::numbers::pi / 2);
-        if (l.innerCone > l.outerCone) spot.fail("has an inner cone wider than its outer one");
-    }
-    return l;
-}
-
 // Row-major, multiplies column vectors.
 using Matrix = std::array<double, 16>;
 constexpr size_t mostMaterials = 255;    // ids of a material channel
@@ -134,12 +113,6 @@ Triple point(const Matrix& m, const Triple& p) {
             m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]};
 }
 
-Triple cross(const Triple& a, const Triple& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Triple& a, const Triple& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 Triple row(const Matrix& m, size_t i) {
     return {m[4 * i], m[4 * i + 1], m[4 * i + 2]};
 }
@@ -155,6 +128,11 @@ Triple unit(const Triple& v, const Triple& otherwise) {
     const double length = std::hypot(v[0], v[1], v[2]);
     if (!(length > 1e-30) || !std::isfinite(length)) return otherwise;
     return {v[0] / length, v[1] / length, v[2] / length};
+}
+
+// -z of a node, along which its camera or light looks.
+Triple forwardOf(const Matrix& m) {
+    return unit({-m[2], -m[6], -m[10]}, {0, 0, -1});
 }
 
 Matrix localOf(const GltfValue& node) {
@@ -180,6 +158,40 @@ Matrix localOf(const GltfValue& node) {
         m[4 * i + 3] = t[i];
     }
     return m;
+}
+
+// A light of KHR_lights_punctual, of a node with this matrix. Lux, or candela, which is lux at one metre.
+// PelLight.color is irradiance / pi, for lamps at one millimetre.
+SceneLight readGltfLight(const GltfValue& light, const Matrix& m) {
+    const std::string& type = light["type"].text();
+    const auto kind = std::ranges::find(lightTypes, type);
+    if (kind == std::end(lightTypes))
+        light["type"].fail("is '" + type.substr(0, 20) + "'; directional, point or spot would be right");
+    SceneLight scene;
+    PelLight& l = scene.light;
+    l.type = PelLightType(kind - lightTypes);
+    Triple color{1, 1, 1};
+    light.numbers("color", color.data(), 3, 0, 1e6);
+    const double intensity = light.number("intensity", 1, 0, 1e12) / std::numbers::pi,
+                 at = l.type == PEL_LIGHT_DIRECTIONAL ? 1 : 1e6;
+    const Triple place = point(m, {0, 0, 0}), forward = forwardOf(m);
+    for (size_t c = 0; c < 3; ++c) {
+        l.color[c] = float(color[c] * intensity * at);
+        l.position[c] = float(place[c]);
+        l.toLight[c] = float(-forward[c]);
+        l.spotDirection[c] = float(forward[c]);
+    }
+    l.range = float(light.number("range", 0, 0, 1e12));
+    double inner = 0, outer = std::numbers::pi / 4;
+    if (light.has("spot")) {
+        const GltfValue spot = light["spot"];
+        inner = spot.number("innerConeAngle", 0, 0, std::numbers::pi / 2);
+        outer = spot.number("outerConeAngle", outer, 0, std::numbers::pi / 2);
+        if (inner > outer) spot.fail("has an inner cone wider than its outer one");
+    }
+    l.spotCosInner = float(std::cos(inner));
+    l.spotCosOuter = float(std::cos(std::max(outer, inner + 1e-3)));
+    return scene;
 }
 
 class Builder {
@@ -221,13 +233,7 @@ class Builder {
         return found;
     }
 
-    size_t nodeIndex(const GltfValue& value) const {
-        const uint64_t index = value.whole(uint64_t{1} << 53);
-        if (index >= root_.count("nodes"))
-            value.fail("is " + std::to_string(index) + "; there are " + std::to_string(root_.count("nodes")) +
-                       " nodes");
-        return size_t(index);
-    }
+    size_t nodeIndex(const GltfValue& value) const { return value.index("nodes", root_.count("nodes")); }
 
     void enter(size_t index, const Matrix& above, int depth) {
         const GltfValue node = root_["nodes"][index];
@@ -243,14 +249,10 @@ class Builder {
                 place(part, m);
         }
         if (node.has("camera")) addCamera(root_.element("cameras", node, "camera"), m);
-        if (node.hasExtension("KHR_lights_punctual")) {
-            GltfLight light =
-                readGltfLight(root_.extension("KHR_lights_punctual")
-                                  .element("lights", node.extension("KHR_lights_punctual"), "light"));
-            light.position = point(m, {0, 0, 0});
-            light.forward = unit({-m[2], -m[6], -m[10]}, {0, 0, -1});
-            scene_.lights.push_back(light);
-        }
+        constexpr const char* lights = "KHR_lights_punctual";
+        if (node.hasExtension(lights))
+            scene_.lights.push_back(
+                readGltfLight(root_.extension(lights).element("lights", node.extension(lights), "light"), m));
         for (size_t i = 0; i < node.count("children"); ++i)
             enter(nodeIndex(node["children"][i]), m, depth + 1);
     }
@@ -262,7 +264,7 @@ class Builder {
         c.verticalFov = p["yfov"].number(1e-3, 3.14);
         c.aspect = p.number("aspectRatio", 0, 1e-3, 1e3);
         c.position = point(m, {0, 0, 0});
-        c.forward = unit({-m[2], -m[6], -m[10]}, {0, 0, -1});
+        c.forward = forwardOf(m);
         c.up = unit({m[1], m[5], m[9]}, {0, 1, 0});
         // Sheared axes can coincide; any other direction will do then.
         if (std::abs(dot(c.up, c.forward)) > 0.999999)
@@ -289,11 +291,11 @@ class Builder {
         }
         for (size_t i = 0; i < list.size(); ++i)
             if (list[i] >= vertices)
-                primitive.fail("has index " + std::to_string(list[i]) + " at place " + std::to_string(i) +
-                               ", and " + std::to_string(vertices) + " vertices");
+                primitive.fail(
+                    concat("has index ", list[i], " at place ", i, ", and ", vertices, " vertices"));
         if (mode == 4) {
             if (list.size() % 3)
-                primitive.fail("has " + std::to_string(list.size()) + " indices, which is no multiple of 3");
+                primitive.fail(concat("has ", list.size(), " indices, which is no multiple of 3"));
             return list;
         }
         std::vector<uint32_t> triangles;
@@ -353,8 +355,8 @@ class Builder {
             const Triple p = point(m, {positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]});
             for (const double x : p) {
                 if (!std::isfinite(float(x)))
-                    part.primitive["attributes"]["POSITION"].fail("has vertex " + std::to_string(v) +
-                                                                  " at a place that is not finite");
+                    part.primitive["attributes"]["POSITION"].fail(
+                        concat("has vertex ", v, " at a place that is not finite"));
                 mesh.positions.push_back(float(x));
             }
             Triple n{0, 0, 1};
@@ -385,8 +387,8 @@ class Builder {
                              size_t vertices) const {
         std::vector<float> values = document_.floats(attributes, key, components);
         if (values.size() != vertices * components)
-            attributes[key].fail("has " + std::to_string(values.size() / components) +
-                                 " elements, POSITION " + std::to_string(vertices));
+            attributes[key].fail(
+                concat("has ", values.size() / components, " elements, POSITION ", vertices));
         return values;
     }
 
@@ -397,11 +399,10 @@ class Builder {
         const auto [at, fresh] = known_.try_emplace(index, uint32_t(scene_.materials.size()));
         if (!fresh) return at->second;
         if (scene_.materials.size() == mostMaterials)
-            throw FileError(document_.path(),
-                            "uses more than " + std::to_string(mostMaterials) + " materials");
+            throw FileError(document_.path(), concat("uses more than ", mostMaterials, " materials"));
         GltfMaterial m;
         if (index < count) m = readGltfMaterial(document_, root_["materials"][index], warnings_);
-        if (m.name.empty()) m.name = index < count ? "material_" + std::to_string(index) : "default";
+        if (m.name.empty()) m.name = index < count ? concat("material_", index) : "default";
         if (m.baseColorImage >= 0) {
             const auto [image, unread] = images_.try_emplace(m.baseColorImage, int(scene_.images.size()));
             if (unread) scene_.images.push_back(document_.image(size_t(m.baseColorImage)));
@@ -411,9 +412,7 @@ class Builder {
         return at->second;
     }
 
-    void warn(const std::string& text) {
-        if (std::ranges::find(warnings_, text) == warnings_.end()) warnings_.push_back(text);
-    }
+    void warn(const std::string& text) { warnOnce(warnings_, text); }
 
     const GltfDocument& document_;
     const GltfValue root_;

@@ -2,18 +2,23 @@
 // What is read, and what is left out with a warning, is in docs/guide/gltf.md. Source: Khronos Group, glTF
 // 2.0 Specification.
 #pragma once
-#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "io/mesh/mesh_file.h"
+#include "io/scene/scene_file.h"
 
 namespace pellucid::io {
 
 using Triple = std::array<double, 3>;
+
+inline double dot(const Triple& a, const Triple& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Triple cross(const Triple& a, const Triple& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
 
 // An encoded picture.
 struct GltfImage {
@@ -45,22 +50,13 @@ struct GltfCamera {
     double aspect = 0;                                  // width / height; 0: the picture's own
 };
 
-struct GltfLight {
-    enum class Kind { Directional, Point, SpotLight } kind = Kind::Directional;
-    Triple color{1, 1, 1};
-    double intensity = 1;                   // lux, or candela
-    double range = 0;                       // 0: no limit
-    double innerCone = 0, outerCone = 0.7;  // radians, of spot lights
-    Triple position{}, forward{0, 0, -1};   // world; unit
-};
-
 struct GltfScene {
     MeshData mesh;                        // normals always; uvs or none; rest pose
     std::vector<uint32_t> materialOf;     // index of `materials` per triangle
     std::vector<GltfMaterial> materials;  // those that are used, in the file's order
     std::vector<GltfImage> images;
     std::vector<GltfCamera> cameras;  // perspective cameras in the order of nodes
-    std::vector<GltfLight> lights;
+    std::vector<SceneLight> lights;
 };
 
 // Reads a file that the scene names by a relative path without "..", "." or a scheme. Percent signs are

@@ -1,13 +1,10 @@
 #include "gltf/gltf_import.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <map>
-#include <stdexcept>
 
 #include "io/atomic_file.h"
-#include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/lut/profile_file.h"
 #include "io/shortest.h"
@@ -18,10 +15,6 @@ namespace {
 struct LitArea {
     double radiance, area;
 };
-
-double dot(const Triple& a, const Triple& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 // The brightest channel that a diffuse surface reflects: PelLight.color is irradiance / pi, of lamps at 1 mm.
 double reflected(const std::vector<SceneLight>& lights, const Triple& at, const Triple& normal,
@@ -46,30 +39,28 @@ double reflected(const std::vector<SceneLight>& lights, const Triple& at, const 
     return std::ranges::max(sum);
 }
 
-// A sample of a few thousand triangles that light reaches.
-std::vector<LitArea> litSurface(const ImportedGltf& made, const std::vector<SceneLight>& lights) {
+// A sample of a few thousand triangles that light reaches, under the lights as the file has them. Shadows and
+// scattering are left out.
+std::vector<LitArea> litSurface(const ImportedGltf& made) {
     const MeshData& mesh = made.gltf.mesh;
     std::vector<LitArea> lit;
     const size_t step = std::max<size_t>(mesh.triangleCount() / 8192, 1);
     for (size_t t = 0; t < mesh.triangleCount(); t += step) {
-        Triple corner[3], centre{}, normal{};
+        Triple centre{}, normal{}, side[2]{};  // sides: from each corner to the next
         for (size_t k = 0; k < 3; ++k)
             for (size_t c = 0; c < 3; ++c) {
                 const size_t at = 3 * size_t(mesh.triangles[3 * t + k]) + c;
-                corner[k][c] = mesh.positions[at];
                 centre[c] += mesh.positions[at] / 3.0;
                 normal[c] += mesh.normals[at];
+                if (k < 2) side[k][c] -= mesh.positions[at];
+                if (k > 0) side[k - 1][c] += mesh.positions[at];
             }
-        Triple cross;
-        for (size_t c = 0; c < 3; ++c) {
-            const size_t d = (c + 1) % 3, e = (c + 2) % 3;
-            cross[c] = (corner[1][d] - corner[0][d]) * (corner[2][e] - corner[0][e]) -
-                       (corner[1][e] - corner[0][e]) * (corner[2][d] - corner[0][d]);
-        }
-        const double length = std::sqrt(dot(normal, normal)), area = std::sqrt(dot(cross, cross)) / 2;
+        const Triple twice = cross(side[0], side[1]);
+        const double length = std::sqrt(dot(normal, normal)), area = std::sqrt(dot(twice, twice)) / 2;
         if (!(length > 0) || !(area > 0) || !std::isfinite(area)) continue;
         for (double& x : normal) x /= length;
-        const double radiance = reflected(lights, centre, normal, made.looks[made.gltf.materialOf[t]].albedo);
+        const double radiance =
+            reflected(made.gltf.lights, centre, normal, made.looks[made.gltf.materialOf[t]].albedo);
         if (radiance > 0) lit.push_back({radiance, area});
     }
     return lit;
@@ -85,11 +76,8 @@ double areaOf(const std::vector<LitArea>& surface, double brighterThan) {
 // How bright the lights make the surface, before anything is drawn. A factor of their brightness: 1 if the
 // bright parts of the scene are between 2 % and 100 % of white, and otherwise one that makes them 80 %.
 // Cameras have an exposure; glTF files do not say which.
-double chosenLightFactor(const ImportedGltf& made) {
+double chosenLightFactor(std::vector<LitArea> lit) {
     constexpr double dimmest = 0.02, wanted = 0.8, brightShare = 0.1;
-    std::vector<SceneLight> lights;
-    for (const GltfLight& light : made.gltf.lights) lights.push_back(sceneLight(light, 1));
-    std::vector<LitArea> lit = litSurface(made, lights);
     if (lit.empty()) return 1;
     std::ranges::sort(lit, std::ranges::greater{}, &LitArea::radiance);
     // The radiance that a tenth of the lit area exceeds.
@@ -100,13 +88,6 @@ double chosenLightFactor(const ImportedGltf& made) {
     if (bright >= dimmest && bright <= 1) return 1;
     const double factor = wanted / bright, digit = std::pow(10.0, std::floor(std::log10(factor)) - 1);
     return std::round(factor / digit) * digit;  // two digits, for messages
-}
-
-// The share of the lit surface that is brighter than white under the lights of made.scene. Shadows and
-// scattering are left out.
-double clippedShare(const ImportedGltf& made) {
-    const std::vector<LitArea> lit = litSurface(made, made.scene.lights);
-    return lit.empty() ? 0 : areaOf(lit, 1) / areaOf(lit, 0);
 }
 
 constexpr size_t mostLights = 64;
@@ -165,9 +146,9 @@ void toMillimetres(GltfScene& gltf, double unitMm) {
     }
     for (GltfCamera& camera : gltf.cameras)
         for (double& p : camera.position) p *= unitMm;
-    for (GltfLight& light : gltf.lights) {
-        for (double& p : light.position) p *= unitMm;
-        light.range *= unitMm;
+    for (SceneLight& light : gltf.lights) {
+        for (float& p : light.light.position) p = float(p * unitMm);
+        light.light.range = float(std::min(light.light.range * unitMm, 1e18));
     }
 }
 
@@ -186,30 +167,34 @@ void dropDistantCameras(GltfScene& gltf) {
         return !(std::hypot(away[0], away[1], away[2]) <= most * size);
     });
     if (dropped)
-        warn(gltf, std::to_string(dropped) +
-                       " cameras are left out: their distance is over 100,000 times the size of the scene");
+        warn(gltf,
+             concat(dropped,
+                    " cameras are left out: their distance is over 100,000 times the size of the scene"));
 }
 
 void addLights(ImportedGltf& made, const GltfImportOptions& options) {
-    std::vector<GltfLight>& lights = made.gltf.lights;
+    std::vector<SceneLight>& lights = made.gltf.lights;
     if (lights.size() > mostLights) {
-        warn(made.gltf, "the scene has " + std::to_string(lights.size()) + " lights; the first " +
-                            std::to_string(mostLights) + " are taken");
+        warn(made.gltf,
+             concat("the scene has ", lights.size(), " lights; the first ", mostLights, " are taken"));
         lights.resize(mostLights);
     }
-    const size_t dropped = std::erase_if(lights, [](const GltfLight& light) {
-        return std::ranges::any_of(light.position, [](double p) { return !(std::abs(p) <= 1e30); });
+    const size_t dropped = std::erase_if(lights, [](const SceneLight& light) {
+        return std::ranges::any_of(light.light.position, [](float p) { return !(std::abs(p) <= 1e30f); });
     });
-    if (dropped)
-        warn(made.gltf, std::to_string(dropped) + " lights are left out: they are too far away for a float");
+    if (dropped) warn(made.gltf, concat(dropped, " lights are left out: they are too far away for a float"));
     made.lampAdded = lights.empty();
     made.lightFactor = 1;
     if (made.lampAdded) return addLamp(made.scene);
-    made.lightFactor = options.lights ? *options.lights : chosenLightFactor(made);
-    for (const GltfLight& light : lights) made.scene.lights.push_back(sceneLight(light, made.lightFactor));
-    if (const double share = clippedShare(made); share > 0.1)
-        warn(made.gltf, "the lights are too bright: an estimated " + std::to_string(int(100 * share)) +
-                            " % of the lit surface is brighter than white");
+    const std::vector<LitArea> lit = litSurface(made);
+    made.lightFactor = options.lights ? *options.lights : chosenLightFactor(lit);
+    made.scene.lights = lights;
+    for (SceneLight& light : made.scene.lights)
+        for (float& c : light.light.color) c = float(std::min(c * made.lightFactor, 1e18));
+    const double share = areaOf(lit, 1 / made.lightFactor) / std::max(areaOf(lit, 0), 1e-30);
+    if (share > 0.1)
+        warn(made.gltf, concat("the lights are too bright: an estimated ", int(100 * share),
+                               " % of the lit surface is brighter than white"));
 }
 
 // An OBJ file with a group per material. Its v axis points up; that of glTF points down.

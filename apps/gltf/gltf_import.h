@@ -1,12 +1,7 @@
 // Imports a glTF file as a scene of this library, for `pellucid import` and Python's load_gltf.
 #pragma once
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "gltf/gltf_file.h"
-#include "io/scene/scene_file.h"
 
 namespace pellucid::io {
 
@@ -24,9 +19,6 @@ struct GltfLook {
 // material; "" keeps it.
 GltfLook lookOf(const GltfMaterial& material, const std::string& name, uint32_t id,
                 const std::string& profile);
-
-// Of a light whose position and range are in millimetres. `brightness` multiplies its colour.
-SceneLight sceneLight(const GltfLight& light, double brightness);
 
 // Unique names of letters, digits, _ and -, for files and keys.
 std::vector<std::string> plainNames(const std::vector<GltfMaterial>& materials);

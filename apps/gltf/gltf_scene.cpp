@@ -1,10 +1,9 @@
 #include "gltf/gltf_import.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <set>
 
+#include "io/concat.h"
 #include "io/shortest.h"
 
 namespace pellucid::io {
@@ -121,27 +120,6 @@ GltfLook lookOf(const GltfMaterial& m, const std::string& name, uint32_t id, con
     return look;
 }
 
-SceneLight sceneLight(const GltfLight& l, double brightness) {
-    SceneLight scene;
-    PelLight& p = scene.light;
-    p.type = l.kind == GltfLight::Kind::Directional ? PEL_LIGHT_DIRECTIONAL
-             : l.kind == GltfLight::Kind::Point     ? PEL_LIGHT_POINT
-                                                    : PEL_LIGHT_SPOT;
-    // Lux, or candela, which is lux at one metre. PelLight.color is irradiance / pi, for lamps at one
-    // millimetre.
-    const double at = l.kind == GltfLight::Kind::Directional ? 1 : 1e6;
-    for (size_t c = 0; c < 3; ++c) {
-        p.color[c] = float(std::min(l.color[c] * l.intensity * at * brightness / std::numbers::pi, 1e18));
-        p.position[c] = float(l.position[c]);
-        p.toLight[c] = float(-l.forward[c]);
-        p.spotDirection[c] = float(l.forward[c]);
-    }
-    p.spotCosInner = float(std::cos(l.innerCone));
-    p.spotCosOuter = float(std::cos(std::max(l.outerCone, l.innerCone + 1e-3)));
-    p.range = float(std::min(l.range, 1e18));
-    return scene;
-}
-
 std::vector<std::string> plainNames(const std::vector<GltfMaterial>& materials) {
     std::vector<std::string> names;
     std::set<std::string> taken{"scene"};  // scene.toml stands beside the profiles
@@ -152,7 +130,7 @@ std::vector<std::string> plainNames(const std::vector<GltfMaterial>& materials) 
                         ? c
                         : '_';
         std::string chosen = name;
-        for (int i = 2; !taken.insert(chosen).second; ++i) chosen = name + "_" + std::to_string(i);
+        for (int i = 2; !taken.insert(chosen).second; ++i) chosen = concat(name, "_", i);
         names.push_back(chosen);
     }
     return names;

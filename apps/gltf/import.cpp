@@ -1,13 +1,9 @@
 // pellucid import: a glTF scene as a mesh, a scene file and, where the build has the sample renderer, a
 // G-buffer.
-#include <charconv>
-#include <filesystem>
-#include <stdexcept>
 
 #include "cli/mesh_curvature.h"
 #include "gltf/import_view.h"
 #include "io/atomic_file.h"
-#include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/shortest.h"
 
@@ -30,8 +26,8 @@ int cameraOf(const Arguments& a, size_t count) {
     const char* end = a.camera.data() + a.camera.size();
     const auto read = std::from_chars(a.camera.data(), end, index);
     if (read.ec != std::errc() || read.ptr != end || index >= count)
-        throw UsageError("--camera " + a.camera + ": the scene has " + std::to_string(count) +
-                         "; a number from 0 on, first or none would be right");
+        throw UsageError(io::concat("--camera ", a.camera, ": the scene has ", count,
+                                    "; a number from 0 on, first or none would be right"));
     return int(index);
 }
 

@@ -1,10 +1,8 @@
 #include "gltf/import_view.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
-#include "io/file_error.h"
+#include "io/image/color_map.h"
 #include "io/image/image_file.h"
 #include "sample/gbuffer.h"
 #include "sample/shadow_map.h"
@@ -48,11 +46,8 @@ Texture textureOf(const io::GltfImage& image) {
     const bool grey = picture.channels.size() < 3;
     t.rgb.resize(3 * picture.pixelCount());
     for (size_t i = 0; i < picture.pixelCount(); ++i)
-        for (size_t c = 0; c < 3; ++c) {
-            const float v = picture.channels[grey ? 0 : c].pixels[i];
-            // IEC 61966-2-1
-            t.rgb[3 * i + c] = v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
-        }
+        for (size_t c = 0; c < 3; ++c)
+            t.rgb[3 * i + c] = io::decodeSrgb(picture.channels[grey ? 0 : c].pixels[i]);
     return t;
 }
 
@@ -132,7 +127,7 @@ void addShadowMap(const std::string& folder, const sample::Scene& scene, size_t 
     }
     std::ranges::copy(map.worldToUvz.toFloats(), p.worldToShadow);
     p.shadowFilterTexels = 64;
-    light.shadowMapFile = "light_" + std::to_string(number + 1) + "_shadowmap.exr";
+    light.shadowMapFile = io::concat("light_", number + 1, "_shadowmap.exr");
     light.shadowMapChannel = "Z";
     io::Image depth;
     depth.width = depth.height = map.size;

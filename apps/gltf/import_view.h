@@ -1,8 +1,5 @@
 // What `pellucid import` needs of the sample renderer: a G-buffer and shadow maps of the imported scene.
 #pragma once
-#include <string>
-#include <vector>
-
 #include "cli/command.h"
 #include "gltf/gltf_import.h"
 

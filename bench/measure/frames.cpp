@@ -31,7 +31,7 @@ FrameImages foldedSkin(uint32_t width, uint32_t height, float mapRelief) {
     for (uint32_t y = 0; y < f.mapSize; ++y)
         for (uint32_t x = 0; x < f.mapSize; ++x)
             f.map.push_back(flatMapDepth + mapRelief * std::sin(float(x) / 60) * std::cos(float(y) / 50));
-    // The numbers of FaceWorks, which oracle and baseline take unchanged.
+    // The numbers of FaceWorks, which the oracle takes unchanged.
     f.material.diffusionRadius = 2.7f;
     f.material.shadowFilterWidth = 8;
     f.material.normalBlend[0] = 1, f.material.normalBlend[1] = 0.3f, f.material.normalBlend[2] = 0;

@@ -2,36 +2,17 @@
 
 #include <sys/utsname.h>
 
-#include <chrono>
 #include <ctime>
 #include <fstream>
 #include <random>
 #include <thread>
 
+#include "timing.h"
+
 namespace pellucid::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double milliseconds() {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    std::sort(values.begin(), values.end());
-    const size_t half = values.size() / 2;
-    return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
-// Median absolute deviation from the median.
-double medianDeviation(const std::vector<double>& values) {
-    const double middle = median(values);
-    std::vector<double> away;
-    for (const double v : values) away.push_back(std::abs(v - middle));
-    return median(away);
-}
 
 struct Running {
     Json entry;
@@ -86,12 +67,8 @@ Json measureCases(const Request& request) {
     std::vector<Running> running;
     Json failed = Json::array();
     for (const Factory& f : factories) {
-        const auto named = [&](const std::string& part) { return f.name.find(part) != std::string::npos; };
-        if (f.group != "device" && !request.only.empty() &&
-            std::none_of(request.only.begin(), request.only.end(), named))
-            continue;
-        if (std::find(request.without.begin(), request.without.end(), f.name) != request.without.end())
-            continue;
+        if (!request.wants(f.name) && f.group != "device") continue;
+        if (std::ranges::find(request.without, f.name) != request.without.end()) continue;
         Running r;
         r.entry = {{"name", f.name}, {"group", f.group}};
         tell({{"say", f.name + ": prepared, compared with the truth"}});
@@ -142,8 +119,14 @@ Json measureCases(const Request& request) {
     for (const Running& r : running) {
         Json e = summary(r);
         const double seconds = e["median_ms"].get<double>() * 1e-3;
-        if (r.work.bytes > 0 && bandwidth > 0) e["bandwidth_share"] = r.work.bytes / seconds / bandwidth;
-        if (r.work.operations > 0 && peak > 0) e["arithmetic_share"] = r.work.operations / seconds / peak;
+        // Beyond the whole, the bytes came from a cache, or the device was slower when its limits were
+        // measured: then the share is not known.
+        const auto share = [&](const char* key, double work, double limit) {
+            const double part = work / seconds / limit;
+            if (work > 0 && limit > 0) e[key] = part < 1.001 ? Json(std::min(part, 1.0)) : Json();
+        };
+        share("bandwidth_share", r.work.bytes, bandwidth);
+        share("arithmetic_share", r.work.operations, peak);
         list.push_back(e);
     }
     for (const Json& e : failed) list.push_back(e);
@@ -185,7 +168,7 @@ Json describeHost() {
     const std::time_t now = std::time(nullptr);
     std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
     const uint32_t v = pelVersion();
-    return {{"format", 1},
+    return {{"format", reportFormat},
             {"pellucid",
              std::to_string(v / 10000) + "." + std::to_string(v / 100 % 100) + "." + std::to_string(v % 100)},
             {"date", date},

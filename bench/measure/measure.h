@@ -63,14 +63,23 @@ class ErrorSum {
 struct Request {
     std::string device;                // selector
     bool quick = false;                // small sizes, few repetitions
+    double stability = 0;              // share of its whole search for the worst errors; 0: none
     std::vector<std::string> only;     // parts of names; empty: every operation
     std::vector<std::string> without;  // names that are left out
     double limitSeconds = 120;         // that a case may take to be prepared, and again for all its runs
-    std::string command;               // path of the pellucid command, for processes of their own
+    std::string data;     // folder of the library's data: heads, and the truth of scenes in bench
+    std::string command;  // path of the pellucid command, for processes of their own
     std::function<void(const std::string&)> progress;  // a line now and then
     // What happens, for whoever waits: {"begin": name, "group"}, {"say": text}
     std::function<void(const nlohmann::ordered_json&)> event;
     std::function<bool()> cancelled;
+
+    bool wants(const std::string& name) const {
+        return (only.empty() ||
+                std::ranges::any_of(
+                    only, [&](const std::string& part) { return name.find(part) != std::string::npos; })) &&
+               std::ranges::find(without, name) == without.end();
+    }
 };
 
 // {"name", "platform", "version", "driver", ..., "first_use", "warm_start", and what measureCases() gives}.
@@ -84,11 +93,25 @@ nlohmann::ordered_json measureDevice(const Request& request);
 // message}]}
 nlohmann::ordered_json measureCases(const Request& request);
 
+// In this process: {"scenes", "operations" (groups "methods", "shares", "frames", "clips"), "pictures"}
+// (docs/guide/measuring.md).
+nlohmann::ordered_json measureMethods(const Request& request);
+
+// In this process: {"stability": {"share", "operations": [{"name", "range", "unit", "limit", "points",
+// "stopped", "drawn", "worst", "inherent", "where"}]}}, the worst error of every operation against the tests'
+// oracles, on the device that PELLUCID_DEVICE names (docs/stability.md).
+nlohmann::ordered_json measureStability(const Request& request);
+
+// Writes the truth of each scene and clip that `folder` does not have into it. Minutes each.
+void makeTruth(const Device& device, const std::string& folder, const std::string& headFile,
+               const std::function<void(const std::string&)>& say, const std::function<bool()>& cancelled);
+
 // What a process pays once: {"device_ms", "table_ms", "shade_ms", "total_ms"} from nothing to the first table
 // and frame.
 nlohmann::ordered_json firstUse(const std::string& device);
 
-// This machine and this build.
+// This machine and this build. reportFormat: changes where a reader of reports would have to.
+constexpr int reportFormat = 2;
 nlohmann::ordered_json describeHost();
 
 }  // namespace pellucid::bench

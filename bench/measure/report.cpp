@@ -1,11 +1,14 @@
 #include "report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <map>
-#include <set>
 #include <vector>
+
+#include "timing.h"
 
 namespace pellucid::bench {
 namespace {
@@ -40,10 +43,11 @@ std::string compareOne(Json& out, const Json& before, const Json& after, double 
                   standardErrors * std::hypot(relativeError(before), relativeError(after)), machine});
     out["ratio"] = ratio;
     out["noise"] = std::expm1(noise);
-    const double oldError = value(before, "error_max"), newError = value(after, "error_max");
+    const char* error = before.contains("error_max") ? "error_max" : "error_rms";
+    const double oldError = value(before, error), newError = value(after, error);
     if (std::isfinite(oldError)) {
         out["old_error"] = oldError;
-        out["new_error"] = after["error_max"];
+        out["new_error"] = after.value(error, Json());
         if (!(newError <= std::max(errorGrowth * oldError, oldError + errorStep))) return "less accurate";
     }
     return std::log(ratio) > noise ? "slower" : std::log(ratio) < -noise ? "faster" : "same";
@@ -184,156 +188,171 @@ std::string describeComparison(const Json& comparison) {
     return text;
 }
 
-std::string shortNumber(double value) {
-    if (!std::isfinite(value)) return "–";
-    const double size = std::abs(value);
-    const char* pattern = size == 0                    ? "%.0f"
-                          : size < 1e-3 || size >= 1e5 ? "%.2e"
-                          : size < 1                   ? "%.3f"
-                          : size < 10                  ? "%.2f"
-                          : size < 100                 ? "%.1f"
-                                                       : "%.0f";
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, pattern, value);
-    return buffer;
-}
-
 namespace {
 
-constexpr const char* head = R"(<!DOCTYPE html>
-<html lang='en'><head><meta charset='utf-8'><title>pellucid bench</title><style>
-body { font: 15px/1.45 system-ui, sans-serif; max-width: 1280px; margin: 2em auto; padding: 0 1em; }
-body { color: #222; background: #fff; } h1 { font-size: 1.5em; } h2 { font-size: 1.2em; margin-top: 2em; }
-table { border-collapse: collapse; font-size: 13px; width: 100%; font-variant-numeric: tabular-nums; }
-th, td { padding: 3px 4px; border-bottom: 1px solid #ddd; text-align: right; white-space: nowrap; }
-th:first-child, td:first-child, .words tr :nth-child(2) { text-align: left; } .words { overflow-x: auto; }
-.first td { font-size: 16px; } .note { color: #555; font-size: 13px; }
-</style></head><body><h1>pellucid bench</h1>)";
+// A method with one setting, over all scenes.
+struct Summed {
+    Json about;
+    std::array<double, 3> squares{};
+    std::vector<double> nanoseconds;
+};
 
-std::string words(const Json& e, const char* key) {
-    const auto found = e.find(key);
-    std::string out;
-    if (found == e.end() || !found->is_string()) return out;
-    for (const char c : found->get<std::string>()) {
-        const char* name = c == '&'    ? "&amp;"
-                           : c == '<'  ? "&lt;"
-                           : c == '>'  ? "&gt;"
-                           : c == '\'' ? "&#39;"
-                           : c == '"'  ? "&quot;"
-                                       : nullptr;
-        name ? void(out += name) : void(out += c);
+// The row of `group` with this scene, method and setting; null: there is none.
+const Json* rowOf(const Json& device, const char* group, const std::string& scene, const Json& method,
+                  const Json& setting) {
+    for (const Json& e : device.at("operations"))
+        if (e.value("group", "") == group && e.value("scene", "") == scene &&
+            std::isfinite(value(e, "added_ms")) && e["method"] == method && e["setting"] == setting)
+            return &e;
+    return nullptr;
+}
+
+// Skin of a frame of this height with the head of the first scene.
+double skinOf(const Json& device, const std::string& frame, double height) {
+    for (const Json& e : device.at("operations"))
+        if (e.value("group", "") == "frames" && e.value("scene", "") == frame && e.contains("items"))
+            return e["items"];
+    for (const Json& scene : device.value("scenes", Json::array()))
+        return scene.at("pixels").get<double>() * std::pow(height / scene.at("height").get<double>(), 2);
+    return NAN;
+}
+
+double percentile90(std::vector<double> values) {
+    std::ranges::sort(values);
+    return values[size_t(0.9 * double(values.size() - 1) + 0.5)];
+}
+
+// Whether frames with a time budget keep it, and how near they are to what was as fast.
+void summarizeBudgets(Json& device) {
+    size_t frames = 0, kept = 0, near = 0;
+    double worst = 0;
+    for (Json& e : device.at("operations")) {
+        if (e.value("group", "") != "budgets" || !std::isfinite(value(e, "added_ms"))) continue;
+        const double took = value(e, "added_ms"), error = value(e, "error_rms");
+        double front = error;
+        for (const Json& other : device.at("operations"))
+            if (other.value("group", "") == "methods" && other["scene"] == e["scene"] &&
+                value(other, "added_ms") <= took)
+                front = std::min(front, value(other, "error_rms"));
+        e["kept"] = took <= 1.15 * value(e, "budget_ms");
+        e["front_ratio"] = error / front;
+        ++frames, kept += e["kept"].get<bool>(), near += error <= 1.3 * front;
+        worst = std::max(worst, error / front);
     }
-    return out;
-}
-std::string number(const Json& e, const char* key, double scale = 1) {
-    return shortNumber(scale * value(e, key));
-}
-std::string percent(const Json& e, const char* key) {
-    return number(e, key, 100) + (std::isfinite(value(e, key)) ? " %" : "");
-}
-
-std::string row(const std::vector<std::string>& cells, const std::string& tag = "td") {
-    std::string html = "<tr>";
-    for (const std::string& cell : cells) html += "<" + tag + ">" + cell + "</" + tag + ">";
-    return html + "</tr>";
-}
-std::string table(const char* kind, const std::vector<std::string>& titles, const std::string& rows) {
-    return std::string("<div class='") + kind + "'><table>" + row(titles, "th") + rows + "</table></div>";
-}
-std::string note(const std::string& text) {
-    return "<p class='note'>" + text + "</p>";
-}
-
-std::string operationsTable(const Json& device) {
-    std::string rows, truths;
-    std::set<std::string> said;
-    for (const Json& e : device.at("operations")) {
-        if (e.contains("failed")) {
-            rows += row({words(e, "name"), "could not be done: " + words(e, "failed")});
-            continue;
-        }
-        const double rate = value(e, "per_second"), unit = rate >= 1e9 ? 1e9 : rate >= 1e6 ? 1e6 : 1;
-        const std::string truth = words(e, "truth");
-        rows += row({words(e, "name"), words(e, "what"), number(e, "median_ms"), number(e, "mad_ms"),
-                     value(e, "device_ms") > 0 ? number(e, "device_ms") : "–",
-                     shortNumber(rate / unit) +
-                         (unit == 1e9   ? " G"
-                          : unit == 1e6 ? " M"
-                                        : " ") +
-                         words(e, "unit"),
-                     percent(e, "bandwidth_share"), percent(e, "arithmetic_share"),
-                     "<span title='" + truth + "'>" + number(e, "error_max") + "</span>",
-                     number(e, "error_rms")});
-        if (!truth.empty() && said.insert(truth).second)
-            truths += (truths.empty() ? "<b>" : "; <b>") + words(e, "name") + "</b> " + truth;
-    }
-    return table("words",
-                 {"operation", "size", "median ms", "± MAD", "device ms", "per second", "of copies",
-                  "of arithmetic", "largest error", "RMS error"},
-                 rows) +
-           note("Errors are against: " + truths + ".");
-}
-
-// Which device, how many frames a second, at what error: the question that the page is opened with.
-std::string framesTable(const Json& devices) {
-    static constexpr const char* operations[] = {"shade-10-percent", "shade-surface", "shade-32-taps"};
-    std::string rows, size;
-    for (const Json& d : devices) {
-        std::vector<std::string> cells{words(d, "name")};
-        double error = NAN;
-        for (const char* operation : operations) {
-            double frames = NAN;
-            for (const Json& e : d.at("operations")) {
-                if (words(e, "name") != operation || e.contains("failed")) continue;
-                frames = 1e3 / value(e, "median_ms");
-                error = std::fmax(error, value(e, "error_max"));
-                if (size.empty()) size = words(e, "what").substr(0, words(e, "what").find(','));
-            }
-            cells.push_back(shortNumber(frames));
-        }
-        cells.push_back(shortNumber(error));
-        rows += row(cells);
-    }
-    if (size.empty()) return "";  // --only
-    return table("first",
-                 {"frames a second", "skin on a tenth of the frame, 32 taps", "skin everywhere",
-                  "skin everywhere, 32 taps", "largest error"},
-                 rows) +
-           note("Frames of " + size +
-                " pixels with one light, nothing else running. Error of linear radiance, against double "
-                "precision.");
+    if (frames)
+        device["budgets"] = {{"frames", frames}, {"kept", kept}, {"near", near}, {"worst_ratio", worst}};
 }
 
 }  // namespace
 
-std::string htmlPage(const Json& report) {
-    const Json &host = report.at("host"), &devices = report.at("devices");
-    std::string rows, html = head;
-    html +=
-        "<p>Version " + words(host, "pellucid") + ", " + words(host, "date") + ", " + words(host, "cpu") +
-        " with " + std::to_string(host.value("cores", 0)) + " threads" +
-        (report.value("quick", false) ? ", <b>quick: small sizes, few repetitions</b>" : "") + ".</p>" +
-        framesTable(devices) +
-        note(
-            "Times are medians of blocking calls, cases interleaved in rounds; MAD is the median absolute "
-            "deviation. Bandwidth and arithmetic are shares of what the same device reached in the same "
-            "run with a copy and with multiply-adds alone, counting only what the operation's definition "
-            "needs.");
-    for (const Json& d : devices)
-        rows += row({words(d, "name"), words(d, "platform") + ", " + words(d, "driver"),
-                     number(d, "copy_bytes_per_second", 1e-9), number(d, "operations_per_second", 1e-9),
-                     number(d.value("first_use", Json::object()), "total_ms"),
-                     number(d.value("warm_start", Json::object()), "total_ms")});
-    html +=
-        table("words",
-              {"device", "platform, driver", "copy GB/s", "arithmetic GFLOP/s", "first use ms",
-               "warm start ms"},
-              rows) +
-        note(
-            "First use: a new process with empty caches, from nothing to the first small table and frame; "
-            "warm start: the same again.");
-    for (const Json& d : devices) html += "<h2>" + words(d, "name") + "</h2>" + operationsTable(d);
-    return html + "</body></html>\n";
+std::string tuningText(const Json& device) {
+    struct Tuned {
+        std::string tunes;
+        double target = 0, perFrame = 0, squares = 0;
+        std::vector<double> perPixel;
+    };
+    std::vector<Tuned> all;
+    std::map<std::string, double> empty;  // ns per pixel of a frame without skin
+    const auto pixels = [](const Json& e) {
+        double width = 0, height = 0;
+        std::sscanf(e.value("what", "").c_str(), "%lfx%lf", &width, &height);
+        return width * height;
+    };
+    for (const Json& e : device.at("operations"))
+        if (e.value("scene", "") == "0 % of the skin" && e.contains("tunes") &&
+            std::isfinite(value(e, "added_ms")))
+            empty[e["tunes"]] = std::max(value(e, "added_ms"), 0.0) * 1e6 / pixels(e);
+    for (const Json& e : device.at("operations")) {
+        if (e.value("group", "") != "methods" || !e.contains("tunes") || !std::isfinite(value(e, "added_ms")))
+            continue;
+        const double target = value(e, "target_error");
+        auto found = std::ranges::find_if(
+            all, [&](const Tuned& t) { return t.tunes == e["tunes"] && t.target == target; });
+        if (found == all.end()) found = all.insert(all.end(), {e["tunes"], target, empty[e["tunes"]]});
+        found->squares += std::pow(value(e, "error_rms"), 2);
+        found->perPixel.push_back(
+            std::max((value(e, "added_ms") * 1e6 - found->perFrame * pixels(e)) / value(e, "items"), 0.0));
+    }
+    std::string text;
+    if (!all.empty())
+        text = "device " + device.at("name").get<std::string>() + ", " +
+               device.at("platform").get<std::string>() + "\n";
+    for (const Tuned& t : all) {
+        char line[128];
+        std::snprintf(line, sizeof line, "%s %.4g %.4g %.4g %.4g\n", t.tunes.c_str(), t.target,
+                      percentile90(t.perPixel), t.perFrame, std::sqrt(t.squares / double(t.perPixel.size())));
+        text += line;
+    }
+    return text;
+}
+
+void summarize(Json& device, const std::vector<double>& budgets, const std::vector<double>& errors) {
+    std::vector<Summed> all;
+    for (const Json& e : device.at("operations")) {
+        if (e.value("group", "") != "methods" || !std::isfinite(value(e, "added_ms")) || !e.contains("rmse"))
+            continue;
+        auto found = std::ranges::find_if(all, [&](const Summed& s) {
+            return s.about["method"] == e["method"] && s.about["setting"] == e["setting"];
+        });
+        if (found == all.end())
+            found = all.insert(all.end(), {{{"method", e["method"]}, {"setting", e["setting"]}}, {}, {}});
+        for (size_t c = 0; c < 3; ++c) found->squares[c] += std::pow(e["rmse"][c].get<double>(), 2);
+        found->nanoseconds.push_back(
+            std::max(e["added_ms"].get<double>() * 1e6 / e["items"].get<double>(), 0.0));
+    }
+    // Settings that fewer scenes have cannot be compared with the others.
+    size_t scenes = 0;
+    for (const Summed& s : all) scenes = std::max(scenes, s.nanoseconds.size());
+    std::erase_if(all, [&](const Summed& s) { return s.nanoseconds.size() < scenes; });
+    Json list = Json::array();
+    for (const Summed& s : all) {
+        Json e = s.about;
+        double whole = 0;
+        e["scenes"] = scenes;
+        for (const double square : s.squares) {
+            e["rmse"].push_back(std::sqrt(square / double(scenes)));
+            whole += square / double(3 * scenes);
+        }
+        e["error"] = std::sqrt(whole);
+        e["ns_per_pixel"] = median(s.nanoseconds);
+        e["ns_per_pixel_p90"] = percentile90(s.nanoseconds);
+        for (const auto& [frame, height] : {std::pair{"1080p", 1080.0}, {"4K", 2160.0}}) {
+            const Json* row = rowOf(device, "frames", frame, e["method"], e["setting"]);
+            e["ms"][frame] = row ? std::max((*row)["added_ms"].get<double>(), 0.0)
+                                 : median(s.nanoseconds) * 1e-6 * skinOf(device, frame, height);
+            e["measured"][frame] = row != nullptr;
+        }
+        list.push_back(e);
+    }
+    const auto time = [](const Json& e) { return e["ns_per_pixel"].get<double>(); };
+    const auto error = [](const Json& e) { return e["error"].get<double>(); };
+    for (Json& e : list)
+        e["pareto"] = std::ranges::none_of(list, [&](const Json& other) {
+            return time(other) <= time(e) && error(other) <= error(e) &&
+                   (time(other) < time(e) || error(other) < error(e));
+        });
+    device["summary"] = list;
+    device["answers"] = Json::array();
+    const auto answer = [&](const char* key, double limit, const auto& measure, const auto& cost) {
+        const Json* best = nullptr;
+        for (const Json& e : list)
+            if (measure(e) <= limit && (!best || cost(e) < cost(*best))) best = &e;
+        Json said = {{key, limit}};
+        if (best) said["take"] = *best;
+        device["answers"].push_back(said);
+    };
+    const auto frameTime = [](const Json& e) { return e["ms"]["1080p"].get<double>(); };
+    for (const double b : budgets) answer("budget_ms", b, frameTime, error);
+    for (const double e : errors) answer("error", e, error, frameTime);
+    summarizeBudgets(device);
+}
+
+std::string pageOf(std::string page, const Json& reports) {
+    std::string text = reports.dump(-1, ' ', false, Json::error_handler_t::replace);
+    for (size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) text.insert(at + 1, "\\");
+    const std::string place = "/*reports*/ []";
+    const size_t at = page.find(place);
+    return at == std::string::npos ? page : page.replace(at, place.size(), text);
 }
 
 }  // namespace pellucid::bench

@@ -1,7 +1,8 @@
-// Reports of `pellucid bench`: their page, and the comparison of two.
+// Reports of `pellucid bench`, and the comparison of two.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace pellucid::bench {
 
@@ -22,7 +23,22 @@ nlohmann::ordered_json compareReports(const nlohmann::ordered_json& before,
                                       const nlohmann::ordered_json& after);
 std::string describeComparison(const nlohmann::ordered_json& comparison);  // a table for people
 
-std::string htmlPage(const nlohmann::ordered_json& report);  // self-contained
-std::string shortNumber(double value);                       // three digits
+// What a reader asks first. Adds to a device of a report:
+// "summary": each method and setting over all scenes: {"method", "setting", "scenes", "rmse" (RGB) and
+// "error", root mean squares, "ns_per_pixel" of skin beyond plain lighting, median and 90th percentile, "ms":
+// {"1080p", "4K"} of a frame with a head, "measured": whether it was measured at that size or follows from
+// the scenes, "pareto": no other is both faster and nearer}. "answers": for each of `budgets`, milliseconds
+// at 1080p, the nearest to light that keeps it; for each of `errors`, the fastest below it. "budgets", where
+// time budgets were tried: {"frames", "kept": those whose time was at most 15 % beyond the budget,
+// "worst_ratio": largest error over that of the nearest method that was as fast in the same scene, "near":
+// how many of the frames are within 1.3 of it}.
+void summarize(nlohmann::ordered_json& device, const std::vector<double>& budgets,
+               const std::vector<double>& errors);
+
+// The device's part of a record for PelShaderOptions.timeBudget; "" where no method was measured.
+std::string tuningText(const nlohmann::ordered_json& device);
+
+// The page that shows reports: `page` (data/bench/page.html) with them in it.
+std::string pageOf(std::string page, const nlohmann::ordered_json& reports);
 
 }  // namespace pellucid::bench

@@ -52,6 +52,8 @@ struct Pass {
     Shader make() {
         settings.ids.assign(images().id.size(), 0);
         std::fill_n(settings.ids.begin(), size_t(images().width) * rows, uint8_t(1));
+        const std::vector<float> black(images().position.size());  // what other passes left is no result
+        frame->target().write(black.data(), black.size() * sizeof(float));
         return frame->shader(settings);
     }
 

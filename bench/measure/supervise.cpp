@@ -6,17 +6,24 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "measure.h"
-#include "report.h"
 
 namespace pellucid::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+std::string shownSeconds(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g s", value);
+    return text;
+}
 
 constexpr double startSeconds = 120;
 
@@ -24,8 +31,8 @@ double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// The pellucid command again, read line by line. Where this process ends, the other one does at its next
-// line.
+// The pellucid command again, or another program, read line by line. Where this process ends, the other one
+// does at its next line.
 class Again {
   public:
     // `environment`: "NAME=VALUE" added to this process's own. Without `loud`, standard error is discarded.
@@ -34,7 +41,8 @@ class Again {
         : request_(request) {
         std::vector<std::string> all{"/usr/bin/env"};
         all.insert(all.end(), environment.begin(), environment.end());
-        all.insert(all.end(), {request.command, "bench", "--device", request.device});
+        if (words[0].starts_with("-"))
+            all.insert(all.end(), {request.command, "bench", "--device", request.device});
         all.insert(all.end(), words.begin(), words.end());
         std::vector<char*> pointers;
         for (std::string& word : all) pointers.push_back(word.data());
@@ -73,7 +81,7 @@ class Again {
             if (request_.cancelled && request_.cancelled())
                 throw pellucid::Error(PEL_ERROR_CANCELLED, "the benchmark was cancelled");
             const double left = end - now();
-            why_ = "no result within " + shortNumber(request_.limitSeconds) + " s";
+            why_ = "no result within " + shownSeconds(request_.limitSeconds);
             if (left <= 0) return {};
             pollfd waits{pipe_, POLLIN, 0};
             if (::poll(&waits, 1, int(std::clamp(left * 1e3, 1.0, 200.0))) <= 0) continue;
@@ -102,13 +110,17 @@ class Again {
     std::string heard_, why_;  // heard_: beyond the last line
 };
 
-// The report of one process; null if it did not get there. `at`: the case that it was at.
-Json runApart(const Request& request, const std::set<std::string>& without, Json& at, std::string& why) {
-    std::vector<std::string> words{"--events", "--limit", std::to_string(request.limitSeconds)};
+// The report of one process; null if it did not get there. `part`: what it measures. `at`: the case that it
+// was at.
+Json runApart(const Request& request, const char* part, const std::set<std::string>& without, Json& at,
+              std::string& why) {
+    std::vector<std::string> words{"--events", part, "--limit", std::to_string(request.limitSeconds)};
     if (request.quick) words.push_back("--quick");
     for (const std::string& name : request.only) words.insert(words.end(), {"--only", name});
     for (const std::string& name : without) words.insert(words.end(), {"--without", name});
-    Again child(request, words, {}, true);
+    if (request.stability > 0)
+        words.insert(words.end(), {"--stability-share", std::to_string(request.stability)});
+    Again child(request, words, {"PELLUCID_DEVICE=" + request.device}, true);
     Json report;
     // Starting and opening the device is not a case.
     while (const auto event = child.next(at.is_null() ? std::max(request.limitSeconds, startSeconds)
@@ -122,17 +134,17 @@ Json runApart(const Request& request, const std::set<std::string>& without, Json
     return report;
 }
 
-// measureCases() by the command `request.command`. A case that does not answer within request.limitSeconds,
-// or ends its process, is among the operations as {"name", "group", "failed": why}; the others are measured
-// without it.
-Json measureCasesApart(const Request& request) {
+// measureCases() or measureMethods() by the command `request.command`. A case that does not answer within
+// request.limitSeconds, or ends its process, is among the operations as {"name", "group", "failed": why}; the
+// others are measured without it.
+Json measureApart(const Request& request, const char* part) {
     std::set<std::string> without;
     Json lost = Json::array();
     // After a loss all others are measured again.
     for (;;) {
         Json at;
         std::string why;
-        Json report = runApart(request, without, at, why);
+        Json report = runApart(request, part, without, at, why);
         if (!report.is_null()) {
             for (const Json& e : lost) report["operations"].push_back(e);
             return report;
@@ -142,9 +154,7 @@ Json measureCasesApart(const Request& request) {
         if (request.progress) request.progress(name + ": " + why);
         lost.push_back({{"name", name}, {"group", at.at("group")}, {"failed", why}});
         // The process did not reach any case, or reached one that was left out.
-        if (name == "start" || !without.insert(name).second)
-            return {
-                {"copy_bytes_per_second", Json()}, {"operations_per_second", Json()}, {"operations", lost}};
+        if (name == "start" || !without.insert(name).second) return {{"operations", lost}};
     }
 }
 
@@ -193,7 +203,23 @@ Json measureDevice(const Request& request) {
                    {"math_width", info.mathWidth}};
     if (request.progress) request.progress("first use and warm start");
     measureFirstUse(request, report);
-    report.update(measureCasesApart(request));
+    report.update({{"copy_bytes_per_second", Json()}, {"operations_per_second", Json()}});
+    report["operations"] = Json::array();
+    for (const char* part : {"cases", "methods", "stability"}) {
+        if (part == std::string("stability") && request.stability == 0) continue;
+        Json measured = measureApart(request, part);
+        for (Json& e : measured["operations"]) report["operations"].push_back(std::move(e));
+        measured.erase("operations");
+        report.update(measured);
+    }
+    // Of methods; those of operations were measured in their own rounds.
+    const Json& copies = report["copy_bytes_per_second"];
+    for (Json& e : report["operations"])
+        if (e.contains("passes") && copies.is_number()) {
+            const double part =
+                e["bytes"].get<double>() / e["median_ms"].get<double>() * 1e3 / copies.get<double>();
+            e["bandwidth_share"] = part < 1.001 ? Json(std::min(part, 1.0)) : Json();
+        }
     return report;
 }
 

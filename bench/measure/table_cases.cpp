@@ -1,8 +1,10 @@
 // Look-up tables against adaptive quadrature in double precision, at texels drawn once.
 #include <random>
+#include <tuple>
 
 #include "measure.h"
 #include "reference/lut.h"
+#include "tools.h"
 
 namespace pellucid::bench {
 namespace {
@@ -32,6 +34,69 @@ Case tableCase(const Device& device, Desc desc, uint32_t side, int samples, cons
         return sum.result();
     };
     c.truth = "adaptive quadrature in double precision at drawn texels; absolute";
+    return c;
+}
+
+// RGB of any encoding.
+std::vector<float> decoded(const Lut& lut, PelLutEncoding encoding, uint32_t side) {
+    if (encoding == PEL_LUT_FLOAT) return lut.read<float>(encoding);
+    std::vector<float> values;
+    if (encoding == PEL_LUT_HALF) {
+        for (const uint16_t h : lut.read<uint16_t>(encoding)) values.push_back(fromHalf(h));
+        return values;
+    }
+    const std::vector<uint8_t> bytes = lut.read<uint8_t>(encoding);
+    for (size_t i = 0; i < bytes.size(); ++i)
+        if (i % 4 < 3) {
+            const float u = 2 * (float(i / 4 % side) + 0.5f) / float(side) - 1;
+            values.push_back(std::max(u, 0.0f) + 0.5f * (float(bytes[i]) / 255 - 0.5f));
+        }
+    return values;
+}
+
+// How far a table is from the truth between its texels, where it is looked up.
+Case lookUpCase(const Device& device, PelCurvatureForm form, reference::Form truth, PelLutEncoding encoding,
+                uint32_t side, int samples) {
+    PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
+    desc.form = form;
+    const auto texelOf = [](const PelLutInfo&) { return [](int, int) { return reference::Rgb{}; }; };
+    Case c = tableCase(device, desc, side, 0, texelOf, "");
+    desc.width = desc.height = side;
+    constexpr const char* names[] = {"float", "half", "8 bits"};
+    c.what += std::string(", ") + names[encoding] + ", " +
+              std::to_string(side * side *
+                             (encoding == PEL_LUT_HALF ? 8
+                              : encoding               ? 4
+                                                       : 16) /
+                             1024) +
+              " KiB";
+    c.error = [=] {
+        const Lut lut(device, desc);
+        const PelCurvatureLutDesc made = lut.info().curvature;
+        constexpr int finer = 8;
+        const int fine = finer * int(side);
+        const reference::CurvatureLutSpec spec{truth, fine, fine, made.radiusMin, made.radiusMax};
+        const reference::ProfilePtr profile =
+            reference::profileForRadius(reference::skinProfile(), made.diffusionRadius);
+        const std::vector<float> values = decoded(lut, encoding, side);
+        const auto at = [&](double x, double y, int channel) {
+            const auto clamped = [&](double v) { return size_t(std::clamp(v, 0.0, side - 1.0)); };
+            return double(values[3 * (clamped(y) * side + clamped(x)) + size_t(channel)]);
+        };
+        std::mt19937 random(1);
+        ErrorSum sum;
+        for (int i = 0; i < samples; ++i) {
+            const int x = int(random() % uint32_t(fine)), y = int(random() % uint32_t(fine));
+            const double tx = (x + 0.5) / finer - 0.5, ty = (y + 0.5) / finer - 0.5, fx = tx - std::floor(tx),
+                         fy = ty - std::floor(ty), x0 = std::floor(tx), y0 = std::floor(ty);
+            const reference::Rgb exact = reference::curvatureTexel(spec, *profile, x, y);
+            for (int k = 0; k < 3; ++k)
+                sum.add((1 - fy) * ((1 - fx) * at(x0, y0, k) + fx * at(x0 + 1, y0, k)) +
+                        fy * ((1 - fx) * at(x0, y0 + 1, k) + fx * at(x0 + 1, y0 + 1, k)) - exact[k]);
+        }
+        return sum.result();
+    };
+    c.truth = "adaptive quadrature in double precision, at drawn places between texels; absolute";
     return c;
 }
 
@@ -84,13 +149,31 @@ std::vector<Factory> tableCases(const Device& device, bool quick) {
         };
         return tableCase(device, pelSpecularLutDescDefaults(), side, samples, texel, "");
     };
-    return {{"table-arc", "tables", curvature(PEL_FORM_ARC, reference::Form::arc, false)},
-            {"table-ring", "tables", curvature(PEL_FORM_RING, reference::Form::ring, false)},
-            {"table-half-ring", "tables", curvature(PEL_FORM_HALF_RING, reference::Form::halfRing, false)},
-            {"table-sphere", "tables", curvature(PEL_FORM_SPHERE, reference::Form::sphere, false)},
-            {"table-sphere-burley", "tables", curvature(PEL_FORM_SPHERE, reference::Form::sphere, true)},
-            {"table-shadow", "tables", shadow},
-            {"table-specular", "tables", specular}};
+    std::vector<Factory> all{
+        {"table-arc", "tables", curvature(PEL_FORM_ARC, reference::Form::arc, false)},
+        {"table-ring", "tables", curvature(PEL_FORM_RING, reference::Form::ring, false)},
+        {"table-half-ring", "tables", curvature(PEL_FORM_HALF_RING, reference::Form::halfRing, false)},
+        {"table-sphere", "tables", curvature(PEL_FORM_SPHERE, reference::Form::sphere, false)},
+        {"table-sphere-burley", "tables", curvature(PEL_FORM_SPHERE, reference::Form::sphere, true)},
+        {"table-shadow", "tables", shadow},
+        {"table-specular", "tables", specular}};
+    constexpr std::tuple<const char*, PelCurvatureForm, reference::Form> forms[] = {
+        {"arc", PEL_FORM_ARC, reference::Form::arc},
+        {"ring", PEL_FORM_RING, reference::Form::ring},
+        {"half-ring", PEL_FORM_HALF_RING, reference::Form::halfRing},
+        {"sphere", PEL_FORM_SPHERE, reference::Form::sphere}};
+    for (const auto& [name, form, truth] : forms)
+        for (const uint32_t of : {16u, 64u, 256u})
+            for (const PelLutEncoding encoding : {PEL_LUT_FLOAT, PEL_LUT_HALF, PEL_LUT_FACEWORKS8}) {
+                if (quick && (of != 64 || form != PEL_FORM_SPHERE)) continue;
+                constexpr const char* encodings[] = {"float", "half", "bytes"};
+                all.push_back(
+                    {"lookup-" + std::string(name) + "-" + std::to_string(of) + "-" + encodings[encoding],
+                     "tables", [=, f = form, t = truth] {
+                         return lookUpCase(device, f, t, encoding, of, 2 * samples);
+                     }});
+            }
+    return all;
 }
 
 }  // namespace pellucid::bench

@@ -256,7 +256,7 @@ std::vector<Operation> shadingOperations() {
     const struct {
         const char *name, *range;
         Kind kind;
-        const tolerance::Tolerance& limit;
+        double limit;
         size_t points;
     } rows[] = {
         {"scattered light, directional", diffuse, {directional, light, false, diffusely}, term, 100000},

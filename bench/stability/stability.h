@@ -57,7 +57,7 @@ enum class Unit {
 struct Header {
     std::string name, range;
     Unit unit = Unit::absolute;
-    tolerance::Tolerance limit;
+    double limit;
     size_t dimensions = 1, points = 1000;  // of a full search
 };
 // The dimension along which the page draws the error, logarithmic.

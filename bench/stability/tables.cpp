@@ -216,8 +216,8 @@ Operation specularTable() {
         }};
 }
 
-Operation tables(const char* name, const char* range, Source (*make)(const Point&),
-                 const tolerance::Tolerance& limit, size_t points) {
+Operation tables(const char* name, const char* range, Source (*make)(const Point&), double limit,
+                 size_t points) {
     return {{std::string("tables of ") + name,
              std::string(range) + "; radii 0.05 to 10,000 of the profile's; four forms, and shadow",
              Unit::absolute, limit, 7, points},

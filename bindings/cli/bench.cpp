@@ -1,14 +1,12 @@
-// pellucid bench: every operation on every device, its time and its error; bench compare: two reports against
-// each other.
+// pellucid bench: every operation and every method of scattering on every device, its time and its error, as
+// a report and a page; bench compare: reports against the first of them.
 #include <atomic>
 #include <csignal>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 
 #include "command.h"
 #include "io/atomic_file.h"
-#include "io/file_error.h"
 #include "io/input_file.h"
 #include "measure/measure.h"
 #include "measure/report.h"
@@ -20,12 +18,38 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct Arguments {
-    std::vector<std::string> devices, only, without;
-    std::string output, before, after;
-    double limitSeconds = 0;  // 0: depends on `quick`
-    bool quick = false, json = false, firstUse = false;
-    bool events = false;  // in a child process: prints what it does, one JSON object a line
+    std::vector<std::string> devices, only, without, reports, budgets{"1ms"};
+    std::vector<double> errors{2e-3};
+    std::string output, slower, lessAccurate, truth;
+    double limitSeconds = 0, stabilityShare = 0;  // 0: depends on `quick`
+    bool quick = false, json = false, firstUse = false, stability = false;
+    std::string events;  // in a child process: what it measures; it prints one JSON object a line
 };
+
+// The folder with heads, frozen scenes' truth and the page's form: installed, or of the source code.
+std::string dataFolder() {
+    std::error_code error;
+    const std::filesystem::path bin = std::filesystem::path(pel::system::programFile()).parent_path();
+    for (const char* folder : {"../share/pellucid", "../../../data"})
+        if (std::filesystem::exists(bin / folder / "bench", error))
+            return (bin / folder).lexically_normal().string();
+    throw UsageError("the folder share/pellucid/bench, which comes with pellucid, is missing");
+}
+
+// A number with a unit, such as "1ms" or "10%".
+double numberOf(const std::string& text, const std::string& unit, const char* option) {
+    float value = 0;
+    if (!text.ends_with(unit) || !readNumber(text.substr(0, text.size() - unit.size()), value) ||
+        !(value >= 0))
+        throw UsageError(std::string(option) + " " + text + ": a number and " + unit +
+                         " is needed, such as 10" + unit);
+    return value;
+}
+
+void writePage(const std::string& path, const Json& reports) {
+    io::writeWholeFile(
+        path, bench::pageOf(io::readWholeFile(dataFolder() + "/bench/page.html", io::textLimit), reports));
+}
 
 std::atomic<bool> stopped{false};
 
@@ -46,9 +70,13 @@ std::vector<std::string> chosenDevices(const Arguments& a) {
 bench::Request requestOf(const Arguments& a, const std::string& device) {
     bench::Request request;
     request.device = device;
-    request.quick = a.quick;
+    request.quick = a.quick, request.stability = a.stabilityShare > 0 ? a.stabilityShare
+                                                 : !a.stability       ? 0
+                                                 : a.quick            ? 0.002
+                                                                      : 0.05;
     request.only = a.only;
     request.without = a.without;
+    request.data = dataFolder();
     request.limitSeconds = a.limitSeconds > 0 ? a.limitSeconds : a.quick ? 60 : 120;
     return request;
 }
@@ -64,19 +92,48 @@ void measureWithEvents(const Arguments& a) {
     };
     bench::Request request = requestOf(a, a.devices.empty() ? "" : a.devices[0]);
     request.event = tell;
-    const Json report = bench::measureCases(request);
+    const Json report = a.events == "methods"     ? bench::measureMethods(request)
+                        : a.events == "stability" ? bench::measureStability(request)
+                                                  : bench::measureCases(request);
     tell({{"report", report}});
     std::fclose(out);
 }
 
+void makeTruth(const Arguments& a) {
+    std::signal(SIGINT, [](int) { stopped = true; });
+    bench::makeTruth(
+        Device(a.devices.empty() ? "" : a.devices[0]), a.truth, dataFolder() + "/heads/head_female.obj",
+        [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); },
+        [] { return stopped.load(); });
+}
+
+// The methods, fastest first: those that no other beats in both time and error.
+void printMethods(const Json& device) {
+    std::vector<Json> best;
+    for (const Json& e : device.at("summary"))
+        if (e.at("pareto")) best.push_back(e);
+    if (best.empty()) return;
+    std::ranges::sort(best, {}, [](const Json& e) { return e.at("ns_per_pixel").get<double>(); });
+    std::printf("  %-40s %10s %10s %10s %12s\n", "methods that no other beats", "ns/pixel", "1080p ms",
+                "4K ms", "from light");
+    for (const Json& e : best)
+        std::printf("  %-40s %10.0f %10.2f %10.2f %12.4f\n",
+                    (e.at("method").get<std::string>() + " " + e.at("setting").get<std::string>()).c_str(),
+                    e.at("ns_per_pixel").get<double>(), e.at("ms").at("1080p").get<double>(),
+                    e.at("ms").at("4K").get<double>(), e.at("error").get<double>());
+}
+
 void measure(const Arguments& a) {
-    if (a.events) return measureWithEvents(a);
+    if (!a.truth.empty()) return makeTruth(a);
+    if (!a.events.empty()) return measureWithEvents(a);
     if (a.firstUse) {
         std::cout << jsonText(bench::firstUse(a.devices.empty() ? "" : a.devices[0]), -1) << std::endl;
         return;
     }
-    if (a.output.empty()) throw UsageError("-o is needed: a folder for bench.json and bench.html");
-    const std::string jsonPath = a.output + "/bench.json", htmlPath = a.output + "/bench.html";
+    if (a.output.empty()) throw UsageError("-o is needed: a folder for bench.json");
+    const std::string jsonPath = a.output + "/bench.json";
+    std::vector<double> budgets;
+    for (const std::string& text : a.budgets) budgets.push_back(numberOf(text, "ms", "--budget"));
     const std::vector<std::string> chosen = chosenDevices(a);
     checkFolder(a.output, "bench.json");
     std::signal(SIGINT, [](int signal) {
@@ -89,6 +146,7 @@ void measure(const Arguments& a) {
                    {"limit_s", requestOf(a, "").limitSeconds},
                    {"devices", Json::array()}};
     std::string names;
+    Json pictures = Json::array();
     double deviceMilliseconds = 0;
     for (const std::string& selector : chosen) {
         bench::Request request = requestOf(a, selector);
@@ -98,17 +156,34 @@ void measure(const Arguments& a) {
         };
         request.cancelled = [] { return stopped.load(); };
         report["devices"].push_back(bench::measureDevice(request));
-        const Json& d = report["devices"].back();
+        Json& d = report["devices"].back();
+        bench::summarize(d, budgets, a.errors);
+        pictures.push_back(d.value("pictures", Json::array()));
+        d.erase("pictures");  // of the page alone
         names += (names.empty() ? "" : ", ") + d.at("name").get<std::string>();
         for (const Json& e : d.at("operations"))
             deviceMilliseconds += e.value("device_ms", 0.0) * e.value("runs", 0.0);
     }
     io::writeWholeFile(jsonPath, jsonText(report, 1) + "\n");
-    io::writeWholeFile(htmlPath, bench::htmlPage(report));
+    std::string tuning;
+    for (const Json& d : report["devices"]) tuning += bench::tuningText(d);
+    if (!tuning.empty())
+        io::writeWholeFile(
+            a.output + "/tuning.txt",
+            "pellucid tuning 1\n# method, target error, ns per pixel of the materials and of the "
+            "frame, RMS error against light\n" +
+                tuning);
+    const std::string page = a.output + "/bench.html";
+    Json shown = report;
+    for (size_t i = 0; i < pictures.size(); ++i) shown["devices"][i]["pictures"] = pictures[i];
+    writePage(page, Json::array({shown}));
     const std::chrono::duration<double, std::milli> total = std::chrono::steady_clock::now() - start;
-    const Json said = {{"device", names},           {"report", jsonPath},
-                       {"page", htmlPath},          {"device_ms", deviceMilliseconds},
-                       {"total_ms", total.count()}, {"warnings", Json::array()}};
+    const Json said = {{"device", names},
+                       {"report", jsonPath},
+                       {"page", page},
+                       {"device_ms", deviceMilliseconds},
+                       {"total_ms", total.count()},
+                       {"warnings", Json::array()}};
     if (a.json) {
         printJson(said);
         return;
@@ -117,16 +192,17 @@ void measure(const Arguments& a) {
         std::printf("%s\n  %-28s %10s %9s %10s %10s %12s\n", d.at("name").get<std::string>().c_str(),
                     "operation", "median ms", "MAD", "bandwidth", "arithmetic", "largest error");
         for (const Json& e : d.at("operations")) {
+            if (e.contains("scene")) continue;  // there are hundreds: the page has them
             std::printf("  %-28s", e.at("name").get<std::string>().c_str());
             if (e.contains("failed")) {
                 std::printf(" could not be done: %s\n", e["failed"].get<std::string>().c_str());
                 continue;
             }
             const auto share = [&](const char* key) {
-                if (e.contains(key))
+                if (e.contains(key) && e[key].is_number())
                     std::printf(" %8.1f %%", 100 * e[key].get<double>());
                 else
-                    std::printf(" %10s", "");
+                    std::printf(" %10s", e.contains(key) ? "not known" : "");
             };
             std::printf(" %10.3f %9.3f", e["median_ms"].get<double>(), e["mad_ms"].get<double>());
             share("bandwidth_share");
@@ -135,8 +211,15 @@ void measure(const Arguments& a) {
                 std::printf(" %12.2e", e["error_max"].get<double>());
             std::printf("\n");
         }
+        printMethods(d);
+        if (d.contains("budgets"))
+            std::printf(
+                "  time budgets: %d of %d frames kept theirs; %d are within 1.3 of the best that is as fast, "
+                "the worst at %.2f\n",
+                d["budgets"]["kept"].get<int>(), d["budgets"]["frames"].get<int>(),
+                d["budgets"]["near"].get<int>(), d["budgets"]["worst_ratio"].get<double>());
     }
-    std::printf("%s\n%s\n", jsonPath.c_str(), htmlPath.c_str());
+    std::printf("%s\n%s\n", jsonPath.c_str(), page.c_str());
 }
 
 // A report, or the folder that `pellucid bench -o` wrote it into.
@@ -148,24 +231,50 @@ Json readReport(std::string path) {
 }
 
 void compare(const Arguments& a) {
-    const Json before = readReport(a.before), after = readReport(a.after);
-    Json result;
-    try {
-        result = bench::compareReports(before, after);
-    } catch (const nlohmann::json::exception& e) {
-        throw InputError(a.before + " or " + a.after + ": not whole: " + e.what());
+    const auto limit = [](const std::string& text, const char* option) {
+        return text.empty() ? INFINITY : 1 + numberOf(text, "%", option) / 100;
+    };
+    const double slower = limit(a.slower, "--fail-if-slower"),
+                 lessAccurate = limit(a.lessAccurate, "--fail-if-less-accurate");
+    if (a.reports.size() < 2)
+        throw UsageError("two or more reports are needed: the first is what others are compared with");
+    Json reports = Json::array(), results = Json::array();
+    for (const std::string& path : a.reports) reports.push_back(readReport(path));
+    bool worse = false;
+    for (size_t i = 1; i < reports.size(); ++i) {
+        Json result;
+        try {
+            result = bench::compareReports(reports[0], reports[i]);
+        } catch (const nlohmann::json::exception& e) {
+            throw InputError(a.reports[0] + " or " + a.reports[i] + ": not whole: " + e.what());
+        }
+        int compared = 0;
+        for (const char* key : {"same", "faster", "slower", "less_accurate", "fails"})
+            compared += result.at(key).get<int>();
+        if (compared == 0)
+            throw InputError("nothing to compare in " + a.reports[0] + " and " + a.reports[i] +
+                             (result.at("other_size") > 0 ? ": all operations have other sizes"
+                                                          : ": no operation was measured in both"));
+        for (const Json& device : result.at("devices"))
+            for (const Json& e : device.at("operations")) {
+                const std::string verdict = e.at("verdict");
+                worse |= verdict == "slower" && e.at("ratio").get<double>() > slower;
+                worse |= verdict == "less accurate" && std::isfinite(lessAccurate) &&
+                         !(e.at("new_error").is_number() &&
+                           e.at("new_error").get<double>() <= lessAccurate * e.at("old_error").get<double>());
+                worse |= verdict == "fails" && (std::isfinite(slower) || std::isfinite(lessAccurate));
+            }
+        results.push_back(result);
+        if (!a.json)
+            std::cout << a.reports[i] << " against " << a.reports[0] << "\n"
+                      << bench::describeComparison(result) << std::flush;
     }
-    const auto number = [&](const char* key) { return result.at(key).get<int>(); };
-    if (number("same") + number("faster") + number("slower") + number("less_accurate") + number("fails") == 0)
-        throw InputError("nothing to compare in " + a.before + " and " + a.after + ": " +
-                         (number("other_size") > 0
-                              ? "all operations have other sizes; was one of the reports made with --quick?"
-                              : "no operation was measured on one device in both"));
-    if (a.json)
-        printJson(result);
-    else
-        std::cout << bench::describeComparison(result) << std::flush;
-    if (number("slower") + number("less_accurate") + number("fails") > 0) throw ExitWith(exitWorse);
+    if (a.json) printJson(results.size() == 1 ? results[0] : Json{{"comparisons", results}});
+    if (!a.output.empty()) {
+        checkOutput(a.output, {"html"});
+        writePage(a.output, reports);
+    }
+    if (worse) throw ExitWith(exitWorse);
 }
 
 }  // namespace
@@ -174,26 +283,46 @@ void addBench(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("bench", "Measure every operation: time, share of the device's limits, error");
     auto a = std::make_shared<Arguments>();
-    option(*command, "-o,--output", a->output, "folder for bench.json and bench.html");
+    option(*command, "-o,--output", a->output, "folder for bench.json and the page bench.html");
     option(*command, "--device", a->devices,
            "number, name or type; may be given several times (default: all but simulators)", Word{deviceWord},
            oneEach);
     option(*command, "--only", a->only,
            "part of an operation's name; may be given several times (default: all)", Word{"NAME"}, oneEach);
-    option(*command, "--quick", a->quick, "small sizes and few repetitions: some seconds");
+    option(*command, "--quick", a->quick, "fewer scenes and settings, smaller tables: below 90 seconds");
+    option(*command, "--stability", a->stability,
+           "also search inputs of every operation for the worst error (docs/stability.md): minutes more");
+    option(*command, "--stability-share", a->stabilityShare,
+           "the same, with this share of the whole search's points (0.05; with --quick 0.002)", isPositive());
+    option(*command, "--budget", a->budgets,
+           "milliseconds at 1080p, such as 1ms, for which the report names the nearest method; several times",
+           Word{"TIME"}, oneEach);
+    option(*command, "--error", a->errors,
+           "share of white, for which the report names the fastest method; several times", Word{"ERROR"},
+           oneEach);
     option(*command, "--limit", a->limitSeconds,
            "seconds that an operation may take to be prepared, and again to be measured, before it is given "
            "up (120; with --quick 60)",
            isPositive());
     option(*command, "--events", a->events, "", hidden);
+    option(*command, "--make-truth", a->truth, "", hidden);
     option(*command, "--without", a->without, "", oneEach, hidden);
     jsonOption(*command, a->json);
     option(*command, "--first-use", a->firstUse,
            "time from nothing to the first table and frame, in this process alone");
-    CLI::App* two = command->add_subcommand(
-        "compare", "Two reports: what became slower, less accurate or fails (exit code 1), what faster");
-    option(*two, "old", a->before, "bench.json, or the folder that -o wrote it into", required);
-    option(*two, "new", a->after, "the same of the other run, or of another device", required);
+    CLI::App* two =
+        command->add_subcommand("compare",
+                                "Reports against the first of them: what became slower, less accurate "
+                                "or fails, what faster");
+    option(*two, "reports", a->reports,
+           "two or more: bench.json, or the folder that -o wrote it into; of any devices and extents",
+           required);
+    option(*two, "-o,--output", a->output, "page (HTML) that shows all of them");
+    option(*two, "--fail-if-slower", a->slower,
+           "such as 10%: exit code 1 if a case is slower by more than that, and beyond its noise",
+           Word{"PERCENT"});
+    option(*two, "--fail-if-less-accurate", a->lessAccurate,
+           "such as 50%: exit code 1 if an error grew by more than that", Word{"PERCENT"});
     jsonOption(*two, a->json);
     two->callback([a] { compare(*a); });
     command->callback([a, two] {

@@ -5,14 +5,12 @@
 #include <charconv>
 #include <cmath>
 #include <csignal>
-#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <iostream>
 #include <sstream>
 
 #include "io/atomic_file.h"
-#include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/spelling.h"
 #include "system/process.h"
@@ -169,6 +167,16 @@ void printJson(const nlohmann::ordered_json& report) {
 
 std::string jsonText(const nlohmann::ordered_json& value, int indent) {
     return value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+void printReport(const nlohmann::ordered_json& report, bool json, int width) {
+    if (json) {
+        printJson(report);
+        return;
+    }
+    for (const auto& [key, value] : report.items())
+        std::printf("%-*s %s\n", width, key.c_str(),
+                    value.is_string() ? value.get<std::string>().c_str() : jsonText(value, -1).c_str());
 }
 
 void apply(CLI::Option& option, Word word) {

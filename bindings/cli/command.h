@@ -81,6 +81,8 @@ double milliseconds(Work&& work) {
 // JSON has no other bytes.
 void printJson(const nlohmann::ordered_json& report);
 std::string jsonText(const nlohmann::ordered_json& value, int indent = 2);
+// That object, or a line for each value, which begins after `width` characters.
+void printReport(const nlohmann::ordered_json& report, bool json, int width);
 
 // Checks of option values. CLI11's own checks answer a wrong value with lists of names and numbers, let NaN
 // pass, and print the largest double in full. The description of a check is its range, "0 to 1000", or its
@@ -158,6 +160,7 @@ void addDevices(CLI::App& app);
 void addCurvature(CLI::App& app);
 void addLut(CLI::App& app);
 void addProfile(CLI::App& app);
+void addSkin(CLI::App& profile);
 void addBatch(CLI::App& app);
 void addShade(CLI::App& app);
 void addReference(CLI::App& app);

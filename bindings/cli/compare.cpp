@@ -1,16 +1,13 @@
 // pellucid compare: how far two pictures are apart. Needs no device.
-#include <cmath>
 #include <cstdio>
 #include <iostream>
 
 #include "command.h"
 #include "io/atomic_file.h"
-#include "io/file_error.h"
 #include "io/image/image_compare.h"
 #include "io/image/image_file.h"
 #include "io/image/picture.h"
 #include "io/image/tone_map.h"
-#include "io/input_file.h"
 #include "io/scene/scene_file.h"
 
 namespace pellucid::cli {
@@ -80,7 +77,7 @@ Rgb readRgb(const std::string& path, const std::string& layer, float scale) {
 
 // The shape of an NPY array has the height first, so "8 x 9" would be ambiguous.
 std::string sizeText(const auto& picture) {
-    return std::to_string(picture.width) + " wide and " + std::to_string(picture.height) + " high";
+    return io::concat(picture.width, " wide and ", picture.height, " high");
 }
 
 void requireSameSize(const std::string& pathA, const Rgb& a, const std::string& pathB, const Rgb& b) {
@@ -98,8 +95,8 @@ std::vector<uint8_t> subsets(const Arguments& a, const Rgb& one, const Rgb& two,
     if (scene.channels[PEL_SLOT_POSITION].empty())
         throw io::FileError(a.scene, "[channels] position is missing; sub-sets need it");
     if (a.light >= scene.lights.size())
-        throw UsageError("--light " + std::to_string(a.light) + ": the scene has " +
-                         std::to_string(scene.lights.size()) + " lights, counted from 0");
+        throw UsageError(io::concat("--light ", a.light, ": the scene has ", scene.lights.size(),
+                                    " lights, counted from 0"));
     const io::SceneLight& light = scene.lights[a.light];
     const std::vector<float> positions = gbuffer.interleaved(scene.channels[PEL_SLOT_POSITION]);
     const auto& geometric = scene.channels[PEL_SLOT_NORMAL_GEOMETRIC];

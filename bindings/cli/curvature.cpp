@@ -1,16 +1,9 @@
 // pellucid curvature: curvature at each vertex of a mesh file.
-#include <algorithm>
 #include <cmath>
-#include <map>
 
-#include "command.h"
-#include "curvature_picture.h"
 #include "io/atomic_file.h"
 #include "io/choice_keys.h"
-#include "io/file_error.h"
 #include "io/image/image_file.h"
-#include "io/input_file.h"
-#include "io/mesh/mesh_file.h"
 #include "mesh_curvature.h"
 
 namespace pellucid::cli {
@@ -43,14 +36,13 @@ void run(const Arguments& a) {
     checkOutput(a.output, {"npy", "ply"});
     if (!a.picture.empty()) checkOutput(a.picture, {"png"});
     if (!(a.params.scale >= 0 && std::isfinite(a.params.scale)))
-        throw UsageError("--scale " + std::to_string(a.params.scale) +
-                         ": a finite number from 0 on is needed");
+        throw UsageError(io::concat("--scale ", a.params.scale, ": a finite number from 0 on is needed"));
     if (a.estimator == "edge" && a.quantity != "absolute")
         throw UsageError(
             "--quantity: the edge estimator measures `absolute` only; take --estimator tensor or quadric");
     if (!a.range.empty() && !(a.range[0] < a.range[1] && std::isfinite(a.range[1] - a.range[0])))
-        throw UsageError("--range " + std::to_string(a.range[0]) + " " + std::to_string(a.range[1]) +
-                         ": two finite numbers are needed, the lower one first");
+        throw UsageError(io::concat("--range ", a.range[0], " ", a.range[1],
+                                    ": two finite numbers are needed, the lower one first"));
     const MeshWeldChoice weld = weldChoice(a.weld);
     PelCurvatureParams params = a.params;
     params.estimator = chosen<PelCurvatureEstimator>(io::estimators, a.estimator);

@@ -1,9 +1,6 @@
-#include "curvature_picture.h"
-
-#include <cmath>
-
 #include "io/image/image_file.h"
 #include "io/image/picture.h"
+#include "mesh_curvature.h"
 #include "sample/gbuffer.h"
 
 namespace pellucid::cli {
@@ -28,9 +25,8 @@ io::Picture curvatureView(const sample::Scene& scene, const sample::HeadPose& po
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             if (g.coverage.at(0, x, y) == 0) continue;
-            const sample::Vec3 n{g.geometricNormal.at(0, x, y), g.geometricNormal.at(1, x, y),
-                                 g.geometricNormal.at(2, x, y)};
-            const float facing = float(0.55 + 0.45 * std::abs(dot(n, toEye)));
+            const double cosine = dot(sample::vectorAt(g.geometricNormal, x, y), toEye);
+            const float facing = float(0.55 + 0.45 * std::abs(cosine));
             uint8_t* rgb = &picture.rgb[3 * (size_t(y) * size_t(width) + size_t(x))];
             for (int c = 0; c < 3; ++c)
                 rgb[c] =

@@ -1,28 +1,17 @@
 // pellucid demo: the whole chain on a real mesh. Load, curvature, look-up tables, G-buffer of the stand-in
 // host, shading, pictures.
-#include <array>
-#include <chrono>
-#include <cmath>
-#include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
 
-#include "command.h"
 #include "demo.h"
 #include "io/atomic_file.h"
-#include "io/file_error.h"
 #include "mesh_curvature.h"
-#include "scene/scene_frame.h"
 #include "system/process.h"
 
 namespace pellucid::cli {
 namespace {
 
-// The table of stages on stderr, one line at the end of each: time, bytes and items.
+// The table of stages on stderr, one line at the end of each: its time, and that of kernels in it.
 class Stages {
   public:
     explicit Stages(const Run& run) : run_(run) {}
@@ -33,60 +22,24 @@ class Stages {
         if (pel::system::errorsAreSeen())
             std::fprintf(stderr, "\r\033[K%s ...", name.c_str()), std::fflush(stderr);
     }
-    // Runs `work` as a stage and measures wall and device time. The caller counts the work: `count` items of
-    // kind `unit`, and `bytes` read and written. Returns the wall time.
     template <class Work>
-    double measure(const std::string& name, uint64_t count, const char* unit, uint64_t bytes, Work&& work) {
+    void measure(const std::string& name, Work&& work) {
         begin(name);
         const double device = run_.deviceMilliseconds(), wall = milliseconds(work);
-        add(name, wall, run_.deviceMilliseconds() - device, count, unit, bytes);
-        return wall;
+        add(name, wall, run_.deviceMilliseconds() - device);
     }
-    // The same for work whose kernels may have to be compiled: it is done twice, the second time is the
-    // stage's, and what the first took longer belongs to the time of preparation.
-    template <class Work>
-    void measureWarm(const std::string& name, uint64_t count, const char* unit, uint64_t bytes, Work&& work) {
-        const double first = milliseconds(work);
-        preparation_ += std::max(0.0, first - measure(name, count, unit, bytes, work));
-    }
-    // Work that makes ready for a stage: uploads, tables, kernels.
-    template <class Work>
-    void prepare(Work&& work) {
-        preparation_ += milliseconds(work);
-    }
-    // A line for what prepared the others.
-    void addPreparation() { add("uploads, compiling kernels", preparation_, 0, 0, "", 0); }
     // A stage that was measured elsewhere; `device` is 0 for work of the host. Milliseconds.
-    void add(const std::string& name, double wall, double device, uint64_t count, const std::string& unit,
-             uint64_t bytes) {
-        constexpr double shortest = 1e-3;  // ms, for a rate; the clock may be coarse
-        const double time = device > 0 ? device : wall,
-                     rate = time >= shortest ? double(count) * 1000 / time : 0;
-        const auto cell = [](const char* format, int width, double value) {  // blank in place of 0
-            value > 0 ? std::fprintf(stderr, format, width, value) : std::fprintf(stderr, " %*s", width, "");
-        };
+    void add(const std::string& name, double wall, double device = 0) {
         if (pel::system::errorsAreSeen()) std::fputs("\r\033[K", stderr);
-        if (list.empty())
-            std::fprintf(stderr, "%-38s %9s %10s %8s %8s  %s\n", "stage", "wall ms", "device ms", "MB", "M/s",
-                         "of");
+        if (list.empty()) std::fprintf(stderr, "%-38s %9s %10s\n", "stage", "wall ms", "device ms");
         std::fprintf(stderr, "%-38s %9.1f", name.c_str(), wall);
-        cell(" %*.2f", 10, device);
-        cell(" %*.1f", 8, double(bytes) * 1e-6);
-        nlohmann::ordered_json& entry = list.emplace_back(
-            nlohmann::ordered_json{{"stage", name}, {"wall_ms", wall}, {"device_ms", device}});
-        if (bytes > 0) entry["bytes"] = bytes;
-        if (count > 0) {
-            cell(" %*.1f", 8, rate * 1e-6);
-            std::fprintf(stderr, "  %llu %s", static_cast<unsigned long long>(count), unit.c_str());
-            entry[unit] = count;
-            if (rate > 0) entry[unit + "_per_second"] = rate;
-        }
+        if (device > 0) std::fprintf(stderr, " %10.2f", device);
         std::fputs("\n", stderr);
+        list.push_back({{"stage", name}, {"wall_ms", wall}, {"device_ms", device}});
     }
 
   private:
     const Run& run_;
-    double preparation_ = 0;  // ms
 };
 
 // The OBJ file of the head that the demo shows when no mesh is named.
@@ -173,15 +126,16 @@ std::vector<DemoViewRequest> requests(const Arguments& a) {
     return {key, back};
 }
 
-// Shades a variant of a view's scene as a stage.
+// Shades a variant of a view's scene as a stage, uploads and kernels that are missing included.
 std::vector<float> shadeAs(Run& run, Stages& stages, io::LutStore& luts, const DemoView& view,
                            const char* name, const io::SceneFile& scene) {
-    std::optional<io::SceneFrame> frame;
-    stages.prepare([&] { frame.emplace(run.device(), view.gbuffer, scene, luts, view.shadowMaps); });
-    const uint64_t pixels = view.gbuffer.pixelCount();
-    stages.measure(view.name + ": shade, " + name, pixels, "pixels",
-                   frame->inputBytes() + pixels * 3 * sizeof(float), [&] { frame->shade(); });
-    return frame->radiance();
+    std::vector<float> radiance;
+    stages.measure(view.name + ": shade, " + name, [&] {
+        io::SceneFrame frame(run.device(), view.gbuffer, scene, luts, view.shadowMaps);
+        frame.shade();
+        radiance = frame.radiance();
+    });
+    return radiance;
 }
 
 // What each view is shaded as: Lambert, by tables, auto.
@@ -211,25 +165,19 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
                      const DemoHead& head, const DemoViewRequest& request, const Arguments& a) {
     Stages::begin(request.name + ": G-buffer and shadow maps (sample host)");
     DemoView view = renderDemoView(scene, head, request);
-    const uint64_t pixels = view.gbuffer.pixelCount();
-    const uint64_t gbufferBytes = pixels * view.gbuffer.channels.size() * sizeof(float);
-    stages.add(view.name + ": G-buffer (sample host)", view.gbufferMilliseconds, 0, pixels, "pixels",
-               gbufferBytes);
-    uint64_t texels = 0;
-    for (const auto& [file, map] : view.shadowMaps) texels += map.pixelCount();
-    stages.add(view.name + ": shadow maps (sample host)", view.shadowMapMilliseconds, 0, texels, "texels",
-               texels * sizeof(float));
-    stages.add(view.name + ": wide shadow (sample host)", view.wideShadowMilliseconds, 0, pixels, "pixels",
-               pixels * sizeof(float));
+    stages.add(view.name + ": G-buffer (sample host)", view.gbufferMilliseconds);
+    stages.add(view.name + ": shadow maps (sample host)", view.shadowMapMilliseconds);
+    stages.add(view.name + ": wide shadow (sample host)", view.wideShadowMilliseconds);
 
     const std::array<io::SceneFile, 3> scenes = scenesOf(view);
-    for (const io::SceneFile& each : scenes)
-        stages.prepare([&] { io::buildPrograms(run.device(), each, luts); });
+    stages.measure(view.name + ": kernels", [&] {
+        for (const io::SceneFile& each : scenes) io::buildPrograms(run.device(), each, luts);
+    });
     ShadedView shaded;
     shaded.lambert = shadeAs(run, stages, luts, view, "Lambert", scenes[0]);
     shaded.tables = shadeAs(run, stages, luts, view, "by tables", scenes[1]);
     shaded.complete = shadeAs(run, stages, luts, view, "auto", scenes[2]);
-    stages.measure(view.name + ": pictures at twice the size", 4 * pixels, "pixels", 0,
+    stages.measure(view.name + ": pictures at twice the size",
                    [&] { shaded.fine = finePictures(run, luts, scene, head, request); });
     const std::string& folder = a.output;
     const auto path = [&](const std::string& suffix) { return folder + "/" + view.name + suffix; };
@@ -247,37 +195,28 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
 void run(Arguments a) {
     if (a.mesh.empty()) a.mesh = standardHead();
     const std::vector<DemoViewRequest> wanted = requests(a);  // refuses a wrong size before any work
-    checkFolder(a.output, "demo.png");
     Run run(a.run);
     Stages stages(run);
     run.note(std::string("device: ") + run.device().info().name);
 
     DemoHead head;
-    stages.measure("load, subdivide, normals", 0, "", 0, [&] { head = loadHead(run, a); });
+    stages.measure("load, subdivide, normals", [&] { head = loadHead(run, a); });
+    checkFolder(a.output, "demo.png");  // not made for a mesh that is refused
     const io::MeshData& mesh = head.mesh;
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     params.smoothingPasses = a.smoothing;
     MeshCurvature curvature;
-    stages.measureWarm("curvature", mesh.vertexCount(), "vertices",
-                       mesh.vertexCount() * 28 + mesh.triangles.size() * 4,
-                       [&] { curvature = meshCurvature(run, mesh, params); });
+    stages.measure("curvature", [&] { curvature = meshCurvature(run, mesh, params); });
     reportMesh(run, curvature.report);
 
     io::LutStore luts(run.device());
     const io::SceneFile standard = standardLuts();
     Lut curvatureLut, shadowLut;
-    const auto makeTable = [&](const char* title, size_t index, Lut& lut) {
-        const io::SceneLut& table = standard.luts[index];
-        const bool isShadow = table.info.kind == PEL_LUT_SHADOW;
-        const uint64_t texels = isShadow ? uint64_t(table.info.shadow.width) * table.info.shadow.height
-                                         : uint64_t(table.info.curvature.width) * table.info.curvature.height;
-        // An empty store, so that the table is made.
-        stages.measureWarm(title, texels, "texels", texels * 16, [&] {
-            lut = io::LutStore(run.device()).get(standard, table.name, table.info.kind);
-        });
+    const auto makeTable = [&](const char* title, const io::SceneLut& table, Lut& lut) {
+        stages.measure(title, [&] { lut = luts.get(standard, table.name, table.info.kind); });
     };
-    makeTable("curvature LUT", 0, curvatureLut);
-    makeTable("shadow LUT", 1, shadowLut);
+    makeTable("curvature LUT", standard.luts[0], curvatureLut);
+    makeTable("shadow LUT", standard.luts[1], shadowLut);
 
     const sample::Scene scene(sample::MeshView{mesh.positions, mesh.normals, mesh.uvs, curvature.values,
                                                mesh.triangles, head.materials});
@@ -289,7 +228,6 @@ void run(Arguments a) {
         const DemoView made = madeOf(views.front().view, m.profile, m.tint);
         materials.push_back({m.profile, shadeAs(run, stages, luts, made, m.profile, made.scene)});
     }
-    stages.addPreparation();
 
     nlohmann::ordered_json& files = run.report["pictures"];
     files.push_back(writeSheet(a.output, views, materials, curvatureLut, shadowLut));

@@ -1,11 +1,7 @@
 // The demo: what the stand-in host renders of each view, and its pictures.
 #pragma once
-#include <string>
-#include <vector>
-
 #include "demo/demo_head.h"
 #include "io/image/picture.h"
-#include "sample/camera.h"
 #include "sample/scene.h"
 #include "scene/scene_frame.h"
 

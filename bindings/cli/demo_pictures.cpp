@@ -1,9 +1,5 @@
 #include "demo.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "io/image/picture.h"
 #include "io/image/tone_map.h"
 #include "mesh_curvature.h"
 

@@ -1,11 +1,7 @@
 #include "demo.h"
 
-#include <algorithm>
-
 #include "command.h"
-#include "sample/gbuffer.h"
 #include "sample/occlusion.h"
-#include "sample/shadow_map.h"
 #include "sample/sky.h"
 #include "sample/wide_shadow.h"
 
@@ -71,9 +67,7 @@ std::vector<float> wetLine(const sample::GBuffer& g) {
     constexpr double reach = 0.9;  // mm
     constexpr int window = 8;      // pixels
     std::vector<float> wet(g.material.size());
-    const auto at = [&](int x, int y) {
-        return sample::Vec3{g.position.at(0, x, y), g.position.at(1, x, y), g.position.at(2, x, y)};
-    };
+    const auto at = [&](int x, int y) { return sample::vectorAt(g.position, x, y); };
     const auto id = [&](int x, int y) { return g.material[size_t(y) * size_t(g.width) + size_t(x)]; };
     for (int y = 0; y < g.height; ++y)
         for (int x = 0; x < g.width; ++x) {

@@ -49,24 +49,14 @@ void addDevices(CLI::App& app) {
     addRunOptions(*command, *options);
     command->callback([options] {
         // Making the device that would be used is the check that it works; without any device it is an error.
-        const auto start = std::chrono::steady_clock::now();
-        const Device chosen(options->device);
-        const uint32_t standard = chosen.info().index;
-        nlohmann::ordered_json list = nlohmann::ordered_json::array();
+        Run run(*options);
+        const uint32_t standard = run.device().info().index;
+        run.report["default"] = standard;
         for (const PelDeviceInfo& info : Device::all()) {
-            list.push_back(toJson(info));
+            run.report["devices"].push_back(toJson(info));
             if (!options->json) print(info, info.index == standard);
         }
-        if (options->json) {
-            const std::chrono::duration<double, std::milli> total = std::chrono::steady_clock::now() - start;
-            const nlohmann::ordered_json report = {{"device", chosen.info().name},
-                                                   {"default", standard},
-                                                   {"devices", list},
-                                                   {"device_ms", chosen.stats().kernelMilliseconds},
-                                                   {"total_ms", total.count()},
-                                                   {"warnings", nlohmann::ordered_json::array()}};
-            printJson(report);
-        }
+        if (options->json) run.finish();
     });
 }
 

@@ -23,18 +23,7 @@ struct Arguments {
     PelShadowLutDesc shadow = pelShadowLutDescDefaults();
     PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
     PelEyeLutDesc eye = pelEyeLutDescDefaults();
-    CLI::Option* radius = nullptr;  // --diffusion-radius of the requested table
 };
-
-// Without a radius a table of a material other than skin takes the material's radius.
-template <class Desc>
-Profile takeProfile(const Arguments& arguments, Desc& desc) {
-    const Profile profile = io::findProfile(arguments.profile).profile;
-    desc.profile = profile.get();
-    if (arguments.radius->count() > 0 && desc.diffusionRadius == 0)
-        throw UsageError("--diffusion-radius: diffusionRadius is 0; a length above 0 is needed");
-    return profile;
-}
 
 // The description of a preset with what the command line gives in the place of its own.
 template <class Desc>
@@ -119,10 +108,9 @@ void integrate(Arguments& arguments, Desc& desc) {
     } else {
         io::writeLut(arguments.output, lut, encoding);
     }
-    static constexpr const char* names[] = {"float", "half", "faceworks8"};  // PelLutEncoding
     run.report["encoding"] = bc6h      ? "bc6h"
                              : picture ? "picture: sRGB, to look at; engines need --encoding"
-                                       : names[*encoding];
+                                       : io::lutEncodings[*encoding];
     run.report["width"] = desc.width;
     run.report["height"] = desc.height;
     run.report["texels"] = uint64_t(desc.width) * rowsOf(desc);
@@ -135,7 +123,7 @@ void integrate(Arguments& arguments, Desc& desc) {
 // "WxH" of the presets.
 template <class Desc>
 std::string sizeHelp(const Desc& material, const Desc& faceworks) {
-    const auto size = [](const Desc& d) { return std::to_string(d.width) + "x" + std::to_string(d.height); };
+    const auto size = [](const Desc& d) { return io::concat(d.width, "x", d.height); };
     return "texels, WxH (default: " + size(material) + "; " + size(faceworks) + " with --preset faceworks)";
 }
 
@@ -150,11 +138,11 @@ void addCommon(CLI::App& command, Arguments& a, const std::string& size) {
     addRunOptions(command, a.run);
 }
 
-CLI::Option* addProfileOptions(CLI::App& command, Arguments& a, float& diffusionRadius) {
+void addProfileOptions(CLI::App& command, Arguments& a, float& diffusionRadius) {
     option(command, "--profile", a.profile, "a material (pellucid profile list) or a .toml file",
            Word{profileWord}, shown);
-    return option(command, "--diffusion-radius", diffusionRadius,
-                  "sigma of the widest Gaussian, mm (default: the profile's own)");
+    option(command, "--diffusion-radius", diffusionRadius,
+           "sigma of the widest Gaussian, mm (default: the profile's own)", isPositive());
 }
 
 io::LutPreset presetOf(const Arguments& a) {
@@ -182,7 +170,7 @@ void addLut(CLI::App& app) {
         lut->add_subcommand("curvature", "Light scattered round a curved surface, over N.L and curvature");
     addCommon(*curvature, *a, sizeHelp(pelCurvatureLutDescDefaults(), pelCurvatureLutDescFaceWorks()));
     addPreset(*curvature, *a);
-    CLI::Option* curvatureRadius = addProfileOptions(*curvature, *a, a->curvature.diffusionRadius);
+    addProfileOptions(*curvature, *a, a->curvature.diffusionRadius);
     option(*curvature, "--radius-min", a->curvature.radiusMin,
            "smallest radius of curvature, mm (default: a quarter of the diffusion radius; 1 with --preset "
            "faceworks)");
@@ -191,14 +179,14 @@ void addLut(CLI::App& app) {
     option(*curvature, "--form", a->form,
            "geometry that light is integrated over (default: sphere; arc with --preset faceworks)",
            isOneOf(io::curvatureForms));
-    curvature->callback([a, curvature, curvatureRadius] {
-        a->radius = curvatureRadius;
+    curvature->callback([a, curvature] {
         applyPreset(*a, a->curvature, io::presetCurvature(presetOf(*a)), *curvature,
                     {{"--radius-min", &PelCurvatureLutDesc::radiusMin},
                      {"--radius-max", &PelCurvatureLutDesc::radiusMax},
                      {"--diffusion-radius", &PelCurvatureLutDesc::diffusionRadius}});
         if (!a->form.empty()) a->curvature.form = chosen<PelCurvatureForm>(io::curvatureForms, a->form);
-        const Profile profile = takeProfile(*a, a->curvature);
+        const Profile profile = io::findProfile(a->profile).profile;
+        a->curvature.profile = profile.get();
         integrate(*a, a->curvature);
     });
 
@@ -206,7 +194,7 @@ void addLut(CLI::App& app) {
         lut->add_subcommand("shadow", "Light scattered across a shadow edge, over shadow value and 1/width");
     addCommon(*shadow, *a, sizeHelp(pelShadowLutDescDefaults(), pelShadowLutDescFaceWorks()));
     addPreset(*shadow, *a);
-    CLI::Option* shadowRadius = addProfileOptions(*shadow, *a, a->shadow.diffusionRadius);
+    addProfileOptions(*shadow, *a, a->shadow.diffusionRadius);
     option(*shadow, "--width-min", a->shadow.widthMin,
            "narrowest penumbra, mm (default: the filter that follows from the profile; 8 with --preset "
            "faceworks)");
@@ -215,15 +203,15 @@ void addLut(CLI::App& app) {
     option(*shadow, "--sharpening", a->shadow.sharpening, "how much narrower the shadow gets, from 1", shown);
     option(*shadow, "--open-ends", a->openEnds,
            "rows are not rescaled to run from 0 to 1 (--preset faceworks does not either)");
-    shadow->callback([a, shadow, shadowRadius] {
-        a->radius = shadowRadius;
+    shadow->callback([a, shadow] {
         applyPreset(*a, a->shadow, io::presetShadow(presetOf(*a)), *shadow,
                     {{"--width-min", &PelShadowLutDesc::widthMin},
                      {"--width-max", &PelShadowLutDesc::widthMax},
                      {"--sharpening", &PelShadowLutDesc::sharpening},
                      {"--diffusion-radius", &PelShadowLutDesc::diffusionRadius}});
         if (a->openEnds) a->shadow.closedEnds = 0;
-        const Profile profile = takeProfile(*a, a->shadow);
+        const Profile profile = io::findProfile(a->profile).profile;
+        a->shadow.profile = profile.get();
         integrate(*a, a->shadow);
     });
 

@@ -1,11 +1,8 @@
 // The `pellucid` command. Exit codes: 0 done, 2 wrong use, 3 bad input file, 4 no device or device failure.
-#include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 
 #include "command.h"
-#include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/spelling.h"
 #include "system/process.h"
@@ -51,9 +48,8 @@ int main(int argc, char** argv) {
     CLI::App app("Subsurface scattering for deferred renderers on OpenCL", "pellucid");
     app.formatter(helpFormatter());  // before the subcommands, which inherit it
     app.require_subcommand(1);
-    app.set_version_flag("--version", std::to_string(PEL_VERSION_MAJOR) + "." +
-                                          std::to_string(PEL_VERSION_MINOR) + "." +
-                                          std::to_string(PEL_VERSION_PATCH));
+    app.set_version_flag("--version",
+                         io::concat(PEL_VERSION_MAJOR, ".", PEL_VERSION_MINOR, ".", PEL_VERSION_PATCH));
     for (const auto add : {addDevices, addCurvature, addLut, addProfile, addBatch, addShade, addReference,
                            addImport, addCompare, addWarmUp, addDemo, addBench, addView, addDescribe})
         add(app);

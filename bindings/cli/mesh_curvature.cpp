@@ -1,6 +1,5 @@
 #include "mesh_curvature.h"
-
-#include <algorithm>
+#include "io/concat.h"
 
 namespace pellucid::cli {
 
@@ -53,7 +52,7 @@ void reportMesh(Run& run, const PelMeshReport& r) {
          "normals are zero or not finite; edges to them were skipped"}};
     for (const auto& [key, count, what] : oddities) {
         run.report[key] = count;
-        if (count > 0) run.warn(std::to_string(count) + " " + what);
+        if (count > 0) run.warn(io::concat(count, " ", what));
     }
 }
 

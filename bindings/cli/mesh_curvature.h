@@ -1,7 +1,5 @@
-// Curvature of a loaded mesh on the device, for `curvature` and `demo`.
+// Curvature of a loaded mesh on the device, for `curvature`, `import` and `demo`; and its picture.
 #pragma once
-#include <vector>
-
 #include "command.h"
 #include "io/mesh/mesh_file.h"
 
@@ -20,6 +18,12 @@ struct MeshWeldChoice {
 // Throws InputError with the file's name if the library refuses the mesh.
 MeshCurvature meshCurvature(Run& run, const io::MeshData& mesh, const PelCurvatureParams& params,
                             const MeshWeldChoice& weld = {});
+
+// Writes a PNG of the mesh seen from the front and from a side, coloured by a value at its vertices, with a
+// colour bar from `low` to `high`. `up` is 'y' or 'z'. Throws FileError when the file cannot be written.
+void writeCurvaturePicture(const std::string& path, const io::MeshData& mesh,
+                           const std::vector<float>& values, float low, float high, char up,
+                           const std::string& unit);
 
 // Adds the counts of the mesh to the report, and a warning for each thing that was skipped.
 void reportMesh(Run& run, const PelMeshReport& report);

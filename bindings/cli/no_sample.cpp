@@ -1,6 +1,5 @@
 // What stands in the place of commands and pictures that need the sample renderer, in a build without it.
-#include "command.h"
-#include "curvature_picture.h"
+#include "mesh_curvature.h"
 
 namespace pellucid::cli {
 

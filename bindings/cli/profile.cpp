@@ -6,12 +6,13 @@
 #include "io/atomic_file.h"
 #include "io/image/image_file.h"
 #include "io/image/picture.h"
-#include "io/input_file.h"
 #include "io/lut/profile_file.h"
 #include "profile_fit/profile_fit.h"
 
 namespace pellucid::cli {
 namespace {
+
+constexpr int nameWidth = 14;  // of what is printed
 
 struct Arguments {
     std::string name, output;
@@ -31,16 +32,6 @@ nlohmann::ordered_json described(const io::ProfileFile& file) {
     out["gaussians"] = info.gaussians;
     out["singular"] = info.singular != 0;
     return out;
-}
-
-void print(const nlohmann::ordered_json& report, bool json) {
-    if (json) {
-        printJson(report);
-        return;
-    }
-    for (const auto& [key, value] : report.items())
-        std::printf("%-14s %s\n", key.c_str(),
-                    value.is_string() ? value.get<std::string>().c_str() : jsonText(value, -1).c_str());
 }
 
 void list(const Arguments& a) {
@@ -73,10 +64,10 @@ void show(const Arguments& a) {
              {"line_spread_per_mm", {lineSpread[3 * i], lineSpread[3 * i + 1], lineSpread[3 * i + 2]}}});
     if (a.json) {
         report["values"] = rows;
-        print(report, true);
+        printJson(report);
         return;
     }
-    print(report, false);
+    printReport(report, false, nameWidth);
     std::printf("\n%12s  %-35s %s\n", "d mm", "R per mm^2", "P per mm");
     for (size_t i = 0; i < at.size(); ++i)
         std::printf("%12.4g  %11.4g %11.4g %11.4g %11.4g %11.4g %11.4g\n", at[i], radial[3 * i],
@@ -118,8 +109,8 @@ void plot(const Arguments& a) {
     for (int y = top; y <= height - bottom; ++y) picture.paint(left, y, grey);
     for (int x = left; x < width - right; ++x) picture.paint(x, height - bottom, grey);
     for (int d = 0; d <= int(decades); ++d)
-        picture.write(10, top + d * (height - top - bottom) / int(decades) - 7, "1e-" + std::to_string(d),
-                      grey, 2);
+        picture.write(10, top + d * (height - top - bottom) / int(decades) - 7, io::concat("1e-", d), grey,
+                      2);
     char text[64];
     for (int i = 0; i <= 4; ++i) {
         std::snprintf(text, sizeof text, "%.3g", i * radius);
@@ -127,7 +118,7 @@ void plot(const Arguments& a) {
     }
     picture.write(left, 12, file.name + ": R full, P dashed, of their peaks; distance in mm", white, 2);
     io::writeImage8(a.output, width, height, 3, picture.rgb);
-    print({{"name", file.name}, {"output", a.output}}, a.json);
+    printReport({{"name", file.name}, {"output", a.output}}, a.json, nameWidth);
 }
 
 void fit(const Arguments& a) {
@@ -142,14 +133,14 @@ void fit(const Arguments& a) {
         report["gaussians"].push_back({{"variance_mm2", g.variance}, {"weight", g.weight}});
     report["relative_error"] = best.error;
     const std::string text = io::profileText(
-        best, file.name + "-" + std::to_string(a.gaussians) + "-gaussians",
-        "sum of " + std::to_string(a.gaussians) + " Gaussians fitted to the line spread of " + file.name);
+        best, io::concat(file.name, "-", a.gaussians, "-gaussians"),
+        io::concat("sum of ", a.gaussians, " Gaussians fitted to the line spread of ", file.name));
     if (!a.output.empty()) {
         io::writeWholeFile(a.output, text);
         report["output"] = a.output;
     }
     if (a.json)
-        print(report, true);
+        printJson(report);
     else
         std::printf("%s# relative error of the line spread, R G B: %.3g %.3g %.3g\n", text.c_str(),
                     best.error[0], best.error[1], best.error[2]);
@@ -179,6 +170,7 @@ void addProfile(CLI::App& app) {
     CLI::App* fitting = add("fit", "The best sum of K Gaussians", fit, true);
     option(*fitting, "--gaussians", a->gaussians, "how many", inRange(1, 12), shown);
     option(*fitting, "-o,--output", a->output, "profile file (.toml) to write");
+    addSkin(*profile);
 }
 
 }  // namespace pellucid::cli

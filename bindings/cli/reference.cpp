@@ -1,23 +1,11 @@
 // pellucid reference: the true picture, by the surface integral over the mesh or by a random walk in its
 // volume.
-#include <algorithm>
-#include <array>
 #include <charconv>
-#include <cmath>
-#include <string>
-#include <vector>
 
-#include "command.h"
 #include "io/atomic_file.h"
-#include "io/file_error.h"
-#include "io/image/image_file.h"
-#include "io/input_file.h"
 #include "io/lut/profile_file.h"
-#include "io/mesh/mesh_file.h"
 #include "io/mesh/mesh_parts.h"
-#include "io/scene/scene_file.h"
 #include "mesh_curvature.h"
-#include "sample/lit_mesh.h"
 #include "sample/random_walk.h"
 #include "scene/scene_frame.h"
 
@@ -139,8 +127,8 @@ sample::WalkedLight walk(Run& run, const WalkArguments& walk, const sample::Walk
                                    {"noise", light.noise}});
     const double walks = 6.0 * double(points.size()) * light.samples;
     if (double(light.lost) > 0.001 * walks)
-        run.warn(std::to_string(100 * double(light.lost) / walks) + " % of the walks in " + material +
-                 " left through holes of the mesh and count as dark");
+        run.warn(io::concat(100 * double(light.lost) / walks, " % of the walks in ", material,
+                            " left through holes of the mesh and count as dark"));
     return light;
 }
 
@@ -199,9 +187,9 @@ std::vector<uint32_t> idsOf(const std::string& path, const io::PartedMesh& mesh,
             const char *text = part.data(), *end = text + std::min(equals, part.size());
             const auto [stopped, error] = std::from_chars(text, end, id);
             if (error != std::errc() || stopped != end || id == 0 || id >= shadowOnly)
-                throw UsageError("--part " + part +
-                                 ": several parts are written ID=GROUP, with an id from 1 to " +
-                                 std::to_string(shadowOnly - 1));
+                throw UsageError(io::concat("--part ", part,
+                                            ": several parts are written ID=GROUP, with an id from 1 to ",
+                                            shadowOnly - 1));
         }
         const int wanted = mesh.part(name);
         if (wanted < 0) {
@@ -269,8 +257,9 @@ Diffusion diffusionOf(const Arguments& a, const io::SceneFile& scene, const io::
     if (material && name.empty()) {
         const io::SceneLut* lut = scene.lut(material->curvatureLut, PEL_LUT_CURVATURE);
         if (lut && !lut->file.empty())
-            throw UsageError("the curvature table of material " + std::to_string(material->id) +
-                             " is a file, which does not contain its profile; name one with --profile");
+            throw UsageError(
+                io::concat("the curvature table of material ", material->id,
+                           " is a file, which does not contain its profile; name one with --profile"));
         if (lut) name = lut->profile;
     }
     d.profile = name.empty() ? Profile::skin() : io::findProfile(name).profile;
@@ -302,8 +291,8 @@ Points pointsOf(Run& run, const sample::WalkBody& body, const std::vector<float>
     const double worst = *std::max_element(off.begin(), off.end()), extent = length(bounds.high - bounds.low);
     run.report["points_off_mesh"] = worst;
     if (worst > 2e-3 * extent)
-        run.warn("positions are up to " + std::to_string(worst) + " away from the mesh, which is " +
-                 std::to_string(extent) + " across: are both in the same place and unit?");
+        run.warn(io::concat("positions are up to ", worst, " away from the mesh, which is ", extent,
+                            " across: are both in the same place and unit?"));
     return points;
 }
 
@@ -328,19 +317,20 @@ struct Layers {
         io::Image image;
         image.width = width;
         image.height = height;
-        image.addInterleaved(std::vector<std::string>{"R", "G", "B"}, radiance);
-        const auto add = [&](const std::string& name, const std::vector<float>& values) {
-            if (!values.empty())
-                image.addInterleaved(std::vector<std::string>{name + ".R", name + ".G", name + ".B"}, values);
+        using Names = std::vector<std::string>;
+        const auto rgb = [](const std::string& layer) {
+            return Names{layer + "R", layer + "G", layer + "B"};
         };
-        add("Surface", surface);
-        add("Irradiance", irradiance);
-        add("First", first);
-        add("Second", second);
-        add("MeanFreePath", meanFreePath);
-        if (!meanCurvature.empty())
-            image.addInterleaved(std::vector<std::string>{"MeanCurvature"}, meanCurvature);
-        if (!thickness.empty()) image.addInterleaved(std::vector<std::string>{"Thickness"}, thickness);
+        const std::pair<Names, const std::vector<float>&> all[] = {{rgb(""), radiance},
+                                                                   {rgb("Surface."), surface},
+                                                                   {rgb("Irradiance."), irradiance},
+                                                                   {rgb("First."), first},
+                                                                   {rgb("Second."), second},
+                                                                   {rgb("MeanFreePath."), meanFreePath},
+                                                                   {{"MeanCurvature"}, meanCurvature},
+                                                                   {{"Thickness"}, thickness}};
+        for (const auto& [names, values] : all)
+            if (!values.empty()) image.addInterleaved(names, values);
         return image;
     }
 };
@@ -414,7 +404,7 @@ class Reference {
             if (!pixels.empty()) evaluate(material, pixels, positions, albedos, layers);
             count += pixels.size();
         }
-        if (bad > 0) run_.warn(std::to_string(bad) + " positions are NaN or Inf; these pixels are 0");
+        if (bad > 0) run_.warn(io::concat(bad, " positions are NaN or Inf; these pixels are 0"));
         io::writeExr(a_.output, layers.image(gbuffer.width, gbuffer.height));
         run_.report["points"] = count;
     }
@@ -464,7 +454,7 @@ class Reference {
 
     sample::WalkedLight walked(const sample::WalkBody& body, const Diffusion& d, const Points& points,
                                const RgbValues& reflectance, const io::SceneMaterial* material) {
-        const std::string name = "material " + std::to_string(material ? material->id : 1);
+        const std::string name = io::concat("material ", material ? material->id : 1);
         medium_ = mediumOf(a_.walk, d.profile, d.scale, reflectance, name);
         return walk(run_, a_.walk, body, lighting_, points.places, medium_, reflectance, name);
     }
@@ -481,8 +471,9 @@ class Reference {
             if (!albedos.empty()) A[c] = sum / double(pixels.size());
             if (!a_.walk.reflectance.empty()) A[c] = a_.walk.reflectance[c];
             if (!(A[c] > 0 && A[c] < 1))
-                throw InputError("a reflectance of " + std::to_string(A[c]) +
-                                 " has no medium; values between 0 and 1 can be given with --reflectance");
+                throw InputError(
+                    io::concat("a reflectance of ", A[c],
+                               " has no medium; values between 0 and 1 can be given with --reflectance"));
         }
         return A;
     }

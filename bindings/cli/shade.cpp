@@ -1,110 +1,35 @@
 // pellucid shade: a host's G-buffer and a scene file in, radiance out.
-#include <algorithm>
-#include <chrono>
 #include <condition_variable>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <mutex>
-#include <optional>
-#include <pellucid/pellucid.hpp>
-#include <set>
-#include <sstream>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "command.h"
 #include "io/atomic_file.h"
-#include "io/file_error.h"
 #include "io/image/picture.h"
 #include "io/image/tone_map.h"
-#include "io/input_file.h"
 #include "io/scene/scene_keys.h"
 #include "scene/scene_frame.h"
-#include "system/process.h"
 
 namespace pellucid::cli {
-namespace fs = std::filesystem;
 namespace {
 
-constexpr auto moment = std::chrono::milliseconds(300);  // loading programs from a cache takes less
-constexpr unsigned mostHelpers = 3;                      // each takes about 200 MB
-constexpr const char* variable = "PELLUCID_BUILD_SHARE";
-
-// Processes that compile kernels beside this one. PoCL compiles one kernel at a time in a process, and keeps
-// kernels on disk.
-//
-// Make it before the programs of a scene are built, and call finish() afterwards. Where building takes longer
-// than a moment, other cores run `pellucid warm-up` for the same scene; each process builds what no other has
-// begun. After a second, a line on standard error says what takes the time.
-class BuildHelpers {
+// Says on standard error, after a second of its life, what takes the time.
+class BuildNotice {
   public:
-    // Without a scene no other process helps.
-    BuildHelpers(const Device& device, const std::string& selector, const std::string& scene);
-    ~BuildHelpers();
-    // Waits for what the others have begun.
-    void finish();
+    BuildNotice()
+        : teller_([this](const std::stop_token& stop) {
+              std::unique_lock lock(mutex_);
+              if (!changed_.wait_for(lock, stop, std::chrono::seconds(1), [] { return false; }) &&
+                  !stop.stop_requested())
+                  std::fputs("building this scene's kernels; they are kept for later runs\n", stderr);
+          }) {}
 
   private:
-    void start(const std::string& selector, const std::string& scene);
-
-    std::string folder_;  // of what each process has begun; "": nothing is shared
-    std::vector<pel::system::Child> helpers_;
     std::mutex mutex_;
-    std::condition_variable changed_;
-    bool done_ = false;
-    std::thread starter_;
+    std::condition_variable_any changed_;
+    std::jthread teller_;
 };
-
-BuildHelpers::BuildHelpers(const Device& device, const std::string& selector, const std::string& scene) {
-    const bool shared = std::string_view(device.info().platform) == "Portable Computing Language" &&
-                        std::thread::hardware_concurrency() > 1 && !std::getenv(variable) && !scene.empty();
-    std::error_code error;
-    if (shared)
-        folder_ =
-            pel::system::makeTemporaryFolder(fs::temp_directory_path(error).string(), "pellucid-build-");
-    if (!folder_.empty()) pel::system::setVariable(variable, folder_.c_str());
-    starter_ = std::thread([this, selector, scene] {
-        std::unique_lock lock(mutex_);
-        const auto begin = std::chrono::steady_clock::now();
-        const auto built = [&](auto after) {
-            return changed_.wait_until(lock, begin + after, [&] { return done_; });
-        };
-        if (built(moment)) return;
-        if (!folder_.empty()) start(selector, scene);
-        if (!built(std::chrono::seconds(1)))
-            std::fputs("building this scene's kernels; the driver keeps them for later runs\n", stderr);
-    });
-}
-
-void BuildHelpers::start(const std::string& selector, const std::string& scene) {
-    std::vector<std::string> words{pel::system::programFile(), "warm-up", scene};
-    if (!selector.empty()) words.insert(words.end(), {"--device", selector});
-    std::vector<std::string> variables{std::string(variable) + "=helper:" + folder_};
-    if (!std::getenv("PELLUCID_CACHE"))
-        variables.push_back("PELLUCID_CACHE=auto");  // no binaries, which take as long again
-    for (unsigned i = 1; i < std::min(std::thread::hardware_concurrency(), mostHelpers + 1); ++i)
-        helpers_.emplace_back(words, variables);
-}
-
-void BuildHelpers::finish() {
-    {
-        const std::lock_guard lock(mutex_);
-        done_ = true;
-    }
-    changed_.notify_one();
-    if (starter_.joinable()) starter_.join();
-    for (pel::system::Child& helper : helpers_) helper.wait();
-}
-
-BuildHelpers::~BuildHelpers() {
-    finish();
-    if (folder_.empty()) return;
-    pel::system::setVariable(variable, nullptr);
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-}
 
 constexpr float longest = 30;  // mm of thickness; hardly anything comes through more of skin
 
@@ -164,6 +89,7 @@ struct Arguments {
     io::ToneMap tone;
     bool stats = false;
     uint64_t scratchMib = 0;
+    float timeBudget = 0;
 };
 
 // The files to write beside radiance: those of the scene, and those of --outputs, named after -o.
@@ -191,18 +117,16 @@ struct Inputs {
 // Reads what the scene names into the device's memory. A second thread prepares the frame meanwhile. Its
 // errors are dropped: where there is no frame, the pictures are read again and it is made with them, and
 // reports them.
-Inputs frameOf(const std::string& gbuffer, const Device& device, const std::string& selector,
-               const io::SceneFile& scene, io::LutStore& luts, const PelShaderOptions& options,
+Inputs frameOf(const std::string& gbuffer, const Device& device, const io::SceneFile& scene,
+               io::LutStore& luts, const PelShaderOptions& options,
                const std::vector<PelImageSlot>& outputs) {
     Inputs inputs;
     io::ShadowMaps maps;
-    // The others build what the scene itself asks for, without further outputs or counters.
-    BuildHelpers helpers(device, selector, outputs.empty() && !options.countPixels ? scene.source : "");
     {
         const auto build = [&] {
             try {
+                const BuildNotice notice;
                 inputs.frame.emplace(io::prepareFrame(device, scene, luts, options, outputs));
-                helpers.finish();
             } catch (const std::exception&) {
             }
         };
@@ -237,9 +161,10 @@ void warnOfNothing(Run& run, const io::SceneFile& scene, const std::vector<PelIm
                    uint32_t features) {
     for (const io::SceneMaterial& m : scene.materials)
         if (m.material.deepScatterAmbient > 0 && scene.channels[PEL_SLOT_THICKNESS].empty())
-            run.warn("deep_scatter_ambient of material " + std::to_string(m.id) +
-                     " does nothing without a thickness channel: shadow maps tell how thick a body is along "
-                     "their light alone");
+            run.warn(io::concat(
+                "deep_scatter_ambient of material ", m.id,
+                " does nothing without a thickness channel: shadow maps tell how thick a body is along "
+                "their light alone"));
     const bool wanted = std::find(outputs.begin(), outputs.end(), PEL_SLOT_OUT_THICKNESS) != outputs.end();
     if (wanted && scene.channels[PEL_SLOT_THICKNESS].empty() && !(features & PEL_FEATURE_THICKNESS_TAPS))
         run.warn(
@@ -251,9 +176,10 @@ void warnOfNothing(Run& run, const io::SceneFile& scene, const std::vector<PelIm
 void warnOfInvalid(Run& run, const PelShaderStats& stats) {
     if (stats.pixelsInvalid == 0) return;
     const std::string share =
-        stats.pixelsInvalid == stats.pixelsShaded ? "all " : std::to_string(stats.pixelsInvalid) + " of ";
-    run.warn(share + std::to_string(stats.pixelsShaded) +
-             " pixels of a material have NaN or Inf in an input or in their result; they are black");
+        stats.pixelsInvalid == stats.pixelsShaded ? "all " : io::concat(stats.pixelsInvalid, " of ");
+    run.warn(
+        io::concat(share, stats.pixelsShaded,
+                   " pixels of a material have NaN or Inf in an input or in their result; they are black"));
 }
 
 // The counters as an object of the report.
@@ -281,7 +207,11 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
             {"pixels_shadow_texels", s.pixelsShadowTexels},
             {"bands", s.bands},
             {"pixels_invalid", s.pixelsInvalid},
-            {"shade_ms", s.deviceMilliseconds}};
+            {"shade_ms", s.deviceMilliseconds},
+            {"taken_target_error", s.takenTargetError},
+            {"expected_ms", s.expectedMilliseconds},
+            {"expected_error", s.expectedError},
+            {"tuned", s.tuned != 0}};
 }
 
 void run(const Arguments& a) {
@@ -294,7 +224,8 @@ void run(const Arguments& a) {
     if (picture == a.output && !a.picture.empty())
         throw UsageError("--picture: -o is a picture already; write -o to an .exr, or leave --picture out");
     Run run(a.run);
-    const io::SceneFile scene = io::readScene(a.scene);
+    io::SceneFile scene = io::readScene(a.scene);
+    scene.options.buildInBackground = 0;  // the picture is of the methods that it names
     io::checkReadable(a.gbuffer);
     const auto files = outputFiles(a, scene);
     std::vector<PelImageSlot> outputs;
@@ -315,8 +246,9 @@ void run(const Arguments& a) {
     PelShaderOptions options = pelShaderOptionsDefaults();
     options.countPixels = a.stats;
     options.scratchBudget = a.scratchMib << 20;
+    options.timeBudget = a.timeBudget;
     try {
-        Inputs inputs = frameOf(a.gbuffer, run.device(), a.run.device, scene, luts, options, outputs);
+        Inputs inputs = frameOf(a.gbuffer, run.device(), scene, luts, options, outputs);
         const io::Image& gbuffer = inputs.gbuffer;
         io::SceneFrame& frame = *inputs.frame;
         frame.shade();
@@ -345,7 +277,15 @@ void run(const Arguments& a) {
                                                {"normal_blend", resolved.normalBlend},
                                                {"shadow_filter_width", resolved.shadowFilterWidth}});
         }
-        if (a.stats) run.report["stats"] = toJson(stats);
+        if (a.stats) {
+            run.report["stats"] = toJson(stats);
+            for (const PelPassStats& pass : frame.passes())
+                run.report["stats"]["passes"].push_back({{"name", pass.name},
+                                                         {"ms", pass.milliseconds},
+                                                         {"launches", pass.launches},
+                                                         {"bytes", pass.bytes},
+                                                         {"tiles", pass.tiles}});
+        }
     } catch (const Error& e) {
         // If the library refuses something here, it came from the two files.
         if (e.code() == PEL_ERROR_INVALID_ARGUMENT)
@@ -373,11 +313,14 @@ void addShade(CLI::App& app) {
     option(*command, "--outputs", a->parts,
            "parts of the picture to write beside it, as OUT_diffuse.exr and so on", separated,
            isOneOf({"diffuse", "deep_scatter", "specular", "thickness", "all"}));
-    option(*command, "--stats", a->stats, "count tiles and pixels per feature");
+    option(*command, "--stats", a->stats, "count tiles and pixels per feature, and time each pass");
     option(
         *command, "--scratch-mib", a->scratchMib,
         "most MiB for blurred normals and filtered shadows; larger frames are shaded in bands. 0: no limit",
         inRange(0, 1 << 30), shown);
+    option(*command, "--time-budget", a->timeBudget,
+           "milliseconds of the device that \"auto\" may take beyond plain lighting (default: the scene's)",
+           isPositive());
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });
 }

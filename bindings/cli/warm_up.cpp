@@ -2,7 +2,6 @@
 #include <cstdlib>
 
 #include "command.h"
-#include "io/file_error.h"
 #include "scene/scene_frame.h"
 #include "system/process.h"
 
@@ -21,16 +20,11 @@ void run(const Arguments& a) {
     // its own cache.
     if (!std::getenv("PELLUCID_CACHE")) pel::system::setVariable("PELLUCID_CACHE", "on");
     Run run(a.run);
-    const auto stats = [&] {
-        PelDeviceStats s = pelDeviceStatsDefaults();
-        check(pelDeviceGetStats(run.device().get(), &s));
-        return s;
-    };
     uint32_t groups = (a.luts ? PEL_PROGRAMS_LUTS : 0) | (a.tableLuts ? PEL_PROGRAMS_TABULATED_LUTS : 0) |
                       (a.curvature ? PEL_PROGRAMS_CURVATURE : 0);
     if (!groups && a.scenes.empty())
         groups = PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABULATED_LUTS | PEL_PROGRAMS_CURVATURE;
-    const PelDeviceStats before = stats();
+    const PelDeviceStats before = run.device().stats();
     if (groups) warmUpPrograms(run.device(), groups, {}, a.threads);
     for (const std::string& scene : a.scenes) {
         run.note("building what " + scene + " needs");
@@ -42,7 +36,7 @@ void run(const Arguments& a) {
             throw;
         }
     }
-    const PelDeviceStats after = stats();
+    const PelDeviceStats after = run.device().stats();
     run.report["programs"] = after.programsBuilt - before.programsBuilt;
     run.report["loaded"] = after.programsLoaded - before.programsLoaded;
     run.report["stored"] = after.programsStored - before.programsStored;

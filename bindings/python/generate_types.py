@@ -120,22 +120,22 @@ def python_field(field, kind, shape, enums, structs):
     documentation says."""
     p = snake(field)
     if kind == "char":
-        return f'("{p}", "S{shape[0]}")', f'TextField("{p}")', "", "str"
+        return f'("{p}", "S{shape[0]}")', f'Field[str]("{p}")', "", "str"
     if kind in HANDLES:
         h = HANDLES[kind]
         return f'("{p}", np.uintp)', f'{h}Field("{p}")', f"{h} | str", f"{h} or its name in the library"
     if kind in enums:
         e = kind[3:]
-        return f'("{p}", np.int32)', f'EnumField("{p}", {e})', f"{e} | str", f"{e} or its name"
+        return f'("{p}", np.int32)', f'Field("{p}", {e})', f"{e} | str", f"{e} or its name"
     if kind in structs:
         s = kind[3:]
-        return f'("{p}", {s}._dtype)', f'StructField("{p}", {s})', s, s
+        return f'("{p}", {s}._dtype)', f'Field("{p}", {s})', s, s
     dtype, number = SCALARS[kind]
     if shape:
         size = " x ".join(map(str, shape))
         entry = f'("{p}", {dtype}, {tuple(shape)})'
-        return entry, f'ArrayField("{p}")', "ArrayLike", f"array of {size} {dtype[3:]}"
-    return f'("{p}", {dtype})', f'{number.capitalize()}Field("{p}")', number, number
+        return entry, f'Field[NDArray[Any]]("{p}")', "ArrayLike", f"array of {size} {dtype[3:]}"
+    return f'("{p}", {dtype})', f'Field[{number}]("{p}")', number, number
 
 
 def python_struct(name, doc, fields, enums, structs, say):
@@ -164,11 +164,11 @@ def python_module(enums, structs):
     say = Translator(enums, structs)
     out = ['"""Enumerations and plain structures of pellucid.h. Written by generate_types.py: do not '
            'edit."""',
-           "from __future__ import annotations\n", "import numpy as np",
-           "from numpy.typing import ArrayLike\n",
-           "from ._struct import (ArrayField, Enumeration, EnumField, Flags, FloatField, IntField, "
-           "ProfileField, Struct,\n                      StructField, TextField)",
-           "from typing import TYPE_CHECKING\n", "if TYPE_CHECKING:\n    from .profile import Profile\n"]
+           "from __future__ import annotations\n", "from dataclasses import dataclass\n",
+           "import numpy as np",
+           "from numpy.typing import ArrayLike, NDArray\n",
+           "from ._struct import Enumeration, Field, Flags, ProfileField, Struct",
+           "from typing import TYPE_CHECKING, Any\n", "if TYPE_CHECKING:\n    from .profile import Profile\n"]
     exported = []
     for name, (doc, members) in enums.items():
         python = {"PelError": "ErrorCode"}.get(name, name[3:])
@@ -193,8 +193,11 @@ def sliders(rows):
     """The sliders of fields that have one, by the name of their key in files."""
     found = {row.key: row.slider for list_of_rows in rows.values() for row in list_of_rows if row.slider}
     entries = "".join(f'    "{key}": {slider!r},\n' for key, slider in found.items())
+    material = "".join(f"    {row.key}: float = {row.default}\n" for row in rows["MATERIAL"] if row.slider)
     return (f"\nSLIDERS: dict[str, tuple[str, float, float, float]] = {{\n{entries}}}\n"
-            '"""Label, minimum, maximum and step of the viewer\'s slider for a field."""\n')
+            '"""Label, minimum, maximum and step of the viewer\'s slider for a field."""\n'
+            '\n\n@dataclass\nclass MaterialValues:\n    """The fields of Material that have a slider."""\n\n'
+            f"{material}")
 
 
 def native_table(structs):

@@ -1,4 +1,3 @@
-#include "core/device.h"
 #include "api/entry.h"
 #include "cl/platform.h"
 #include "core/buffer.h"
@@ -33,6 +32,14 @@ void pelSetErrorCallback(PelErrorCallback callback, void* user) {
     setErrorCallback(callback, user);
 }
 
+void pelSetLogCallback(PelLogCallback callback, void* user) {
+    setLogCallback(callback, user);
+}
+
+PelError pelSetName(void* object, const char* name) {
+    return entry([&] { nameHandle(object, name); });
+}
+
 uint32_t pelVersion(void) {
     return PEL_VERSION_MAJOR * 10000 + PEL_VERSION_MINOR * 100 + PEL_VERSION_PATCH;
 }
@@ -51,7 +58,14 @@ PelError pelDeviceEnumerate(uint32_t index, PelDeviceInfo* info) {
 }
 
 PelError pelDeviceCreate(const char* selector, PelDevice* device) {
-    return create(device, "device", [&] { return Device::create(selector); });
+    PelDeviceDesc desc = pelDeviceDescDefaults();
+    desc.selector = selector;
+    return pelDeviceCreateWith(&desc, device);
+}
+
+PelError pelDeviceCreateWith(const PelDeviceDesc* desc, PelDevice* device) {
+    return create(device, "device",
+                  [&] { return Device::create(readStruct(desc, pelDeviceDescDefaults(), "PelDeviceDesc")); });
 }
 
 PelError pelDeviceCreateFromCl(void* clContext, void* clDeviceId, void* clCommandQueue, PelDevice* device) {

@@ -12,6 +12,7 @@ namespace pel {
 template <class Body>
 PelError entry(Body&& body) noexcept {
     try {
+        beginCall();
         cl::checkProcess();
         body();
         return PEL_SUCCESS;

@@ -3,9 +3,8 @@
 #include "api/entry.h"
 #include "core/submission.h"
 #include "eye/eye.h"
-#include "lut/lut.h"
 #include "lut/luts.h"
-#include "lut/profile.h"
+#include "lut/skin.h"
 
 using namespace pel;
 
@@ -126,6 +125,43 @@ PelError pelProfileCreateBurley(const float meanFreePath[3], const float albedo[
 
 PelError pelProfileCreateBurleyDistance(const float distance[3], PelProfile* profile) {
     return create(profile, "profile", [&] { return Profile::burleyDistance(distance); });
+}
+
+PelError pelProfileCreateSkinLayers(const PelSkin* skin, PelProfile* profile) {
+    return create(profile, "profile", [&] { return skinLayersProfile(readSkin(skin)); });
+}
+
+PelError pelSkinGetInfo(const PelSkin* skin, PelSkinInfo* info) {
+    return entry([&] { writeStruct(info, skinInfo(readSkin(skin)), "PelSkinInfo"); });
+}
+
+PelError pelSkinReflectance(const PelSkin* skin, const float* nanometres, uint32_t count,
+                            float* reflectance) {
+    return entry([&] {
+        const PelSkin read = readSkin(skin);
+        if (count > 0 && (!nanometres || !reflectance))
+            invalidArgument("wavelengths and a reflectance to fill are needed, not NULL");
+        skinReflectance(read, {nanometres, count}, reflectance);
+    });
+}
+
+PelError pelSkinAlbedo(const PelSkin* skin, const float* melanin, const float* blood, uint64_t count,
+                       float* albedo, float* radius) {
+    return entry([&] {
+        const PelSkin read = readSkin(skin);
+        if (count > 0 && (!melanin || !blood)) invalidArgument("melanin and blood are needed, not NULL");
+        skinAlbedo(read, melanin, blood, count, albedo, radius);
+    });
+}
+
+PelError pelSkinFromAlbedo(const PelSkin* skin, const float* albedo, uint64_t count, float* melanin,
+                           float* blood, float* difference) {
+    return entry([&] {
+        const PelSkin read = readSkin(skin);
+        if (count > 0 && (!albedo || !melanin || !blood))
+            invalidArgument("an albedo, and melanin and blood to fill, are needed, not NULL");
+        skinFromAlbedo(read, albedo, count, melanin, blood, difference);
+    });
 }
 
 PelError pelProfileCreateNamed(const char* name, PelProfile* profile) {

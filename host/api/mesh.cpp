@@ -1,9 +1,6 @@
 #include "api/entry.h"
 #include "core/submission.h"
-#include "mesh/curvature.h"
 #include "mesh/live_mesh.h"
-#include "mesh/mesh_passes.h"
-#include "mesh/mesh_topology.h"
 
 using namespace pel;
 

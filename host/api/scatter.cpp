@@ -1,5 +1,5 @@
-#include "diffusion/scatter.h"
 #include "api/entry.h"
+#include "api/scatter_images.h"
 #include "core/submission.h"
 #include "diffusion/surface_integral.h"
 #include "diffusion/texture_scatter.h"
@@ -7,16 +7,6 @@
 #include "shading/screen_curvature.h"
 
 using namespace pel;
-
-namespace {
-
-ImageView viewOf(const PelImageDesc* desc, Device& device, const char* name, bool needed = true) {
-    if (desc) return makeImageView(desc, device, name);
-    if (needed) invalidArgument("`", name, "` is needed, not NULL");
-    return {};
-}
-
-}  // namespace
 
 PelError pelScatterCreate(PelDevice device, PelScatter* scatter) {
     return create(scatter, "scatter", [&] { return make<Scatter>(fromHandle<Device>(device)); });
@@ -55,12 +45,7 @@ PelError pelScatterExecute(PelScatter scatter, const PelScatterParams* params, c
     return entry([&] {
         const Ref<Scatter> object = fromHandle<Scatter>(scatter);
         const auto full = readStructOr(params, pelScatterParamsDefaults(), "PelScatterParams");
-        const auto view = [&](const PelImageDesc* desc, const char* name, bool needed) {
-            return viewOf(desc, object->device(), name, needed);
-        };
-        const ScatterImages images{view(irradiance, "irradiance", true), view(positions, "positions", false),
-                                   view(depth, "depth", false), view(ids, "ids", false),
-                                   view(out, "out", true)};
+        const ScatterImages images = scatterImages(object->device(), irradiance, positions, depth, ids, out);
         submitted(object->device(), submit, [&](bool) { object->execute(full, images); });
     });
 }

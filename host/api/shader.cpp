@@ -8,10 +8,10 @@ using namespace pel;
 
 // The passes of every shader, in the order in which they run: a pass reads what earlier passes made.
 static const PassKind shadingPasses[] = {
-    ambientCubePass,    reflectionCubePass, irisesPass,       classifyTilesPass, tapCellsPass,
-    blurNormalsPass,    normalMapPass,      shadowBoundsPass, wideShadowPass,    irradiancePass,
-    prepareScatterPass, curvaturePass,      diskPass,         separablePass,     texturePass,
-    scatterPass,        lightScatterPass,   weighScatterPass, shadePass};
+    ambientCubePass, reflectionCubePass, irisesPass,       classifyTilesPass, tapCellsPass,
+    blurNormalsPass, normalMapPass,      shadowBoundsPass, wideShadowPass,    irradiancePass,
+    skinMapsPass,    prepareScatterPass, curvaturePass,    diskPass,          separablePass,
+    texturePass,     scatterPass,        lightScatterPass, weighScatterPass,  shadePass};
 
 PelError pelShaderCreate(PelDevice device, PelShader* shader) {
     return create(shader, "shader", [&] { return make<Shader>(fromHandle<Device>(device), shadingPasses); });
@@ -93,7 +93,11 @@ PelError pelShaderSetCamera(PelShader shader, const PelCamera* camera) {
 }
 
 PelError pelShaderCommit(PelShader shader) {
-    return entry([&] { fromHandle<Shader>(shader)->commit(); });
+    return entry([&] {
+        const Ref<Shader> s = fromHandle<Shader>(shader);
+        s->commit();
+        warn(s->warnings());
+    });
 }
 
 PelError pelShaderExecute(PelShader shader, const PelSubmit* submit) {
@@ -117,4 +121,19 @@ PelError pelShaderGetWarnings(PelShader shader, const char** warnings) {
 
 PelError pelShaderGetStats(PelShader shader, PelShaderStats* stats) {
     return entry([&] { writeStruct(stats, fromHandle<Shader>(shader)->stats(), "PelShaderStats"); });
+}
+
+template <class T>
+static void writeArray(T* to, uint32_t* count, const std::vector<T>& values, const char* name) {
+    uint32_t& room = output(count, "count");
+    writeStructs(to, room, values, name);
+    room = uint32_t(values.size());
+}
+
+PelError pelShaderGetPasses(PelShader shader, PelPassStats* passes, uint32_t* count) {
+    return entry([&] { writeArray(passes, count, fromHandle<Shader>(shader)->passStats(), "PelPassStats"); });
+}
+
+PelError pelShaderGetMemory(PelShader shader, PelPassMemory* passes, uint32_t* count) {
+    return entry([&] { writeArray(passes, count, fromHandle<Shader>(shader)->memory(), "PelPassMemory"); });
 }

@@ -1,23 +1,13 @@
 // Warm-up: builds programs before they are needed (pelWarmUpPrograms).
-#include <condition_variable>
-#include <exception>
-#include <optional>
-#include <string>
-#include <thread>
-
 #include "api/entry.h"
+#include "api/scatter_images.h"
 #include "lut/luts.h"
 #include "mesh/curvature.h"
-#include "mesh/mesh_passes.h"
 #include "shading/shader.h"
 
 using namespace pel;
 
 namespace {
-
-// Jobs that may run at the same time, in any order. Each builds programs and launches their kernels on
-// nothing, or on the smallest possible input.
-using WarmUpJobs = std::vector<std::function<void()>>;
 
 constexpr uint32_t texels = 16;  // a side of the smallest table
 
@@ -28,7 +18,7 @@ Desc small(Desc desc) {
 }
 
 // Curvature and shadow tables. Without a profile, of one that is a sum of Gaussians.
-void profileLutJobs(const Ref<Device>& device, const Ref<Profile>& profile, WarmUpJobs& jobs) {
+void profileLutJobs(const Ref<Device>& device, const Ref<Profile>& profile, BuildJobs& jobs) {
     const auto add = [&](auto desc, auto integrate) {
         jobs.push_back([device, profile, desc, integrate]() mutable {
             std::optional<LentHandle<PelProfile, Profile>> lent;
@@ -46,7 +36,7 @@ void profileLutJobs(const Ref<Device>& device, const Ref<Profile>& profile, Warm
         [](const auto& on, const auto& desc) { integrateShadowLut(on, desc); });
 }
 
-void lutJobs(const Ref<Device>& device, WarmUpJobs& jobs) {
+void lutJobs(const Ref<Device>& device, BuildJobs& jobs) {
     profileLutJobs(device, {}, jobs);
     jobs.push_back([device] {
         const Ref<Lut> lut = tabulateSpecularLut(device, small(pelSpecularLutDescDefaults()));
@@ -57,7 +47,7 @@ void lutJobs(const Ref<Device>& device, WarmUpJobs& jobs) {
 }
 
 // A profile that is not a sum of Gaussians.
-void tableLutJobs(const Ref<Device>& device, WarmUpJobs& jobs) {
+void tableLutJobs(const Ref<Device>& device, BuildJobs& jobs) {
     const std::vector<float> radii{0, 1, 3}, values{1, 1, 1, 0.5, 0.4, 0.3, 0, 0, 0};
     profileLutJobs(device, Profile::table(radii.data(), values.data(), uint32_t(radii.size())), jobs);
 }
@@ -84,7 +74,7 @@ struct SmallMesh {
     VertexView view(uint32_t words) const { return {memory, {4, 0, words, 0}}; }
 };
 
-void curvatureJobs(const Ref<Device>& device, WarmUpJobs& jobs) {
+void curvatureJobs(const Ref<Device>& device, BuildJobs& jobs) {
     for (const bool welded : {false, true})
         for (const PelCurvatureEstimator estimator :
              {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC})
@@ -105,73 +95,12 @@ void curvatureJobs(const Ref<Device>& device, WarmUpJobs& jobs) {
     });
 }
 
-WarmUpJobs jobsOfGroups(const Ref<Device>& device, uint32_t groups) {
-    WarmUpJobs jobs;
+BuildJobs jobsOfGroups(const Ref<Device>& device, uint32_t groups) {
+    BuildJobs jobs;
     if (groups & PEL_PROGRAMS_LUTS) lutJobs(device, jobs);
     if (groups & PEL_PROGRAMS_TABULATED_LUTS) tableLutJobs(device, jobs);
     if (groups & PEL_PROGRAMS_CURVATURE) curvatureJobs(device, jobs);
     return jobs;
-}
-
-// What `call` throws.
-template <class Call>
-std::exception_ptr thrownBy(const Call& call) {
-    try {
-        call();
-    } catch (...) {
-        return std::current_exception();
-    }
-    return {};
-}
-
-// Runs them on `threads` threads (0: one per core), reports progress to the device's callback, and throws the
-// first error. Jobs that have not begun by then are left out.
-void runJobs(Device& device, const WarmUpJobs& jobs, uint32_t threads) {
-    std::mutex mutex;  // of these
-    std::condition_variable changed;
-    size_t next = 0, done = 0;
-    std::exception_ptr failure;
-    const auto work = [&] {
-        std::unique_lock lock(mutex);
-        while (!failure && next < jobs.size()) {
-            const auto& job = jobs[next++];
-            lock.unlock();
-            const std::exception_ptr thrown = thrownBy(job);
-            lock.lock();
-            ++done;
-            if (!failure) failure = thrown;
-            changed.notify_one();
-        }
-    };
-    const auto report = [&](size_t ready) {
-        const std::string what = text("building kernels ", ready, "/", jobs.size());
-        device.progress(jobs.empty() ? 1 : double(ready) / double(jobs.size()), what.c_str());
-    };
-    if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
-    if (std::string_view(device.info().platform) == "Oclgrind")
-        threads = 1;  // it stops where kernels overlap
-    failure = thrownBy([&] { report(0); });
-    std::vector<std::jthread> workers;
-    while (workers.size() < std::min<size_t>(threads, jobs.size())) {
-        const std::exception_ptr none = thrownBy([&] { workers.emplace_back(work); });
-        if (none && workers.empty()) failure = none;
-        if (none) break;  // fewer threads are enough
-    }
-    // The callback is called on this thread only, and never while the lock is held.
-    std::unique_lock lock(mutex);
-    for (size_t reported = 0; reported < jobs.size();) {
-        changed.wait(lock, [&] { return failure || done > reported; });
-        if (failure) break;
-        reported = done;
-        lock.unlock();
-        const std::exception_ptr cancelled = thrownBy([&] { report(reported); });
-        lock.lock();
-        if (!failure) failure = cancelled;
-    }
-    lock.unlock();
-    workers.clear();
-    device.finish();
-    if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace
@@ -186,15 +115,37 @@ PelError pelWarmUpPrograms(PelDevice device, const PelWarmUp* work, uint32_t* bu
                             ", which has bits that are not in PelProgramGroup");
         if (w.numShaders && !w.shaders)
             invalidArgument("PelWarmUp.shaders is NULL but numShaders is ", w.numShaders);
-        WarmUpJobs jobs = jobsOfGroups(d, w.groups);
-        for (uint32_t i = 0; i < w.numShaders; ++i) {
-            const Ref<Shader> shader = fromHandle<Shader>(w.shaders[i]);
-            if (&shader->device() != d.get())
-                invalidArgument("PelWarmUp.shaders[", i, "] belongs to another PelDevice");
-            shader->addWarmUpJobs(jobs);
-        }
+        if (w.numScatters && !w.scatters)
+            invalidArgument("PelWarmUp.scatters is NULL but numScatters is ", w.numScatters);
         const uint32_t before = d->programs().counts().built;
-        runJobs(*d, jobs, w.threads);
+        const unsigned builders = buildersFor(*d, w.threads);
+        cl::BuildHelpers helpers(d->id(), builders);
+        BuildJobs jobs = jobsOfGroups(d, w.groups);
+        {
+            const cl::HelpScope scope(helpers);
+            for (uint32_t i = 0; i < w.numShaders; ++i) {
+                const Ref<Shader> shader = fromHandle<Shader>(w.shaders[i]);
+                if (&shader->device() != d.get())
+                    invalidArgument("PelWarmUp.shaders[", i, "] belongs to another PelDevice");
+                shader->addBuildJobs(jobs);
+            }
+            const char* next = reinterpret_cast<const char*>(w.scatters);
+            for (uint32_t i = 0; i < w.numScatters; ++i) {
+                const auto* given = reinterpret_cast<const PelScatterWork*>(next);
+                const PelScatterWork s = readStruct(given, pelScatterWorkDefaults(), "PelScatterWork");
+                next += given->structSize;
+                const Ref<Scatter> scatter = fromHandle<Scatter>(s.scatter);
+                if (&scatter->device() != d.get())
+                    invalidArgument("PelWarmUp.scatters[", i, "] belongs to another PelDevice");
+                scatter->addBuildJobs(readStructOr(s.params, pelScatterParamsDefaults(), "PelScatterParams"),
+                                      scatterImages(*d, s.irradiance, s.positions, s.depth, s.ids, s.out),
+                                      jobs);
+            }
+        }
+        runJobs(*d, jobs, builders, helpers, [&](size_t done) {
+            const std::string what = text("building kernels ", done, "/", jobs.size());
+            d->progress(jobs.empty() ? 1 : double(done) / double(jobs.size()), what.c_str());
+        });
         if (built) *built = d->programs().counts().built - before;
     });
 }

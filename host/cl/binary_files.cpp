@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
-#include <vector>
 
 #include "cl/error.h"
 #include "cl/machine.h"

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <deque>
 #include <memory>
-#include <new>
+#include <mutex>
+#include <utility>
 
 #include "cl/machine.h"
 
@@ -16,8 +18,44 @@ constexpr size_t page = 4096, cacheLine = 128;
 constexpr size_t mapped = 32 << 20;
 // The same for memory that must be zero, as the system's pages are.
 constexpr size_t mappedZeros = 2 << 20;
+// Freed blocks of these sizes are kept for a while, and no more of them than the larger one; smaller blocks
+// the allocator keeps by itself.
+constexpr size_t leastSpared = 128 << 10, mostSpared = 16 << 20;
 // May be allocated before the free memory is measured again, which takes 100 us.
 constexpr size_t unasked = 16 << 20;
+
+// The last blocks that were freed, for the next ones of their sizes: whether the allocator maps pages anew
+// for a table after a table depends on what else it holds.
+class Spares {
+  public:
+    static Spares& all() {
+        static Spares& one = *new Spares;  // buffers may go after static objects
+        return one;
+    }
+    void* take(size_t bytes) {
+        const std::lock_guard lock(mutex_);
+        const auto found =
+            std::find_if(spares_.begin(), spares_.end(), [&](const auto& s) { return s.first == bytes; });
+        if (found == spares_.end()) return nullptr;
+        void* const at = found->second;
+        spares_.erase(found);
+        held_ -= bytes;
+        return at;
+    }
+    void give(size_t bytes, void* at) {
+        const std::lock_guard lock(mutex_);
+        spares_.emplace_back(bytes, at);
+        for (held_ += bytes; held_ > mostSpared; spares_.pop_front()) {
+            held_ -= spares_.front().first;
+            freeAligned(spares_.front().second);
+        }
+    }
+
+  private:
+    std::mutex mutex_;
+    std::deque<std::pair<size_t, void*>> spares_;  // the oldest first
+    size_t held_ = 0;
+};
 
 class Block {
   public:
@@ -27,7 +65,8 @@ class Block {
             if (!at_) none();
         } else {
             const size_t alignment = bytes < page ? cacheLine : page;
-            at_ = allocateAligned(alignment, (bytes + alignment - 1) / alignment * alignment);
+            if (isSpared()) at_ = Spares::all().take(bytes);
+            if (!at_) at_ = allocateAligned(alignment, (bytes + alignment - 1) / alignment * alignment);
             if (!at_) none();
             if (zeros) std::memset(at_, 0, bytes);
         }
@@ -35,6 +74,8 @@ class Block {
     ~Block() {
         if (mapped_)
             unmapPages(at_, bytes_);
+        else if (isSpared())
+            Spares::all().give(bytes_, at_);
         else
             freeAligned(at_);
     }
@@ -43,6 +84,7 @@ class Block {
     void* at() const { return at_; }
 
   private:
+    bool isSpared() const { return bytes_ >= leastSpared && bytes_ <= mostSpared; }
     [[noreturn]] void none() const {
         fail(PEL_ERROR_OUT_OF_MEMORY, "the system has no ", bytes_, " bytes of memory for a buffer");
     }

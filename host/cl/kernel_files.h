@@ -12,7 +12,6 @@ struct KernelFile {
 };
 
 std::span<const KernelFile> kernelFiles();
-const char* kernelsHash();  // changes when any byte of any file changes
 
 // The files one after another. Each #include "..." line is replaced by the file that it names (relative to
 // kernels/), once per file.

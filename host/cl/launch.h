@@ -1,7 +1,6 @@
 // One kernel launch: arguments by position, checked sizes, a padded range.
 #pragma once
 #include <array>
-#include <string>
 
 #include "cl/handle.h"
 
@@ -33,6 +32,10 @@ class Launch {
 
     Launch& arg(cl_mem memory) { return raw(&memory, sizeof memory); }
     Launch& arg(const Memory& memory) { return arg(memory.get()); }
+    // An image, a buffer, constants.
+    template <class T>
+    requires requires(const T& owner) { owner.memory(); }
+    Launch& arg(const T& owner) { return arg(owner.memory()); }
     // Numbers and structures of kernels/shared, passed by value.
     template <class T>
     requires std::is_trivially_copyable_v<T> &&(!std::is_pointer_v<T>)Launch& arg(const T& value) {
@@ -44,44 +47,15 @@ class Launch {
         return *this;
     }
 
-    // Nothing is launched, and the event is empty, if a dimension has no items or another process builds the
-    // kernel (BuildScope).
+    // Nothing is launched, and the event is empty, if a dimension has no items.
     Event enqueue(cl_command_queue queue, const Range& range);
 
   private:
     Launch& raw(const void* value, size_t bytes);
 
     Kernel kernel_;
-    cl_program program_;  // retained by the kernel
     const char* name_;
     cl_uint next_ = 0;
-};
-
-// A warm-up that several processes share. PoCL compiles one kernel at a time in a process, and keeps kernels
-// on disk. PELLUCID_BUILD_SHARE names a folder; each process that sees the variable builds what no other has
-// begun.
-
-// Whether this process is the first to claim `what`; always true without a folder.
-bool claimBuild(const std::string& what);
-// Whether this process only helps another one: PELLUCID_BUILD_SHARE begins with "helper:".
-bool helpsToBuild();
-
-// During its lifetime this thread launches kernels only so that the driver compiles them, on memory of zeros.
-class BuildScope {
-  public:
-    enum Launches { all, claimed, none };
-    explicit BuildScope(Launches launches);
-    ~BuildScope();
-    BuildScope(const BuildScope&) = delete;
-
-    // Whether new memory must be zero, because the kernel that writes to it may be skipped.
-    static bool zeroes();
-    // Whether this process launches a kernel of the program.
-    static bool launches(cl_program program, const char* kernel, cl_command_queue queue);
-
-  private:
-    const BuildScope* outer_;
-    Launches launches_;
 };
 
 }  // namespace pel::cl

@@ -1,7 +1,6 @@
 // Lists and selects OpenCL devices, and names the workarounds that each needs.
 #pragma once
 #include <cstring>
-#include <string>
 #include <vector>
 
 #include "cl/handle.h"

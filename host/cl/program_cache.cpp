@@ -5,12 +5,11 @@
 #include <cstdlib>
 #include <set>
 
-#include "cl/error.h"
+#include "cl/build_helpers.h"
 #include "cl/kernel_files.h"
 #include "cl/machine.h"
 #include "cl/platform.h"
 #include "cl/pocl_cache.h"
-#include "system/process.h"
 
 namespace pel::cl {
 
@@ -73,6 +72,10 @@ Program ProgramCache::build(const std::vector<std::string>& files, const std::st
         counts.loaded = 1;
         return program;
     }
+    if (ReadyScope::active()) throw NotBuilt();
+    if (BuildHelpers* const helpers = BuildHelpers::ofThread())
+        if (const std::string binary = helpers->compile(options, source); !binary.empty())
+            if (Program program = binaries_.take(binary, source, options, counts.stored)) return program;
     Program program = compile(source, files, options);
     counts.stored = binaries_.store(program, source, options);
     return program;
@@ -174,9 +177,19 @@ Digest BinaryCache::name(const std::string& source, const std::string& options) 
 Program BinaryCache::load(const std::string& source, const std::string& options) const {
     if (!files_) return {};
     const std::optional<std::string> binary = files_->load(name(source, options));
-    if (!binary) return {};
-    const auto* bytes = reinterpret_cast<const unsigned char*>(binary->data());
-    const size_t size = binary->size();
+    return binary ? programOf(*binary, options) : Program();
+}
+
+Program BinaryCache::take(const std::string& binary, const std::string& source, const std::string& options,
+                          uint32_t& stored) const {
+    Program program = programOf(binary, options);
+    stored = program && files_ && files_->store(name(source, options), binary);
+    return program;
+}
+
+Program BinaryCache::programOf(const std::string& binary, const std::string& options) const {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(binary.data());
+    const size_t size = binary.size();
     cl_int status = CL_SUCCESS, code = CL_SUCCESS;
     Program program(clCreateProgramWithBinary(context_, 1, &device_, &size, &bytes, &status, &code));
     if (code != CL_SUCCESS || status != CL_SUCCESS) return {};
@@ -244,7 +257,9 @@ void expand(std::string_view name, std::set<std::string_view>& seen, std::string
 }  // namespace
 
 std::string kernelSource(std::span<const std::string> names) {
-    std::string out;
+    // Clang warns of vectors wider than the registers in calls. Every function is inlined, or comes from the
+    // driver's own library.
+    std::string out = "#pragma clang diagnostic ignored \"-Wpsabi\"\n";
     std::set<std::string_view> seen;
     for (const std::string& name : names)
         if (seen.insert(name).second) expand(name, seen, out);

@@ -4,8 +4,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "cl/binary_files.h"
@@ -44,7 +42,12 @@ class BinaryCache {
     // False if it could not be stored.
     bool store(const Program& program, const std::string& source, const std::string& options) const;
 
+    // Of a binary that another process made, which is kept too. Empty if the driver refuses it.
+    Program take(const std::string& binary, const std::string& source, const std::string& options,
+                 uint32_t& stored) const;
+
   private:
+    Program programOf(const std::string& binary, const std::string& options) const;
     Digest name(const std::string& source, const std::string& options) const;
 
     cl_context context_;

@@ -1,6 +1,6 @@
 #include "core/device.h"
 
-#include <cstring>
+#include <cstdlib>
 
 #include "cl/host_memory.h"
 #include "cl/machine.h"
@@ -9,15 +9,34 @@
 
 namespace pel {
 
-Ref<Device> Device::create(const char* selector) {
-    const uint32_t index = cl::selectDevice(selector);
+namespace {
+
+bool wantsProfiling(const PelDeviceDesc& desc) {
+    if (desc.profiling > 2)
+        invalidArgument("PelDeviceDesc.profiling is ", desc.profiling, "; it must be 0, 1 or 2");
+    if (desc.profiling < 2) return desc.profiling == 1;
+    const char* const variable = std::getenv("PELLUCID_PROFILING");
+    const std::string_view value = variable ? variable : "";
+    if (!value.empty() && value != "0" && value != "1")
+        invalidArgument("PELLUCID_PROFILING is \"", value, "\"; it must be 0 or 1");
+    return value != "0";
+}
+
+}  // namespace
+
+Ref<Device> Device::create(const PelDeviceDesc& desc) {
+    const bool profiling = wantsProfiling(desc);
+    const uint32_t index = cl::selectDevice(desc.selector);
     cl_device_id id = cl::allDevices().at(index);
     cl_int code = CL_SUCCESS;
     cl::Context context(clCreateContext(nullptr, 1, &id, nullptr, nullptr, &code));
     cl::check(code, "clCreateContext");
-    cl::Queue queue(clCreateCommandQueue(context.get(), id, CL_QUEUE_PROFILING_ENABLE, &code));
+    cl::Queue queue(
+        clCreateCommandQueue(context.get(), id, profiling ? CL_QUEUE_PROFILING_ENABLE : 0, &code));
     cl::check(code, "clCreateCommandQueue");
-    return make<Device>(context, id, queue, cl::describe(id, index));
+    Ref<Device> device = make<Device>(context, id, queue, cl::describe(id, index));
+    device->allocate_ = desc.allocate, device->allocateUser_ = desc.allocateUser;
+    return device;
 }
 
 Ref<Device> Device::createFromCl(cl_context context, cl_device_id id, cl_command_queue queue) {
@@ -74,7 +93,7 @@ cl::Event Device::launch(cl::Launch& launch, const cl::Range& range, cl_command_
 }
 
 cl::Memory Device::allocate(size_t bytes, const void* initial) {
-    return allocate(bytes, initial, !initial && cl::BuildScope::zeroes());
+    return allocate(bytes, initial, false);
 }
 
 cl::Memory Device::allocateZeros(size_t bytes) {
@@ -85,22 +104,39 @@ cl::Memory Device::allocate(size_t bytes, const void* initial, bool zeros) {
     if (bytes > info_.maxAllocationBytes)
         fail(PEL_ERROR_OUT_OF_MEMORY, bytes, " bytes are more than this device allocates at once (",
              info_.maxAllocationBytes, ")");
-    cl::Memory memory;
-    if (info_.type == PEL_DEVICE_CPU && info_.sharedMemory)
+    if (CountedRun::on()) {
+        cl_int code = CL_SUCCESS;
+        cl::Memory tiny(clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, 16, nullptr, &code));
+        cl::check(code, "clCreateBuffer");
+        return tiny;
+    }
+    cl::Memory memory = allocate_ ? hostsMemory(bytes) : cl::Memory();
+    if (memory) {
+        if (initial) writeAside(memory.get(), bytes, initial);
+    } else if (info_.type == PEL_DEVICE_CPU && info_.sharedMemory) {
         memory = cl::createInHostMemory(context_.get(), bytes, initial, zeros);
+        zeros = zeros && !memory;
+    }
     if (!memory) {
         cl_int code = CL_SUCCESS;
         const cl_mem_flags flags = CL_MEM_READ_WRITE | (initial ? CL_MEM_COPY_HOST_PTR : 0);
         memory = cl::Memory(clCreateBuffer(context_.get(), flags, bytes, const_cast<void*>(initial), &code));
         if (code != CL_SUCCESS) cl::check(code, text("clCreateBuffer(", bytes, " bytes)").c_str());
-        const cl_uchar zero = 0;
-        if (zeros)
-            cl::check(clEnqueueFillBuffer(queue(), memory.get(), &zero, 1, 0, bytes, 0, nullptr, nullptr),
-                      "clEnqueueFillBuffer");
     }
+    if (const cl_uchar zero = 0; zeros)
+        cl::check(clEnqueueFillBuffer(queue(), memory.get(), &zero, 1, 0, bytes, 0, nullptr, nullptr),
+                  "clEnqueueFillBuffer");
     std::lock_guard lock(mutex_);
     stats_.bytesAllocated += bytes;
     if (initial) stats_.bytesToDevice += bytes;
+    return memory;
+}
+
+cl::Memory Device::hostsMemory(size_t bytes) const {
+    cl::Memory memory(cl_mem(allocate_(allocateUser_, context_.get(), bytes)));
+    if (!memory) fail(PEL_ERROR_OUT_OF_MEMORY, "PelDeviceDesc.allocate has no ", bytes, " bytes");
+    if (const size_t size = cl::info<size_t>(memory.get(), CL_MEM_SIZE); size < bytes)
+        invalidArgument("PelDeviceDesc.allocate gave a buffer of ", size, " bytes; ", bytes, " are needed");
     return memory;
 }
 
@@ -120,14 +156,33 @@ void Device::read(cl_mem memory, size_t offset, size_t bytes, void* destination,
 
 void Device::write(cl_mem memory, size_t offset, size_t bytes, const void* source, bool blocking,
                    cl_command_queue queue) {
+    if (CountedRun::on()) return;
     cl::check(clEnqueueWriteBuffer(queue ? queue : queue_.get(), memory, blocking, offset, bytes, source, 0,
                                    nullptr, nullptr),
               "clEnqueueWriteBuffer");
     countTransfer(bytes, 0);
 }
 
+void Device::writeLater(cl_mem memory, std::vector<unsigned char> bytes) {
+    if (CountedRun::on()) return;
+    auto kept = std::make_unique<std::vector<unsigned char>>(std::move(bytes));
+    cl_event written = nullptr;
+    cl::check(
+        clEnqueueWriteBuffer(queue(), memory, CL_FALSE, 0, kept->size(), kept->data(), 0, nullptr, &written),
+        "clEnqueueWriteBuffer");
+    countTransfer(kept->size(), 0);
+    const cl::Event event(written);
+    const auto release = [](cl_event, cl_int, void* bytes) {
+        delete static_cast<std::vector<unsigned char>*>(bytes);
+    };
+    if (clSetEventCallback(written, CL_COMPLETE, release, kept.get()) != CL_SUCCESS)
+        finish();
+    else
+        kept.release();
+}
+
 void Device::exchange(cl_mem memory, size_t bytes, const void* source, void* destination) {
-    if (bytes == 0) return;
+    if (bytes == 0 || CountedRun::on()) return;
     const cl::Queue queue = anotherQueue();
     if (!info_.sharedMemory)
         return source ? write(memory, 0, bytes, source, true, queue.get())
@@ -145,7 +200,14 @@ void Device::exchange(cl_mem memory, size_t bytes, const void* source, void* des
     cl::check(clFinish(queue.get()), "clFinish");
 }
 
+void Device::copy(cl_mem from, cl_mem to, size_t offset, size_t bytes) {
+    if (CountedRun::on()) return;
+    cl::check(clEnqueueCopyBuffer(queue(), from, to, 0, offset, bytes, 0, nullptr, nullptr),
+              "clEnqueueCopyBuffer");
+}
+
 void Device::fill(cl_mem memory, size_t offset, size_t bytes, uint32_t word) {
+    if (CountedRun::on()) return;
     cl::check(clEnqueueFillBuffer(queue(), memory, &word, sizeof word, offset, bytes, 0, nullptr, nullptr),
               "clEnqueueFillBuffer");
 }

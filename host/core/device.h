@@ -1,19 +1,27 @@
 // One OpenCL device with its context, queue, programs and counters.
 #pragma once
-#include <mutex>
-#include <vector>
-
 #include "cl/launch.h"
 #include "cl/program_cache.h"
 #include "core/object.h"
 
 namespace pel {
 
+// While one lives, what this thread allocates is only counted: buffers are tiny, and nothing is sent to them.
+class CountedRun {
+  public:
+    CountedRun() { on_ = true; }
+    ~CountedRun() { on_ = false; }
+    static bool on() { return on_; }
+
+  private:
+    inline static thread_local bool on_ = false;
+};
+
 class Device final : public Object {
   public:
     static constexpr Kind kind = Kind::device;
 
-    static Ref<Device> create(const char* selector);
+    static Ref<Device> create(const PelDeviceDesc& desc);
     static Ref<Device> createFromCl(cl_context context, cl_device_id device, cl_command_queue queue);
 
     const PelDeviceInfo& info() const { return info_; }
@@ -25,6 +33,13 @@ class Device final : public Object {
     // Enqueues on the in-order queue, or on another one of this context, and counts the launch. Returns its
     // event (empty for an empty range).
     cl::Event launch(cl::Launch& launch, const cl::Range& range, cl_command_queue queue = nullptr);
+    // The launch of a kernel with these arguments, whose event goes to `events`.
+    template <class... Values>
+    void launch(std::vector<cl::Event>& events, const cl::Program& program, const char* kernel,
+                const cl::Range& range, const Values&... values) {
+        cl::Launch one(program, kernel, values...);
+        events.push_back(launch(one, range));
+    }
     // For work that a call waits for: the device's own queue may wait for an event that the caller sets
     // later.
     cl::Queue anotherQueue() const;
@@ -38,6 +53,8 @@ class Device final : public Object {
               cl_command_queue queue = nullptr);
     void write(cl_mem memory, size_t offset, size_t bytes, const void* source, bool blocking,
                cl_command_queue queue = nullptr);
+    // Enqueues the write of these bytes, from the memory's first one on.
+    void writeLater(cl_mem memory, std::vector<unsigned char> bytes);
     // The first bytes of memory that no queued command uses, at once: on another queue, and with shared
     // memory without a transfer.
     void readOnSideQueue(cl_mem memory, size_t bytes, void* destination) {
@@ -47,6 +64,8 @@ class Device final : public Object {
         exchange(memory, bytes, source, nullptr);
     }
 
+    // Enqueues a copy from the first byte of `from` on.
+    void copy(cl_mem from, cl_mem to, size_t offset, size_t bytes);
     // Enqueues: fills `bytes`, a multiple of 4, from `offset` on with copies of `word`.
     void fill(cl_mem memory, size_t offset, size_t bytes, uint32_t word);
 
@@ -64,6 +83,7 @@ class Device final : public Object {
     ~Device() override;
     void foldEvents();
     cl::Memory allocate(size_t bytes, const void* initial, bool zeros);
+    cl::Memory hostsMemory(size_t bytes) const;
     void exchange(cl_mem memory, size_t bytes, const void* source, void* destination);
 
     cl::Context context_;
@@ -72,6 +92,8 @@ class Device final : public Object {
     PelDeviceInfo info_;
     cl::ProgramCache programs_;
     bool profiling_;
+    PelAllocateCallback allocate_ = nullptr;
+    void* allocateUser_ = nullptr;
 
     std::mutex mutex_;  // guards the rest
     std::vector<cl::Event> pending_;

@@ -3,14 +3,20 @@
 #include <mutex>
 
 #include "cl/machine.h"
+#include "core/handle_table.h"
 
 namespace pel {
 namespace {
 
 std::mutex callbackMutex;
-PelErrorCallback callback = nullptr;
-void* callbackUser = nullptr;
+struct Callbacks {
+    PelErrorCallback error = nullptr;
+    void* errorUser = nullptr;
+    PelLogCallback log = nullptr;
+    void* logUser = nullptr;
+} callbacks;
 thread_local std::string message;
+thread_local bool telling = false;  // a callback runs on this thread
 
 // If another thread held the lock when this process was forked, nobody would ever release it.
 std::unique_lock<std::mutex> lockCallback() {
@@ -30,38 +36,67 @@ void keep(const char* what) noexcept {
     }
 }
 
+// Calls `tell` with the callbacks, unless one of them is running on this thread: what it does wrong might go
+// wrong again and again.
+template <class Tell>
+void call(Tell&& tell) {
+    if (telling) return;
+    Callbacks now;
+    {
+        const auto lock = lockCallback();
+        now = callbacks;
+    }
+    telling = true;
+    try {
+        tell(now);
+    } catch (...) {  // no exception may leave through C
+    }
+    telling = false;
+}
+
 }  // namespace
 
-void setErrorCallback(PelErrorCallback newCallback, void* user) {
+void setErrorCallback(PelErrorCallback callback, void* user) {
     const auto lock = lockCallback();
-    callback = newCallback;
-    callbackUser = user;
+    callbacks.error = callback;
+    callbacks.errorUser = user;
+}
+
+void setLogCallback(PelLogCallback callback, void* user) {
+    const auto lock = lockCallback();
+    callbacks.log = callback;
+    callbacks.logUser = user;
 }
 
 const char* lastErrorMessage() {
     return message.c_str();
 }
 
+void warn(const std::string& lines) {
+    if (lines.empty()) return;
+    const std::string object = nameInCall();  // callbacks may call the library
+    call([&](const Callbacks& to) {
+        std::istringstream each(lines);
+        for (std::string line; to.log && std::getline(each, line);)
+            to.log(to.logUser, PEL_LOG_WARNING, object.c_str(), line.c_str());
+    });
+}
+
 PelError report(PelError code, const char* what) noexcept {
-    keep(what);
-    // An error inside the callback is not reported to the callback again: it might fail again and again.
-    thread_local bool telling = false;
-    if (telling) return code;
-    PelErrorCallback call;
-    void* user;
-    {
-        const auto lock = lockCallback();
-        call = callback;
-        user = callbackUser;
-    }
-    if (!call) return code;
-    telling = true;
+    std::string object, whole;
     try {
-        call(user, code, what);
-    } catch (...) {  // no exception may leave through C
+        object = nameInCall();
+        whole = object.empty() ? what : object + ": " + what;
+    } catch (...) {
+        object.clear();
     }
-    telling = false;
-    keep(what);
+    const char* const said = whole.empty() ? what : whole.c_str();
+    keep(said);
+    call([&](const Callbacks& to) {
+        if (to.error) to.error(to.errorUser, code, said);
+        if (to.log) to.log(to.logUser, PEL_LOG_ERROR, object.c_str(), what);
+    });
+    keep(said);
     return code;
 }
 

@@ -1,13 +1,15 @@
-// The last error of each thread and the process's error callback.
+// The last error of each thread, and the process's callbacks for errors and warnings.
 #pragma once
-
 #include "cl/error.h"
 
 namespace pel {
 
 void setErrorCallback(PelErrorCallback callback, void* user);
+void setLogCallback(PelLogCallback callback, void* user);
 const char* lastErrorMessage();
-// Stores the message for this thread, calls the callback, returns the code.
+// Tells the log callback of each line.
+void warn(const std::string& lines);
+// Stores the message for this thread, calls the callbacks, returns the code.
 PelError report(PelError code, const char* message) noexcept;
 
 }  // namespace pel

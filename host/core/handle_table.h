@@ -1,6 +1,5 @@
-// The C handles. A handle is not an address but the index of a slot and the generation of that slot. The same
-// handle is never returned twice in a process, so a released, mistaken or invented handle is an error and
-// never another object. A look-up takes no lock.
+// The C handles. A handle is not an address but a number. The same handle is never returned twice in a
+// process, so a released, mistaken or invented handle is an error and never another object.
 #pragma once
 #include "core/object.h"
 
@@ -15,6 +14,11 @@ Ref<Object> lookUpHandle(const void* handle, Kind kind);
 // Raises or lowers the callers' count; errors as above. At 0 the table releases the object.
 void retainHandle(const void* handle, Kind kind);
 void releaseHandle(const void* handle, Kind kind);
+// Of any kind. pelSetName.
+void nameHandle(const void* handle, const char* name);
+// The name of the first object with one that this thread looked up since beginCall(); "" if none has.
+const char* nameInCall();
+void beginCall();
 // Number of handles in use, each counted once however often it was retained.
 uint64_t liveHandles();
 

@@ -24,6 +24,11 @@ const FormatInfo* formatInfo(PelFormat format) {
     return index > 0 && index < std::size(formats) ? &formats[index] : nullptr;
 }
 
+const cl::Memory& ImageView::memory() const {
+    static const cl::Memory none;
+    return buffer ? buffer->memory() : none;
+}
+
 uint64_t ImageView::byteEnd() const {
     const uint64_t planes = info().planar ? (info().components - 1) * planeStride : 0;
     return byteOffset + planes + (height - 1) * rowStride + (width - 1) * pixelStride + info().pixelBytes;

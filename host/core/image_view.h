@@ -26,6 +26,7 @@ struct ImageView {
 
     explicit operator bool() const { return bool(buffer); }
     const FormatInfo& info() const { return *formatInfo(format); }
+    const cl::Memory& memory() const;  // none for an empty view
     // Bytes from the first to one past the last.
     uint64_t byteEnd() const;
     bool tightlyPacked() const { return pixelStride == info().pixelBytes; }

@@ -2,7 +2,6 @@
 #pragma once
 #include <algorithm>
 
-#include "cl/launch.h"
 #include "core/device.h"
 
 namespace pel {
@@ -33,9 +32,26 @@ inline size_t groupsFor(const Device& device, size_t tiles) {
 inline cl::Range itemRange(const Device& device, size_t items) {
     return cl::folded(items, launchPolicy(device).texels);
 }
+// A vector of pixels or blocks each.
+inline cl::Range vectorRange(const Device& device, uint32_t width, uint32_t height) {
+    const uint32_t lanes = device.info().mathWidth;
+    return itemRange(device, size_t((width + lanes - 1) / lanes) * height);
+}
+// Levels of a pyramid that one launch makes of a finer one, of `left` that follow, and its range for the
+// first of them. One lane: a group for each of the blocks that the last of these levels has. Of several
+// lanes each work-item has PEL_WIDTH blocks.
+inline uint32_t levelsPerLaunch(const Device& device, uint32_t left) {
+    constexpr uint32_t usual = 5, most = 6;  // 4 and 16 blocks of the first level per item
+    return device.info().mathWidth > 1 ? 1 : left <= most ? left : usual;
+}
 inline cl::Range groupRange(const Device& device, size_t groups) {
     const size_t group = launchPolicy(device).texels;
     return {{groups * group, 1, 1}, {group, 1, 1}};
+}
+inline cl::Range blockRange(const Device& device, uint32_t width, uint32_t height, uint32_t levels) {
+    if (device.info().mathWidth > 1) return vectorRange(device, width, height);
+    const uint32_t last = levels - 1;
+    return groupRange(device, size_t(((width - 1) >> last) + 1) * (((height - 1) >> last) + 1));
 }
 
 }  // namespace pel

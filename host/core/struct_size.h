@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstring>
 #include <iterator>
+#include <vector>
 
 #include "cl/error.h"
 
@@ -59,6 +60,20 @@ void writeStruct(T* to, const T& value, const char* name) {
     checkStructSize<T>(size, name);
     std::memcpy(to, &value, std::min<size_t>(size, sizeof(T)));
     to->structSize = size;
+}
+
+// An array of `room` structures, each as long as the first says. Nothing is written if there are more.
+template <class T>
+void writeStructs(T* to, uint32_t room, const std::vector<T>& values, const char* name) {
+    if (values.size() > room)
+        invalidArgument("there are ", values.size(), " structures ", name, " and room for ", room);
+    if (values.empty()) return;
+    const uint32_t size = to ? to->structSize : 0;
+    for (size_t i = 0; i < values.size(); ++i) {
+        T* const one = reinterpret_cast<T*>(reinterpret_cast<char*>(to) + i * size);
+        if (i > 0) one->structSize = size;
+        writeStruct(one, values[i], name);
+    }
 }
 
 }  // namespace pel

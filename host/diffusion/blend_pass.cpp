@@ -1,12 +1,8 @@
 // The shader's passes before and after the scattering methods. They read irradiance from its slot of the
 // plan and replace it by their result.
-#include <algorithm>
-#include <optional>
-
 #include "diffusion/blend_scatter.h"
 #include "diffusion/passes.h"
 #include "diffusion/scatter_material.h"
-#include "shading/scratch_image.h"
 
 namespace pel {
 namespace {
@@ -121,7 +117,7 @@ class WeighPass final : public Pass {
 
 }  // namespace
 
-constinit const PassKind prepareScatterPass = passKind<PreparePass>();
-constinit const PassKind weighScatterPass = passKind<WeighPass>();
+constinit const PassKind prepareScatterPass = passKind<PreparePass>("prepare_scatter");
+constinit const PassKind weighScatterPass = passKind<WeighPass>("weigh_scatter");
 
 }  // namespace pel

@@ -4,7 +4,6 @@
 
 #include "core/launch_policy.h"
 #include "shading/launch_ranges.h"
-#include "shading/scratch_image.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
@@ -34,36 +33,28 @@ void BlendScatter::prepare(const std::map<uint32_t, PelBlendMaterial>& materials
 }
 
 std::vector<cl::ProgramKey> BlendScatter::programs(const BlendImages& images) const {
-    const auto code = [](const ImageView& view) { return text(formatCode(view, 1)); };
     return {{{"diffusion/blend_scatter.cl"},
-             {{"PEL_WIDTH", text(1)},
-              {"PEL_FORMAT_IRRADIANCE", code(images.irradiance)},
-              {"PEL_FORMAT_SCATTERED", code(images.scattered)},
-              {"PEL_FORMAT_MATERIAL", code(images.ids)},
-              {"PEL_FORMAT_BACK", code(images.back)},
-              {"PEL_FORMAT_SCATTER_WEIGHT", code(images.weight)},
-              {"PEL_FORMAT_ALBEDO", code(images.albedo)},
-              {"PEL_FORMAT_OUT", code(images.out)}}}};
-}
-
-void BlendScatter::launch(cl::Launch& launch, const BlendImages& images, std::vector<cl::Event>& events) {
-    events.push_back(
-        device_->launch(launch, itemRange(*device_, size_t(images.out.width) * images.out.height)));
+             {{"PEL_WIDTH", 1},
+              {"PEL_FORMAT_IRRADIANCE", formatCode(images.irradiance, 1)},
+              {"PEL_FORMAT_SCATTERED", formatCode(images.scattered, 1)},
+              {"PEL_FORMAT_MATERIAL", formatCode(images.ids, 1)},
+              {"PEL_FORMAT_BACK", formatCode(images.back, 1)},
+              {"PEL_FORMAT_SCATTER_WEIGHT", formatCode(images.weight, 1)},
+              {"PEL_FORMAT_ALBEDO", formatCode(images.albedo, 1)},
+              {"PEL_FORMAT_OUT", formatCode(images.out, 1)}}}};
 }
 
 void BlendScatter::enqueuePreparation(const BlendImages& images, std::vector<cl::Event>& events) {
-    cl::Launch one(device_->programs().get(programs(images)[0]), "prepare_irradiance");
-    one.arg(frame_).arg(materials_).arg(memoryOf(images.irradiance)).arg(memoryOf(images.ids));
-    one.arg(memoryOf(images.back)).arg(memoryOf(images.albedo)).arg(memoryOf(images.out));
-    launch(one, images, events);
+    device_->launch(events, device_->programs().get(programs(images)[0]), "prepare_irradiance",
+                    itemRange(*device_, size_t(images.out.width) * images.out.height), frame_, materials_,
+                    images.irradiance, images.ids, images.back, images.albedo, images.out);
 }
 
 void BlendScatter::enqueueFinish(const BlendImages& images, std::vector<cl::Event>& events) {
-    cl::Launch one(device_->programs().get(programs(images)[0]), "finish_scatter");
-    one.arg(frame_).arg(materials_).arg(memoryOf(images.irradiance)).arg(memoryOf(images.scattered));
-    one.arg(memoryOf(images.ids)).arg(memoryOf(images.weight)).arg(memoryOf(images.albedo));
-    one.arg(memoryOf(images.out));
-    launch(one, images, events);
+    device_->launch(events, device_->programs().get(programs(images)[0]), "finish_scatter",
+                    itemRange(*device_, size_t(images.out.width) * images.out.height), frame_, materials_,
+                    images.irradiance, images.scattered, images.ids, images.weight, images.albedo,
+                    images.out);
 }
 
 Rgb throughSheet(const Profile& profile, double scale, double thickness) {

@@ -1,8 +1,5 @@
 // The steps before and after the scattering methods (kernels/diffusion/blend_scatter.cl).
 #pragma once
-#include <map>
-#include <vector>
-
 #include "core/image_view.h"
 #include "lut/profile.h"
 #include "shared/blend.h"
@@ -25,8 +22,6 @@ class BlendScatter {
     void enqueueFinish(const BlendImages& images, std::vector<cl::Event>& events);
 
   private:
-    void launch(cl::Launch& launch, const BlendImages& images, std::vector<cl::Event>& events);
-
     Ref<Device> device_;
     PelBlendFrame sent_{};
     cl::Memory frame_, materials_;

@@ -1,12 +1,10 @@
 // The shader's pass that measures mean curvature for the gain of curved bodies
 // (kernels/diffusion/mean_curvature.cl), where the caller brings none.
-#include <algorithm>
-
+#include "core/launch_policy.h"
 #include "diffusion/passes.h"
 #include "diffusion/sent_constants.h"
 #include "shading/features.h"
 #include "shading/launch_ranges.h"
-#include "shading/scratch_image.h"
 #include "shading/shading_constants.h"
 #include "shared/mean_curvature.h"
 
@@ -45,9 +43,7 @@ class CurvaturePass final : public Pass {
     size_t bytes() const override { return out_ ? out_->bytes() : 0; }
 
     std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
-        const auto code = [&](const ImageView& view) {
-            return text(formatCode(view, device.info().mathWidth));
-        };
+        const auto code = [&](const ImageView& view) { return formatCode(view, device.info().mathWidth); };
         return {{{"diffusion/mean_curvature.cl"},
                  {{"PEL_FORMAT_NORMAL", code(normals_)},
                   {"PEL_FORMAT_POSITION", code(positions_)},
@@ -82,15 +78,10 @@ class CurvaturePass final : public Pass {
 
     void enqueue(PassWork& work) override {
         const uint32_t width = work.plan.state.images[PEL_SLOT_RADIANCE].width,
-                       rows = (work.rows.end - work.rows.begin) * PEL_TILE_HEIGHT,
-                       lanes = work.device.info().mathWidth;
-        cl::Launch launch(program(), "mean_curvature");
-        launch.arg(constants_.memory())
-            .arg(memoryOf(normals_))
-            .arg(memoryOf(positions_ ? positions_ : depth_));
-        launch.arg(memoryOf(ids_)).arg(out_->memory());
-        launch.arg(cl_uint(work.rows.begin * PEL_TILE_HEIGHT)).arg(cl_uint(rows)).arg(cl_uint(outRow_));
-        work.launch(launch, cl::folded(size_t((width + lanes - 1) / lanes) * rows, PEL_CURVATURE_GROUP));
+                       rows = (work.rows.end - work.rows.begin) * PEL_TILE_HEIGHT;
+        work.launch(program(), "mean_curvature", vectorRange(work.device, width, rows), constants_, normals_,
+                    positions_ ? positions_ : depth_, ids_, *out_, cl_uint(work.rows.begin * PEL_TILE_HEIGHT),
+                    cl_uint(rows), cl_uint(outRow_));
     }
 
   private:
@@ -102,6 +93,6 @@ class CurvaturePass final : public Pass {
 
 }  // namespace
 
-constinit const PassKind curvaturePass = passKind<CurvaturePass>();
+constinit const PassKind curvaturePass = passKind<CurvaturePass>("mean_curvature");
 
 }  // namespace pel

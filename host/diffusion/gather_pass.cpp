@@ -1,9 +1,6 @@
 // The shader's passes of materials that scatter by taps: on a disk (PEL_SCATTERING_SCREEN with
 // scatterTaps), and separably (PEL_SCATTERING_SEPARABLE). They read irradiance from its slot of the plan
 // and replace it by the scattered light.
-#include <algorithm>
-#include <optional>
-
 #include "diffusion/gather_scatter.h"
 #include "diffusion/passes.h"
 #include "diffusion/scatter_material.h"
@@ -27,6 +24,7 @@ class GatherPass final : public Pass {
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
         images_ = {takeIrradiance(plan, device, out_), plan.state.images[PEL_SLOT_SCATTER_WEIGHT]};
+        addRadii(plan, images_.of);
         if (!scatter_) scatter_.emplace(device, form);
         materials_.clear();
         sources_.reset();
@@ -82,7 +80,9 @@ class GatherPass final : public Pass {
 
 }  // namespace
 
-constinit const PassKind diskPass = passKind<GatherPass<Form::disk>>(1u << PEL_SCATTERING_SCREEN);
-constinit const PassKind separablePass = passKind<GatherPass<Form::lines>>(1u << PEL_SCATTERING_SEPARABLE);
+constinit const PassKind diskPass =
+    passKind<GatherPass<Form::disk>>("scatter_disk", 1u << PEL_SCATTERING_SCREEN);
+constinit const PassKind separablePass =
+    passKind<GatherPass<Form::lines>>("scatter_separable", 1u << PEL_SCATTERING_SEPARABLE);
 
 }  // namespace pel

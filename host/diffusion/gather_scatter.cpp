@@ -1,14 +1,11 @@
 #include "diffusion/gather_scatter.h"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "core/launch_policy.h"
 #include "diffusion/gather_taps.h"
 #include "shading/launch_ranges.h"
-#include "shading/scratch_image.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
@@ -57,20 +54,14 @@ enum Program { SURFACE, GATHER };
 }  // namespace
 
 void GatherScatter::sendMaterials(const std::map<uint32_t, Material>& materials) {
-    std::fill_n(frame_.materialOf, PEL_DIFFUSION_IDS, 0);
-    std::vector<Material> distinct;
-    for (const auto& [id, material] : materials) {
-        auto found = std::find(distinct.begin(), distinct.end(), material);
-        if (found == distinct.end()) found = distinct.insert(found, material);
-        frame_.materialOf[id] = uint32_t(found - distinct.begin()) + 1;
-    }
+    const std::vector<Material> distinct = distinctOf(materials, frame_.materialOf);
     if (materials == materials_ && described_) return;
     std::vector<PelGatherMaterial> described;
     std::vector<PelGatherTap> taps;
     std::vector<float> values;
     for (const Material& material : distinct) {
         const ProfileShape& shape = material.profile->shape();
-        ProfileNodes nodes = profileNodes(shape, material.scale);
+        ProfileNodes nodes = profileNodes(shape, material.scale, {});
         const double reach = nodes.table.reach;
         if (form_ == Form::lines) takeLineSpread(nodes, shape, material.scale);
         PelGatherMaterial m{};
@@ -117,76 +108,56 @@ void GatherScatter::prepare(const std::map<uint32_t, Material>& materials, const
     frame_.position = describeImage(of.positions ? of.positions : of.depth);
     frame_.ids = describeImage(of.ids);
     frame_.weight = describeImage(images.weight);
+    frame_.radii = describeImage(of.radii);
     frame_.out = describeImage(of.out);
     std::fill(std::begin(frame_.sources), std::end(frame_.sources), 0u);
     for (uint32_t id = 0; id < PEL_DIFFUSION_IDS; ++id)
         if (sources[id] || materials.contains(id)) frame_.sources[id / 32] |= 1u << id % 32;
     sendMaterials(materials);
-    const size_t pixels = size_t(frame_.width) * frame_.height, pointBytes = pixels * pixelBytes(form_),
-                 tileBytes = size_t(frame_.tilesX) * frame_.tilesY * sizeof(cl_uint);
-    if (pointBytes != pointBytes_) {
-        points_ = rows_ = cl::Memory();
-        pointBytes_ = 0;
-        points_ = device_->allocate(pixels * PEL_GATHER_FLOATS * sizeof(float));
-        if (form_ == Form::lines) rows_ = device_->allocate(pixels * 4 * sizeof(float));
-        pointBytes_ = pointBytes;
-    }
-    if (tileBytes != tileBytes_) tiles_ = device_->allocate(tileBytes), tileBytes_ = tileBytes;
+    const size_t pixels = size_t(frame_.width) * frame_.height;
+    points_.resize(*device_, pixels * PEL_GATHER_FLOATS * sizeof(float));
+    if (form_ == Form::lines) rows_.resize(*device_, pixels * 4 * sizeof(float));
+    tiles_.resize(*device_, size_t(frame_.tilesX) * frame_.tilesY * sizeof(cl_uint));
     if (!counters_) counters_ = device_->allocate(PEL_DIFFUSION_COUNTERS * sizeof(cl_uint));
     constants_.send(*device_, frame_);
 }
 
 std::vector<cl::ProgramKey> GatherScatter::programs(const GatherImages& images) const {
     const ScatterImages& of = images.of;
-    const auto code = [&](const ImageView& view) { return text(formatCode(view, 1)); };
-    const std::string one = text(1);
-    const cl::Defines inputs{
-        {"PEL_WIDTH", one},
-        {"PEL_FORMAT_IRRADIANCE", code(of.irradiance)},
-        {"PEL_FORMAT_POSITION", code(of.positions)},
-        {"PEL_FORMAT_DEPTH", of.positions ? text(0) : code(of.depth)},
-        {"PEL_FORMAT_MATERIAL", code(of.ids)},
-        {"PEL_FORMAT_SCATTER_WEIGHT", code(images.weight)},
-        {"PEL_WEIGHT_COMPONENTS", text(images.weight ? images.weight.info().components : 0)}};
-    const cl::Defines outputs{
-        {"PEL_WIDTH", one}, {"PEL_FORMAT_IRRADIANCE", code(of.irradiance)}, {"PEL_FORMAT_OUT", code(of.out)}};
-    return {
-        {{"diffusion/gather_surface.cl"}, inputs},
-        {{form_ == Form::disk ? "diffusion/scatter_disk.cl" : "diffusion/scatter_separable.cl"}, outputs}};
+    return {{{"diffusion/gather_surface.cl"},
+             {{"PEL_WIDTH", 1},
+              {"PEL_FORMAT_IRRADIANCE", formatCode(of.irradiance, 1)},
+              {"PEL_FORMAT_POSITION", formatCode(of.positions, 1)},
+              {"PEL_FORMAT_DEPTH", of.positions ? 0 : formatCode(of.depth, 1)},
+              {"PEL_FORMAT_MATERIAL", formatCode(of.ids, 1)},
+              {"PEL_FORMAT_SCATTER_WEIGHT", formatCode(images.weight, 1)},
+              {"PEL_FORMAT_RADIUS", formatCode(of.radii, 1)},
+              {"PEL_RADIUS_COMPONENT", of.radiusComponent}}},
+            {{form_ == Form::disk ? "diffusion/scatter_disk.cl" : "diffusion/scatter_separable.cl"},
+             {{"PEL_WIDTH", 1},
+              {"PEL_FORMAT_IRRADIANCE", formatCode(of.irradiance, 1)},
+              {"PEL_FORMAT_OUT", formatCode(of.out, 1)}}}};
 }
 
 void GatherScatter::enqueue(const GatherImages& images, std::vector<cl::Event>& events) {
     std::vector<cl::Program> programs;
     for (const cl::ProgramKey& key : this->programs(images)) programs.push_back(device_->programs().get(key));
     const ScatterImages& of = images.of;
-    const auto launch = [&](cl::Launch& launch, const cl::Range& range) {
-        events.push_back(device_->launch(launch, range));
-    };
     device_->fill(counters_.get(), 0, PEL_DIFFUSION_COUNTERS * sizeof(cl_uint), 0);
-    cl::Launch points(programs[SURFACE], "gather_points");
-    points.arg(constants_.memory())
-        .arg(memoryOf(of.irradiance))
-        .arg(memoryOf(of.positions ? of.positions : of.depth));
-    points.arg(memoryOf(of.ids)).arg(memoryOf(images.weight)).arg(points_).arg(counters_);
-    launch(points, itemRange(*device_, size_t(frame_.width) * frame_.height));
+    device_->launch(events, programs[SURFACE], "gather_points",
+                    itemRange(*device_, size_t(frame_.width) * frame_.height), constants_, of.irradiance,
+                    of.positions ? of.positions : of.depth, of.ids, images.weight, of.radii, points_,
+                    counters_);
     const size_t tiles = size_t(frame_.tilesX) * frame_.tilesY;
-    cl::Launch areas(programs[SURFACE], "gather_areas");
-    areas.arg(constants_.memory()).arg(points_).arg(described_).arg(tiles_).arg(counters_);
-    launch(areas, groupRange(*device_, tiles));
-    const auto gather = [&](const char* kernel, auto&& arguments) {
-        cl::Launch one(programs[GATHER], kernel);
-        one.arg(constants_.memory()).arg(points_).arg(described_).arg(taps_).arg(nodes_).arg(tiles_);
-        arguments(one);
-        one.arg(counters_);
-        launch(one, groupRange(*device_, groupsFor(*device_, tiles)));
+    device_->launch(events, programs[SURFACE], "gather_areas", groupRange(*device_, tiles), constants_,
+                    points_, described_, tiles_, counters_);
+    const auto gather = [&](const char* kernel, const auto&... arguments) {
+        device_->launch(events, programs[GATHER], kernel, groupRange(*device_, groupsFor(*device_, tiles)),
+                        constants_, points_, described_, taps_, nodes_, tiles_, arguments..., counters_);
     };
-    const auto results = [&](cl::Launch& l) { l.arg(memoryOf(of.irradiance)).arg(memoryOf(of.out)); };
-    if (form_ == Form::disk) return gather("scatter_disk", results);
-    gather("filter_rows", [&](cl::Launch& l) { l.arg(rows_); });
-    gather("filter_columns", [&](cl::Launch& l) {
-        l.arg(rows_);
-        results(l);
-    });
+    if (form_ == Form::disk) return gather("scatter_disk", of.irradiance, of.out);
+    gather("filter_rows", rows_);
+    gather("filter_columns", rows_, of.irradiance, of.out);
 }
 
 ScatterCounts GatherScatter::counts() {

@@ -2,10 +2,7 @@
 // two lines (scatter_separable.cl).
 #pragma once
 #include <bitset>
-#include <map>
-#include <vector>
 
-#include "diffusion/profile_table.h"
 #include "diffusion/screen_scatter.h"
 #include "shared/gather.h"
 
@@ -40,7 +37,7 @@ class GatherScatter {
     // Programs come from the device's cache.
     void enqueue(const GatherImages& images, std::vector<cl::Event>& events);
     ScatterCounts counts();
-    size_t bytes() const { return pointBytes_ + tableBytes_ + tileBytes_; }
+    size_t bytes() const { return points_.bytes() + rows_.bytes() + tableBytes_ + tiles_.bytes(); }
     // Memory of a picture, beside tables.
     static uint64_t pixelBytes(Form form) {
         return (PEL_GATHER_FLOATS + (form == Form::lines ? 4 : 0)) * sizeof(float);
@@ -54,8 +51,9 @@ class GatherScatter {
     std::map<uint32_t, Material> materials_;
     PelGatherFrame frame_{};
     SentConstants<PelGatherFrame> constants_;
-    cl::Memory described_, taps_, nodes_, points_, rows_, tiles_, counters_;
-    size_t pointBytes_ = 0, tableBytes_ = 0, tileBytes_ = 0;
+    cl::Memory described_, taps_, nodes_, counters_;
+    SizedMemory points_, rows_, tiles_;
+    size_t tableBytes_ = 0;
 };
 
 }  // namespace pel

@@ -1,7 +1,5 @@
 // Places of the taps of methods that gather, and their shares of the light.
 #pragma once
-#include <vector>
-
 #include "lut/profile.h"
 #include "shared/gather.h"
 

@@ -1,7 +1,5 @@
 // A few Gaussians that represent a profile.
 #pragma once
-#include <vector>
-
 #include "lut/profile.h"
 
 namespace pel {

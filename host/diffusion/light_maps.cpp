@@ -1,7 +1,6 @@
 #include "diffusion/light_maps.h"
 
 #include <algorithm>
-#include <array>
 #include <cfloat>
 #include <cmath>
 

@@ -1,7 +1,5 @@
 // The shadow maps of a shader's lights as surfaces that light falls on (kernels/shared/light_space.h).
 #pragma once
-#include <vector>
-
 #include "shading/shader_state.h"
 #include "shared/light_space.h"
 

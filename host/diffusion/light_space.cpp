@@ -1,8 +1,6 @@
 #include "diffusion/light_space.h"
 
-#include <algorithm>
 #include <cstring>
-#include <utility>
 
 #include "core/launch_policy.h"
 #include "shading/features.h"
@@ -68,21 +66,10 @@ void LightSpace::describeLevels() {
     const auto sameLevels = [](const PelLightMap& a, const PelLightMap& b) {
         return !std::memcmp(a.level, b.level, sizeof a.level);
     };
-    if (bytes != pyramidBytes_ ||
-        !std::equal(now.begin(), now.end(), sent_.begin(), sent_.end(), sameLevels)) {
-        pyramid_ = cl::Memory();
-        pyramidBytes_ = 0;
-        pyramid_ = device_->allocateZeros(bytes);  // no light outside of the maps
-        pyramidBytes_ = bytes;
-    }
-    const size_t cellBytes = (size_t(cells) + 3) / 4 * 4;
-    if (cellBytes != cellBytes_) {
-        for (cl::Memory& marks : cells_) marks = device_->allocate(cellBytes);
-        cellBytes_ = cellBytes;
-        cellsKnown_ = false;
-    }
-    const size_t seenBytes = (size_t(seen) + 3) / 4 * 4;
-    if (seenBytes != seenBytes_) seen_ = device_->allocate(seenBytes), seenBytes_ = seenBytes;
+    if (!std::equal(now.begin(), now.end(), sent_.begin(), sent_.end(), sameLevels)) pyramid_ = SizedMemory();
+    pyramid_.resize(*device_, bytes, true);  // no light outside of the maps
+    for (SizedMemory& marks : cells_) known_ &= !marks.resize(*device_, (size_t(cells) + 3) / 4 * 4);
+    known_ &= !seen_.resize(*device_, (size_t(seen) + 3) / 4 * 4);
     mapUpload_.update(*device_, now.data(), now.size() * sizeof now[0]);
     sent_ = std::move(now);
 }
@@ -103,107 +90,92 @@ void LightSpace::prepare(const std::vector<ShaderLight>& lights, const float ori
                          size_t tileCount, size_t blocks) {
     maps_ = lightMaps(lights, origin, hidden_ ? narrowest / texelsPerReach : 0);
     if (empty_) return;
-    describeLevels();
-    const size_t hiddenBytes = hidden_ ? blocks * sizeof(float) : 0;
-    if (hiddenBytes != hiddenBytes_) {
-        hiddenMemory_ = cl::Memory();
-        if (hiddenBytes) hiddenMemory_ = device_->allocateZeros(hiddenBytes);
-        hiddenBytes_ = hiddenBytes;
+    images_.clear();
+    for (LightMap& map : maps_) {
+        const cl::Memory& memory = map.image.buffer->memory();
+        const auto found =
+            std::ranges::find_if(images_, [&](const cl::Memory& m) { return m.get() == memory.get(); });
+        map.constants.buffer = uint32_t(found - images_.begin());
+        if (found == images_.end()) images_.push_back(memory);
     }
-    const size_t bytes = tileCount * sizeof(cl_uint);
-    if (bytes != partBytes_) parts_ = device_->allocate(bytes), partBytes_ = bytes;
-    if (!counters_) counters_ = device_->allocate(PEL_LIGHT_COUNTERS * sizeof(cl_uint));
+    if (images_.size() > PEL_LIGHT_BUFFERS)
+        fail(PEL_ERROR_UNSUPPORTED, "the shadow maps of the lights lie in more than ", PEL_LIGHT_BUFFERS,
+             " buffers: put several of them into one, with byteOffset");
+    describeLevels();
+    hiddenSums_.resize(*device_, hidden_ ? blocks * sizeof(float) : 0, true);
+    parts_.resize(*device_, tileCount * sizeof(cl_uint));
 }
 
 void LightSpace::addFiles(cl::ProgramKey& program) const {
     for (const char* file : {"light_seen", "light_texels", "light_reduce", "light_classify"})
         program.files.push_back(text("diffusion/", file, ".cl"));
     program.files.push_back(hidden_ ? "diffusion/light_hidden.cl" : "diffusion/scatter_light.cl");
-    program.defines["PEL_HIDDEN"] = text(int(hidden_));
-    program.defines["PEL_FORMAT_SHADOW_MAP"] = text(mapFormat_);
-    program.defines["PEL_SHADOW_CONTENT"] = text(content_);
-}
-
-// Work-items, of a vector of texels each.
-cl::Range LightSpace::rows(const PelPyramidLevel& level) const {
-    const uint32_t lanes = device_->info().mathWidth;
-    return itemRange(*device_, size_t((level.width + lanes - 1) / lanes) * level.height);
+    program.defines["PEL_HIDDEN"] = int(hidden_);
+    program.defines["PEL_FORMAT_SHADOW_MAP"] = mapFormat_;
+    program.defines["PEL_SHADOW_CONTENT"] = content_;
 }
 
 void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory& screen,
                                  std::vector<cl::Event>& events) {
-    const auto memory = [](const ImageView& view) { return view ? view.buffer->memory() : cl::Memory(); };
     const auto launch = [&](cl::Launch& launch, const cl::Range& range) {
         events.push_back(device_->launch(launch, range));
     };
-    device_->fill(counters_.get(), 0, PEL_LIGHT_COUNTERS * sizeof(cl_uint), 0);
-    device_->fill(seen_.get(), 0, seenBytes_, 0);
-    if (!cellsKnown_) device_->fill(cells_[0].get(), 0, cellBytes_, ~0u);
-    cellsKnown_ = false;
-    device_->fill(cells_[1].get(), 0, cellBytes_, 0);
-    const uint32_t lanes = device_->info().mathWidth;
-    for (uint32_t k = 0; k < maps_.size(); ++k) {
-        cl::Launch seen(screen.program, "light_seen");
-        seen.arg(screen.frame).arg(memory(images.positions ? images.positions : images.depth));
-        seen.arg(memory(images.ids)).arg(mapUpload_.memory()).arg(cl_uint(k)).arg(memory(maps_[k].image));
-        seen.arg(screen.pyramid).arg(seen_);
-        launch(seen,
-               itemRange(*device_, size_t((screen.width + lanes - 1) / lanes) * ((screen.height + 1) / 2)));
+    ++frameNumber_;
+    if (!known_) {
+        for (const SizedMemory& marks : cells_)
+            device_->fill(marks.memory().get(), 0, marks.bytes(), 0x01010101u * ((frameNumber_ - 1) & 255u));
+        device_->fill(seen_.memory().get(), 0, seen_.bytes(), 0);
     }
-    for (uint32_t k = 0; k < maps_.size(); ++k) {
-        const PelLightMap& map = maps_[k].constants;
-        cl::Launch texels(screen.program, "light_texels");
-        texels.arg(mapUpload_.memory()).arg(cl_uint(k)).arg(memory(maps_[k].image)).arg(seen_);
-        texels.arg(cells_[0]).arg(cells_[1]).arg(pyramid_);
-        launch(texels, rows(map.level[0]));
-        for (uint32_t level = 1; level < map.levels; ++level) {
-            cl::Launch reduce(screen.program, "light_reduce");
-            reduce.arg(mapUpload_.memory()).arg(cl_uint(k)).arg(cl_uint(level));
-            reduce.arg(cells_[0]).arg(cells_[1]).arg(pyramid_);
-            launch(reduce, rows(map.level[level]));
-        }
+    known_ = false;
+    // An item for each vector of the largest map, and each map.
+    uint32_t width = 0, height = 0, levels = 0;
+    for (const LightMap& map : maps_) {
+        width = std::max(width, map.constants.level[0].width);
+        height = std::max(height, map.constants.level[0].height);
+        levels = std::max(levels, map.constants.levels);
+    }
+    const auto forMaps = [&](cl::Range range) {
+        range.items[2] = maps_.size();
+        return range;
+    };
+    cl::Launch seen(screen.program, "light_seen", screen.frame,
+                    images.positions ? images.positions : images.depth, images.ids, mapUpload_,
+                    screen.pyramid, seen_);
+    lightBufferArguments(seen, images_);
+    launch(seen, forMaps(vectorRange(*device_, screen.width, (screen.height + 1) / 2)));
+    cl::Launch texels(screen.program, "light_texels", mapUpload_, seen_, cells_[0], cells_[1], frameNumber_,
+                      pyramid_);
+    lightBufferArguments(texels, images_);
+    launch(texels, forMaps(vectorRange(*device_, width, height)));
+    for (uint32_t level = 1, count; level < levels; level += count) {
+        count = levelsPerLaunch(*device_, levels - level);
+        device_->launch(
+            events, screen.program, "light_reduce",
+            forMaps(blockRange(*device_, ((width - 1) >> level) + 1, ((height - 1) >> level) + 1, count)),
+            mapUpload_, level, count, cells_[0], cells_[1], frameNumber_, seen_, pyramid_);
     }
     std::swap(cells_[0], cells_[1]);
-    cellsKnown_ = true;
-    cl::Launch classify(screen.program, "light_classify");
-    classify.arg(screen.frame).arg(screen.pyramid).arg(screen.tables).arg(screen.nodes).arg(screen.tiles);
-    classify.arg(mapUpload_.memory()).arg(cl_uint(maps_.size())).arg(pyramid_).arg(parts_).arg(counters_);
-    launch(classify, itemRange(*device_, screen.tileCount));
+    known_ = std::ranges::all_of(maps_, [](const LightMap& map) { return map.constants.levels > 1; });
+    device_->launch(events, screen.program, "light_classify",
+                    device_->info().mathWidth > 1 ? itemRange(*device_, screen.tileCount)
+                                                  : groupRange(*device_, screen.tileCount),
+                    screen.frame, screen.pyramid, screen.tables, screen.nodes, screen.tiles, mapUpload_,
+                    cl_uint(maps_.size()), pyramid_, parts_, screen.counters);
 }
 
 void LightSpace::enqueueHidden(const ScreenMemory& screen, std::vector<cl::Event>& events) {
-    cl::Launch hidden(screen.program, "light_hidden");
-    hidden.arg(screen.frame)
-        .arg(screen.pyramid)
-        .arg(screen.tables)
-        .arg(screen.nodes)
-        .arg(screen.tiles)
-        .arg(screen.sums);
-    hidden.arg(parts_)
-        .arg(mapUpload_.memory())
-        .arg(cl_uint(maps_.size()))
-        .arg(pyramid_)
-        .arg(hiddenMemory_)
-        .arg(counters_);
-    events.push_back(device_->launch(hidden, groupRange(*device_, groupsFor(*device_, screen.tileCount))));
+    device_->launch(events, screen.program, "light_hidden",
+                    groupRange(*device_, groupsFor(*device_, screen.tileCount)), screen.frame, screen.pyramid,
+                    screen.tables, screen.nodes, screen.tiles, screen.sums, parts_, mapUpload_,
+                    cl_uint(maps_.size()), pyramid_, hiddenSums_, screen.counters);
 }
 
 void LightSpace::enqueueSums(const ScatterImages& images, const ScreenMemory& screen,
                              std::vector<cl::Event>& events) {
-    cl::Launch scatter(screen.program, "scatter_light");
-    scatter.arg(screen.frame).arg(screen.pyramid).arg(screen.tables).arg(screen.nodes).arg(parts_);
-    scatter.arg(mapUpload_.memory())
-        .arg(cl_uint(maps_.size()))
-        .arg(pyramid_)
-        .arg(images.out.buffer->memory())
-        .arg(counters_);
-    events.push_back(device_->launch(scatter, groupRange(*device_, groupsFor(*device_, screen.tileCount))));
-}
-
-LightCounts LightSpace::counts() {
-    LightCounts counts{};
-    if (counters_ && !maps_.empty()) device_->read(counters_.get(), 0, sizeof counts, &counts, true);
-    return counts;
+    device_->launch(events, screen.program, "scatter_light",
+                    groupRange(*device_, groupsFor(*device_, screen.tileCount)), screen.frame, screen.pyramid,
+                    screen.tables, screen.nodes, parts_, mapUpload_, cl_uint(maps_.size()), pyramid_,
+                    images.out, screen.counters);
 }
 
 }  // namespace pel

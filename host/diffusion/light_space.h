@@ -1,5 +1,6 @@
 // Shadow maps as lit surface beside a picture that scatters (docs/mathematics.md, section 10, "Light space").
 #pragma once
+#include "core/sized_memory.h"
 #include "diffusion/light_maps.h"
 #include "diffusion/scatter_images.h"
 #include "shading/scratch_image.h"
@@ -9,13 +10,9 @@ namespace pel {
 // Memory of ScreenScatter that the kernels read.
 struct ScreenMemory {
     cl::Program program;  // with the files of LightSpace::addFiles
-    cl::Memory frame, pyramid, tables, nodes, tiles, sums;
+    cl::Memory frame, pyramid, tables, nodes, tiles, sums, counters;
     uint32_t width, height;
     size_t tileCount;
-};
-
-struct LightCounts {
-    uint32_t pixels, texels, tiles;
 };
 
 class LightSpace {
@@ -39,31 +36,30 @@ class LightSpace {
                          std::vector<cl::Event>& events);
     // Sums occluded light; after the screen's sums by levels and before its last step.
     void enqueueHidden(const ScreenMemory& screen, std::vector<cl::Event>& events);
-    const cl::Memory& hidden() const { return hiddenMemory_; }
+    const cl::Memory& hidden() const { return hiddenSums_.memory(); }
     // Sums over the texels only; after the irradiance has been copied to the output.
     void enqueueSums(const ScatterImages& images, const ScreenMemory& screen, std::vector<cl::Event>& events);
-    LightCounts counts();
     static uint64_t bytesFor(const std::vector<ShaderLight>& lights, bool hidden);
     size_t bytes() const {
-        return pyramidBytes_ + seenBytes_ + hiddenBytes_ + 2 * cellBytes_ +
+        return pyramid_.bytes() + seen_.bytes() + hiddenSums_.bytes() + 2 * cells_[0].bytes() +
                maps_.size() * sizeof(PelLightMap);
     }
 
   private:
     void describeLevels();
     static uint64_t layOutLevels(std::vector<LightMap>& maps, bool hidden, uint64_t& seen, uint64_t& cells);
-    cl::Range rows(const PelPyramidLevel& level) const;
 
     Ref<Device> device_;
     std::vector<LightMap> maps_;
     std::vector<PelLightMap> sent_;
     bool empty_ = true, hidden_ = true;
-    bool cellsKnown_ = false;  // whether cells_[0] says what the pyramid holds
+    bool known_ = false;        // whether cells_[0] says what the pyramid holds, and seen_ is 0
+    uint32_t frameNumber_ = 0;  // of those that were enqueued
     uint32_t mapFormat_ = 0, content_ = 0;
     CachedUpload mapUpload_;
-    cl::Memory pyramid_, seen_, parts_, hiddenMemory_, counters_;
-    cl::Memory cells_[2];  // which have flux: before this frame, now
-    size_t pyramidBytes_ = 0, seenBytes_ = 0, partBytes_ = 0, hiddenBytes_ = 0, cellBytes_ = 0;
+    std::vector<cl::Memory> images_;  // distinct memory of the maps: PelLightMap.buffer
+    SizedMemory pyramid_, seen_, parts_, hiddenSums_;
+    SizedMemory cells_[2];  // which have flux: before this frame, now
 };
 
 }  // namespace pel

@@ -5,6 +5,6 @@
 namespace pel {
 
 extern const PassKind prepareScatterPass, diskPass, separablePass, texturePass, scatterPass, lightScatterPass,
-    weighScatterPass, curvaturePass;
+    weighScatterPass, curvaturePass, skinMapsPass;
 
 }  // namespace pel

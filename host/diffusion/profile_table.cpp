@@ -8,6 +8,10 @@
 namespace pel {
 namespace {
 
+// The factor 1 + k t of R (docs/mathematics.md, section 12) has the k with which even light on a sphere gains
+// this, times mean free path and curvature, to first order: k = 0.92 at a reflectance of 0.8.
+constexpr double gainPerCurvature = 1.06;
+
 // 2 pi r R dr over [begin, end], integrated over the logarithm of r by Gauss-Legendre with four points.
 // Within a sixteenth of an octave a profile is so close to a polynomial that the error is far below a
 // float's.
@@ -27,18 +31,23 @@ Rgb lightBetween(const ProfileShape& shape, double begin, double end) {
 }
 
 // Mean of R over a square at a distance that is as wide as blocks of a ring are at theirs, by 3 x 3 points
-// of Gauss (PEL_BLOCK_WIDTH). R bends upwards: its value at the middle would lose 2 to 4 % of the light.
-Rgb densityOfBlock(const ProfileShape& shape, double distance) {
+// of Gauss (PEL_BLOCK_WIDTH). R is convex: its value at the middle would lose 2 to 4 % of the light.
+template <class Density>
+Rgb meanOfBlock(const Density& density, double distance) {
     constexpr double at[] = {-0.7745966692414834, 0, 0.7745966692414834},
                      weights[] = {5 / 18., 8 / 18., 5 / 18.};
     const double half = PEL_BLOCK_WIDTH / 2 * distance;
     Rgb sum{};
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
-            const Rgb density = shape.radial(std::hypot(distance + at[i] * half, at[j] * half));
-            for (int c = 0; c < 3; ++c) sum[c] += weights[i] * weights[j] * density[c];
+            const Rgb there = density(std::hypot(distance + at[i] * half, at[j] * half));
+            for (int c = 0; c < 3; ++c) sum[c] += weights[i] * weights[j] * there[c];
         }
     return sum;
+}
+
+Rgb densityOfBlock(const ProfileShape& shape, double distance) {
+    return meanOfBlock([&](double r) { return shape.radial(r); }, distance);
 }
 
 // Radii at equal steps in the bits of their squares, as the device finds nodes.
@@ -46,8 +55,8 @@ double radiusOfNode(uint32_t bits) {
     return std::sqrt(double(std::bit_cast<float>(bits)));
 }
 
-// What a look-up between two nodes returns too much in the mean: lines between the values of a curve that
-// bends upwards lie above it.
+// What a look-up between two nodes returns too much in the mean: lines between the values of a convex curve
+// lie above it.
 template <class Density>
 Rgb aboveCurve(const Density& density, uint32_t bits, uint32_t step) {
     const Rgb a = density(radiusOfNode(bits)), b = density(radiusOfNode(bits + step)),
@@ -135,9 +144,52 @@ std::vector<Rgb> gaussiansOf(const Density& density, double widest, double reach
     return b;
 }
 
+// How much of the diffuse light on its far side a slab lets through, over the reflectance of a half-space, by
+// diffusion theory with an extrapolated boundary (docs/mathematics.md, section 12, "Slabs").
+class Slab {
+  public:
+    // `ratio`: the mean free path over Burley's d, of which s = sqrt(1 - albedo) is nearly a parabola.
+    explicit Slab(double ratio) {
+        const double x = std::clamp((ratio - 0.6663) / 4.31, 0.02, 0.5), s = x * (0.91 + 0.9 * x),
+                     absorbed = s * s;
+        decay_ = std::sqrt(3 * absorbed) * (1 - 0.4 * absorbed - 0.075 * absorbed * absorbed);
+        strength_ = 4 / 3. * decay_ * (1 + 1.3 * absorbed) * (1 + 1.17 * s) / ((1 - s) * (1 - 0.139 * s));
+    }
+    // `thickness`: in mean free paths.
+    double transmitted(double thickness) const { return strength_ / std::sinh(at(thickness)); }
+    // Its derivative.
+    double slope(double thickness) const {
+        return -transmitted(thickness) * decay_ / std::tanh(at(thickness));
+    }
+
+  private:
+    double at(double thickness) const { return decay_ * (thickness + 1.42); }
+    double decay_, strength_;
+};
+
+// Q(r): R + c Q, with c the cosine between the way to a sample and the inward normal, lets as much light
+// through every slab as a random walk does. Below one mean free path it is no more than `directed` R. What
+// would come from beyond `reach` is added to the outer half.
+template <class Density>
+Rgb densityThrough(const Density& density, const Rgb& beyond, const Rgb& path, const Rgb& meanDistance,
+                   double directed, double reach, double r) {
+    const Rgb R = density(r);
+    const double outer = 4 * std::max(2 * r / reach - 1, 0.0) / reach;  // its integral over r is 1
+    Rgb through{};
+    for (int c = 0; c < 3; ++c) {
+        if (!(path[c] > 0)) continue;
+        const Slab slab(2.5 * path[c] / meanDistance[c]);
+        const double t = r / path[c], missing = (slab.transmitted(t) - beyond[c]) / r;
+        const double q = (missing - slab.slope(t) / path[c]) / (2 * std::numbers::pi * r) - R[c] +
+                         outer * slab.transmitted(reach / path[c]) / (2 * std::numbers::pi * reach);
+        through[c] = std::max(t < 1 ? std::min(q, directed * R[c]) : q, 0.0);
+    }
+    return through;
+}
+
 }  // namespace
 
-ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
+ProfileNodes profileNodes(const ProfileShape& shape, double scale, const Rgb& meanFreePath) {
     const Rgb width = shape.width();
     const double narrowest = std::min({width[0], width[1], width[2]}),
                  widest = std::max({width[0], width[1], width[2]});
@@ -180,7 +232,7 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
     ProfileNodes result;
     const double reach = radiusOfNode(firstBits + uint32_t(nodes - 1) * step);
     const double fall = 4 / (reach * reach);  // of the widest Gaussian, which is 1/16 at the reach
-    result.table = {0, uint32_t(nodes), firstBits, float(reach), float(fall), 0, {}};
+    result.table = {0, uint32_t(nodes), firstBits, float(reach), float(fall), 0, {}, 1};
     result.values.resize(12 * nodes);
     for (int c = 0; c < 3; ++c) result.meanDistance[c] = distance[c] / within[c];
     const Rgb all = shares[nodes - 1];
@@ -210,6 +262,18 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
     };
     append([&](double r) { return perArea(shape.radial(r / scale)); });
     append([&](double r) { return perArea(densityOfBlock(shape, r / scale)); });
+    const Rgb& mean = result.meanDistance;
+    const double directed = 2 * gainPerCurvature * (meanFreePath[0] + meanFreePath[1] + meanFreePath[2]) /
+                            (mean[0] + mean[1] + mean[2]);
+    result.table.directed = float(directed);
+    if (directed == 0) return result.values.resize(result.values.size() + 4 * PEL_PROFILE_TERMS), result;
+    append([&](double distance) {
+        const auto through = [&](double r) {
+            return densityThrough([&](double x) { return perArea(shape.radial(x / scale)); },
+                                  shape.transmission(r / scale), meanFreePath, mean, directed, reach, r);
+        };
+        return meanOfBlock(through, distance);
+    });
     return result;
 }
 

@@ -1,7 +1,5 @@
 // A profile as the tables of weights that kernels/diffusion reads (kernels/shared/diffusion.h).
 #pragma once
-#include <vector>
-
 #include "lut/profile.h"
 #include "shared/diffusion.h"
 
@@ -13,12 +11,13 @@ constexpr double lightBeyondReach = 4e-3;
 
 struct ProfileNodes {
     PelProfileTable table{};    // its offset is 0
-    std::vector<float> values;  // R of all nodes, the shares within, R of blocks; both as Gaussians
+    std::vector<float> values;  // R of all nodes, the shares within, R of blocks; both, and Q, as Gaussians
     Rgb meanDistance{};         // of the light, length
 };
 
-// `scale`: lengths of the tables per length of the profile, > 0. Throws if squares of such lengths are
-// outside float.
-ProfileNodes profileNodes(const ProfileShape& shape, double scale);
+// `scale`: lengths of the tables per length of the profile, > 0. `meanFreePath`: length in the tables' unit;
+// 0: the medium is not known, and Q is 0 (docs/mathematics.md, section 12, "Slabs"). Throws if squares of
+// such lengths are outside float.
+ProfileNodes profileNodes(const ProfileShape& shape, double scale, const Rgb& meanFreePath);
 
 }  // namespace pel

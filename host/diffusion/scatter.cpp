@@ -1,12 +1,9 @@
 #include "diffusion/scatter.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "diffusion/scatter_material.h"
 #include "shading/check_settings.h"
-#include "shading/image_slots.h"
-#include "shading/scratch_image.h"
 
 namespace pel {
 namespace {
@@ -62,7 +59,7 @@ void Scatter::setMaterial(uint32_t id, const Ref<Profile>& profile, float scale)
         invalidArgument(
             "the scale of material ", id, "'s profile is ", scale,
             "; a finite length of at least 0 is needed, in the unit of positions per unit of the profile");
-    if (scale > 0) profileNodes(profile->shape(), scale);  // throws where the lengths are out of range
+    if (scale > 0) profileNodes(profile->shape(), scale, {});  // throws where the lengths are out of range
     if (scale > 0)
         materials_[id] = {profile, scale};
     else
@@ -103,9 +100,8 @@ Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImage
         const PelScatterControls c = found == controls_.end() ? pelScatterControlsDefaults() : found->second;
         plan.sources.set(id);
         const bool lines = c.scattering == PEL_SCATTERING_SEPARABLE;
-        // Sums over blocks support neither borders nor radii per pixel.
-        const bool perPixel = c.borderColor[0] > 0 || c.borderColor[1] > 0 || c.borderColor[2] > 0 ||
-                              (plan.weight && plan.weight.info().components > 1);
+        // Sums over blocks do not support borders.
+        const bool perPixel = c.borderColor[0] > 0 || c.borderColor[1] > 0 || c.borderColor[2] > 0;
         const uint32_t wanted = c.scatterTaps || lines || !perPixel ? c.scatterTaps : diskTapsForBlocks;
         const bool taps = lines || wanted > 0;
         if (taps)
@@ -159,7 +155,8 @@ ImageView Scatter::scratch(size_t index, const ImageView& like) {
     return scratchImage(scratch_[index], like, PEL_FORMAT_PLANAR_RGB32F);
 }
 
-void Scatter::execute(const PelScatterParams& params, const ScatterImages& images) {
+void Scatter::run(const PelScatterParams& params, const ScatterImages& images,
+                  std::vector<cl::ProgramKey>* keys) {
     checkParams(params);
     checkImages(images);
     const Plan plan = planOf(params, images);
@@ -171,7 +168,13 @@ void Scatter::execute(const PelScatterParams& params, const ScatterImages& image
     counts_ = {};
     pixels_ = images.out.width * images.out.height;
     executed_ = true;
+    // What a method does to images, or the names of its programs.
+    const auto step = [&](auto& method, const auto& on, const auto& work) {
+        if (!keys) return work();
+        for (cl::ProgramKey& key : method.programs(on)) keys->push_back(std::move(key));
+    };
     ScatterImages now = images;
+    now.takeRadii(plan.weight);
     if (plan.prepares) {
         const BlendImages blend{images.irradiance,
                                 {},
@@ -180,8 +183,10 @@ void Scatter::execute(const PelScatterParams& params, const ScatterImages& image
                                 {},
                                 image(PEL_SLOT_ALBEDO),
                                 scratch(0, images.out)};
-        before_.prepare(plan.blend, plan.other, blend, false);
-        before_.enqueuePreparation(blend, events_);
+        step(before_, blend, [&] {
+            before_.prepare(plan.blend, plan.other, blend, false);
+            before_.enqueuePreparation(blend, events_);
+        });
         now.irradiance = blend.out;
     }
     const ImageView arriving = now.irradiance;
@@ -198,8 +203,10 @@ void Scatter::execute(const PelScatterParams& params, const ScatterImages& image
         if (materials.empty()) return;
         target();
         const GatherImages all{now, plan.weight};
-        method.prepare(materials, plan.sources, all, view, params.frameIndex);
-        method.enqueue(all, events_);
+        step(method, all, [&] {
+            method.prepare(materials, plan.sources, all, view, params.frameIndex);
+            method.enqueue(all, events_);
+        });
         counts_.push_back({scattering, [&method] { return method.counts(); }});
         now.irradiance = now.out;
     };
@@ -208,16 +215,50 @@ void Scatter::execute(const PelScatterParams& params, const ScatterImages& image
     if (!plan.screen.empty() || counts_.empty()) {  // also where nothing scatters: the picture is copied
         if (plan.screen.empty()) left = 1;
         target();
-        screen_.prepare(plan.screen, now, view);
-        screen_.enqueue(now, events_);
+        step(screen_, now, [&] {
+            screen_.prepare(plan.screen, now, view);
+            screen_.enqueue(now, events_);
+        });
         counts_.push_back({PEL_SCATTERING_SCREEN, [this] { return screen_.counts(); }});
         now.irradiance = now.out;
     }
     if (!plan.finishes) return;
     const BlendImages blend{arriving,    now.irradiance,         images.ids, {},
                             plan.weight, image(PEL_SLOT_ALBEDO), images.out};
-    after_.prepare(plan.blend, plan.other, blend, params.accumulate != 0);
-    after_.enqueueFinish(blend, events_);
+    step(after_, blend, [&] {
+        after_.prepare(plan.blend, plan.other, blend, params.accumulate != 0);
+        after_.enqueueFinish(blend, events_);
+    });
+}
+
+void Scatter::addBuildJobs(const PelScatterParams& params, const ScatterImages& images,
+                           BuildJobs& jobs) const {
+    const auto small = [&](const ImageView& like) {
+        ImageView view = like;
+        if (!like) return view;
+        view.buffer = {};  // memory of its own
+        view.width = std::min(like.width, 16u);
+        view.height = std::min(like.height, 2u);
+        view.byteOffset = 0;
+        view.rowStride = view.width * (like.info().planar ? like.info().componentBytes : like.pixelStride);
+        view.planeStride = view.height * view.rowStride;
+        resize(view.buffer, device_, size_t(view.planeStride * (like.info().planar ? 3 : 1)));
+        return view;
+    };
+    const Ref<Scatter> copy = make<Scatter>(device_);
+    copy->materials_ = materials_;
+    copy->controls_ = controls_;
+    for (const auto& [slot, view] : images_) copy->images_[slot] = small(view);
+    const ScatterImages all{small(images.irradiance), small(images.positions), small(images.depth),
+                            small(images.ids), small(images.out)};
+    std::vector<cl::ProgramKey> keys;
+    copy->run(params, all, &keys);
+    for (cl::ProgramKey& key : keys)
+        jobs.push_back([device = device_, key = std::move(key)] { device->programs().get(key); });
+    jobs.push_back([copy, params, all] {
+        copy->execute(params, all);
+        copy->device_->finish();
+    });
 }
 
 PelScatterStats Scatter::stats() {

@@ -1,11 +1,8 @@
 // PelScatter: scattering alone, for hosts that light their own frames.
 #pragma once
-#include <array>
-#include <functional>
-
+#include "core/build_jobs.h"
 #include "diffusion/blend_scatter.h"
 #include "diffusion/gather_scatter.h"
-#include "diffusion/screen_scatter.h"
 
 namespace pel {
 
@@ -26,7 +23,11 @@ class Scatter final : public Object {
     void setControls(uint32_t id, const PelScatterControls& controls);
     void setImage(PelImageSlot slot, const ImageView& view);
     // Enqueues everything.
-    void execute(const PelScatterParams& params, const ScatterImages& images);
+    void execute(const PelScatterParams& params, const ScatterImages& images) {
+        run(params, images, nullptr);
+    }
+    // Jobs for a warm-up: they build what an execution with such images would, and scatter a small one.
+    void addBuildJobs(const PelScatterParams& params, const ScatterImages& images, BuildJobs& jobs) const;
     PelScatterStats stats();
     Device& device() const { return *device_; }
 
@@ -42,6 +43,8 @@ class Scatter final : public Object {
     };
     ~Scatter() override = default;
     Plan planOf(const PelScatterParams& params, const ScatterImages& images) const;
+    // With `keys` the programs are named alone.
+    void run(const PelScatterParams& params, const ScatterImages& images, std::vector<cl::ProgramKey>* keys);
     ImageView image(PelImageSlot slot) const;
     ImageView scratch(size_t index, const ImageView& like);
 

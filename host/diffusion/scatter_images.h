@@ -8,6 +8,13 @@ namespace pel {
 struct ScatterImages {
     ImageView irradiance, positions, depth, ids, out;
     ImageView curvature{};  // mean, 1/length: for materials with a gain
+    ImageView radii{};      // times the profile's radius
+    int radiusComponent = 0;
+
+    // The second component of an image of weights, if there is one.
+    void takeRadii(const ImageView& weight) {
+        if (weight && weight.info().components > 1) radii = weight, radiusComponent = 1;
+    }
 };
 
 }  // namespace pel

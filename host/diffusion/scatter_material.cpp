@@ -1,9 +1,5 @@
 #include "diffusion/scatter_material.h"
 
-#include <algorithm>
-
-#include "shading/scratch_image.h"
-
 namespace pel {
 
 ScreenScatter::Material profileOf(const ShaderMaterial& material) {
@@ -24,6 +20,17 @@ ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Bu
         inPlace ? images[PEL_SLOT_IRRADIANCE] : scratchImage(out, frame, PEL_FORMAT_PLANAR_RGB32F)};
     images[PEL_SLOT_IRRADIANCE] = taken.out;
     return taken;
+}
+
+bool hasRadii(const ShaderPlan& plan) {
+    ScatterImages images;
+    addRadii(plan, images);
+    return usesSkinMaps(plan.state) || images.radii;
+}
+
+void addRadii(const ShaderPlan& plan, ScatterImages& images) {
+    images.radii = plan.radii;
+    if (!plan.radii) images.takeRadii(plan.state.images[PEL_SLOT_SCATTER_WEIGHT]);
 }
 
 void addScatterCounts(const ScatterCounts& counts, PelScattering scattering, PelShaderStats& stats) {

@@ -2,7 +2,6 @@
 #pragma once
 #include "diffusion/screen_scatter.h"
 #include "shading/features.h"
-#include "shading/shader_plan.h"
 
 namespace pel {
 
@@ -29,6 +28,10 @@ inline uint32_t scatterTapsOf(PelScattering scattering, uint32_t taps) {
 // The images of the plan for a method that scatters into `out`, which becomes the irradiance of the plan.
 ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Buffer>& out,
                              bool inPlace = false);
+
+// Whether the profile's radius differs from pixel to pixel, and the image that says so.
+bool hasRadii(const ShaderPlan& plan);
+void addRadii(const ShaderPlan& plan, ScatterImages& images);
 
 void addScatterCounts(const ScatterCounts& counts, PelScattering scattering, PelShaderStats& stats);
 // Counts pixels of PEL_SCATTERING_AUTO that kept their irradiance as not scattered.

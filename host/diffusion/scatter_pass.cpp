@@ -1,13 +1,8 @@
 // The shader's passes of materials that scatter on the screen (PEL_SCATTERING_SCREEN and AUTO) or from
 // shadow maps (PEL_SCATTERING_LIGHT). They read irradiance from its slot of the plan and replace it by the
 // scattered light.
-#include <algorithm>
-#include <optional>
-
 #include "diffusion/passes.h"
 #include "diffusion/scatter_material.h"
-#include "shading/features.h"
-#include "shared/features.h"
 
 namespace pel {
 namespace {
@@ -40,13 +35,14 @@ class ScatterPass final : public Pass {
     PassScratch scratch(const ShaderPlan& plan) const override {
         const ImageView& frame = plan.state.images[PEL_SLOT_RADIANCE];
         return {isOwn(plan) ? 0 : 3 * sizeof(float),
-                ScreenScatter::bytesFor(frame.width, frame.height) +
+                ScreenScatter::bytesFor(frame.width, frame.height, hasRadii(plan)) +
                     LightSpace::bytesFor(plan.state.lights, !alone),
                 0, true};
     }
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
         images_ = takeIrradiance(plan, device, out_, isOwn(plan));
+        addRadii(plan, images_);
         if (!scatter_) scatter_.emplace(device);
         scatter_->announce({plan.state.lights, alone});
         materials_.clear();
@@ -73,8 +69,8 @@ class ScatterPass final : public Pass {
     void enqueue(PassWork& work) override { scatter_->enqueue(images_, work.events); }
 
     void addStats(Device&, const ShaderPlan& plan, uint64_t, PelShaderStats& stats) const override {
-        ScatterCounts counts = scatter_->counts();
-        const LightCounts light = scatter_->lightCounts();
+        LightCounts light;
+        ScatterCounts counts = scatter_->counts(&light);
         counts.taps += light.texels;
         if (alone) counts.tilesTapped = light.tiles, counts.pixelsTapped = light.pixels;
         addScatterCounts(counts, alone ? PEL_SCATTERING_LIGHT : PEL_SCATTERING_SCREEN, stats);
@@ -99,7 +95,7 @@ class ScatterPass final : public Pass {
 
 }  // namespace
 
-constinit const PassKind scatterPass = passKind<ScatterPass<false>>(onScreen);
-constinit const PassKind lightScatterPass = passKind<ScatterPass<true>>(inLight);
+constinit const PassKind scatterPass = passKind<ScatterPass<false>>("scatter_screen", onScreen);
+constinit const PassKind lightScatterPass = passKind<ScatterPass<true>>("scatter_light", inLight);
 
 }  // namespace pel

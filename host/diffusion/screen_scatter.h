@@ -1,10 +1,6 @@
 // Scatters the irradiance of a picture: the kernels of kernels/diffusion over plain inputs, for the shader's
 // passes and for hosts that light their own frames.
 #pragma once
-#include <array>
-#include <map>
-#include <vector>
-
 #include "diffusion/light_space.h"
 #include "diffusion/profile_table.h"
 #include "diffusion/sent_constants.h"
@@ -31,6 +27,9 @@ struct ScatterLights {
 struct ScatterCounts {
     uint32_t tilesCovered, tilesTapped, pixelsCovered, pixelsTapped, taps, invalid;
 };
+struct LightCounts {
+    uint32_t pixels, texels, tiles;
+};
 
 class ScreenScatter {
   public:
@@ -53,18 +52,19 @@ class ScreenScatter {
     std::vector<cl::ProgramKey> programs(const ScatterImages& images) const;
     // Programs come from the device's cache.
     void enqueue(const ScatterImages& images, std::vector<cl::Event>& events);
-    ScatterCounts counts();
+    // Those of the sums over shadow maps go to `light`.
+    ScatterCounts counts(LightCounts* light = nullptr);
     // Memory of a picture, beside tables.
-    static uint64_t bytesFor(uint32_t width, uint32_t height);
-    size_t bytes() const { return pyramidBytes_ + sumBytes_ + nodeBytes_ + tileBytes_ + light_.bytes(); }
-    LightCounts lightCounts() { return light_.counts(); }
+    static uint64_t bytesFor(uint32_t width, uint32_t height, bool radii);
+    size_t bytes() const {
+        return pyramid_.bytes() + sums_.bytes() + nodeBytes_ + tiles_.bytes() + light_.bytes();
+    }
 
   private:
     void sendTables(const std::map<uint32_t, Material>& materials);
-    void describeLevels(uint32_t width, uint32_t height);
+    void describeLevels(uint32_t width, uint32_t height, bool radii);
     bool fillsHidden() const { return !light_.empty() && !lights_.alone; }
     ScreenMemory memory(const cl::Program& program) const;
-    cl::Range rows(uint32_t width, uint32_t height) const;
 
     Ref<Device> device_;
     LightSpace light_;
@@ -72,10 +72,11 @@ class ScreenScatter {
     std::map<uint32_t, Material> materials_;
     PelDiffusionFrame frame_{};
     SentConstants<PelDiffusionFrame> constants_;
-    cl::Memory tables_, nodes_, pyramid_, sums_, tiles_, counters_;
-    bool hasSides_ = false;  // tables_ have directions
-    double narrowest_ = 0;   // reach of the tables, length
-    size_t pyramidBytes_ = 0, sumBytes_ = 0, nodeBytes_ = 0, tileBytes_ = 0;
+    cl::Memory tables_, nodes_, counters_;
+    SizedMemory pyramid_, sums_, tiles_;
+    bool hasSides_ = false, byTexels_ = false;  // whether tables_ have directions; for sums over texels only
+    double narrowest_ = 0;                      // reach of the tables, length
+    size_t nodeBytes_ = 0;
 };
 
 }  // namespace pel

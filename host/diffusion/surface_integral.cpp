@@ -1,7 +1,6 @@
 // Host side of kernels/diffusion/surface_integral.cl.
 #include "diffusion/surface_integral.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -1,6 +1,5 @@
 // The surface integral of a lit mesh (mathematics, section 9): pelSurfaceIntegral.
 #pragma once
-#include "core/device.h"
 #include "mesh/vertex_view.h"
 
 namespace pel {

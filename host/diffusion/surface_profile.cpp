@@ -48,11 +48,6 @@ double SurfaceProfile::distance(size_t row) const {
     return std::exp2(firstLog2 + double(row) / PEL_SURFACE_ROWS);
 }
 
-size_t SurfaceProfile::rowBelow(double at) const {
-    const double row = (std::log2(at) - firstLog2) * PEL_SURFACE_ROWS;
-    return size_t(std::clamp(row, 0.0, double(count() - 1)));
-}
-
 SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale,
                                const std::array<double, 3>& cutInPositions) {
     const std::vector<double> knots = shape.knots();

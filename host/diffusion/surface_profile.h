@@ -1,9 +1,6 @@
 // What the surface integral needs of a profile: energy within a distance, and how fast R curves. In units of
 // positions.
 #pragma once
-#include <array>
-#include <vector>
-
 #include "core/device.h"
 #include "lut/profile.h"
 #include "shared/surface_integral.h"
@@ -21,8 +18,6 @@ struct SurfaceProfile {
 
     double distance(size_t row) const;
     size_t count() const { return curving.size(); }
-    // Values of curving and fall at a distance: those of the row below it, which are the larger ones.
-    size_t rowBelow(double distance) const;
 };
 
 // Lengths of the profile times `scale` are in units of positions. `cut`: lengths where R ends, 0 for none;

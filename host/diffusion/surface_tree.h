@@ -1,7 +1,6 @@
 // The hierarchy over a lit mesh: from which distance on a set of triangles counts as one point.
 #pragma once
 #include <functional>
-#include <vector>
 
 #include "diffusion/surface_profile.h"
 

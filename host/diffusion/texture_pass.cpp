@@ -1,12 +1,9 @@
 // The shader's pass of materials that take light scattered in texture space (PEL_SCATTERING_TEXTURE). It
 // reads irradiance from its slot of the plan and replaces it by that light.
-#include <algorithm>
-
 #include "core/launch_policy.h"
 #include "diffusion/passes.h"
 #include "diffusion/scatter_material.h"
 #include "shading/launch_ranges.h"
-#include "shading/scratch_image.h"
 #include "shading/shading_constants.h"
 #include "shared/texture_scatter.h"
 
@@ -38,16 +35,15 @@ class TexturePass final : public Pass {
     size_t bytes() const override { return out_ ? out_->bytes() : 0; }
 
     std::vector<cl::ProgramKey> programs(const Device&, const ShaderPlan&) const override {
-        const auto code = [](const ImageView& view) { return text(formatCode(view, 1)); };
         std::vector<cl::ProgramKey> keys;
         for (const Sample& sample : samples_)
             keys.push_back({{"diffusion/sample_texture.cl"},
-                            {{"PEL_WIDTH", text(1)},
-                             {"PEL_FORMAT_TEXTURE", code(sample.texture)},
-                             {"PEL_FORMAT_UV", code(uv_)},
-                             {"PEL_FORMAT_MATERIAL", code(ids_)},
-                             {"PEL_FORMAT_IRRADIANCE", code(irradiance_)},
-                             {"PEL_FORMAT_OUT", code(target_)}}});
+                            {{"PEL_WIDTH", 1},
+                             {"PEL_FORMAT_TEXTURE", formatCode(sample.texture, 1)},
+                             {"PEL_FORMAT_UV", formatCode(uv_, 1)},
+                             {"PEL_FORMAT_MATERIAL", formatCode(ids_, 1)},
+                             {"PEL_FORMAT_IRRADIANCE", formatCode(irradiance_, 1)},
+                             {"PEL_FORMAT_OUT", formatCode(target_, 1)}}});
         return keys;
     }
 
@@ -72,12 +68,9 @@ class TexturePass final : public Pass {
         work.device.fill(counters_.get(), 0, PEL_DIFFUSION_COUNTERS * sizeof(cl_uint), 0);
         const size_t tiles = size_t((target_.width + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE) *
                              ((target_.height + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE);
-        for (size_t i = 0; i < samples_.size(); ++i) {
-            cl::Launch launch(program(i), "sample_texture");
-            launch.arg(samples_[i].constants).arg(memoryOf(samples_[i].texture)).arg(memoryOf(uv_));
-            launch.arg(memoryOf(ids_)).arg(memoryOf(irradiance_)).arg(memoryOf(target_)).arg(counters_);
-            work.launch(launch, groupRange(work.device, tiles));
-        }
+        for (size_t i = 0; i < samples_.size(); ++i)
+            work.launch(program(i), "sample_texture", groupRange(work.device, tiles), samples_[i].constants,
+                        samples_[i].texture, uv_, ids_, irradiance_, target_, counters_);
     }
 
     void addStats(Device& device, const ShaderPlan&, uint64_t, PelShaderStats& stats) const override {
@@ -104,6 +97,6 @@ class TexturePass final : public Pass {
 
 }  // namespace
 
-constinit const PassKind texturePass = passKind<TexturePass>(1u << PEL_SCATTERING_TEXTURE);
+constinit const PassKind texturePass = passKind<TexturePass>("scatter_texture", 1u << PEL_SCATTERING_TEXTURE);
 
 }  // namespace pel

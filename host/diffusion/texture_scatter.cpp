@@ -4,11 +4,8 @@
 #include <cstring>
 #include <numeric>
 
-#include "core/launch_policy.h"
 #include "shading/check_settings.h"
-#include "shading/image_slots.h"
 #include "shading/launch_ranges.h"
-#include "shading/scratch_image.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
@@ -102,17 +99,9 @@ void TextureScatter::drawMesh(const std::vector<uint32_t>& indices, const std::v
     device_->fill(counters_.get(), 0, PEL_TEXTURE_COUNTERS * sizeof(cl_uint), 0);
     describe({}, {}, {}, 0, 0);
     const cl::Program map = program("diffusion/texture_map.cl", {}, {}, {});
-    cl::Launch owner(map, "texture_owner");
-    owner.arg(frameMemory_).arg(indices_).arg(uvs_).arg(owners_);
-    launch(owner, triangles_);
-    cl::Launch tile(map, "texture_tiles");
-    tile.arg(frameMemory_).arg(owners_).arg(tileFlags_).arg(counters_);
-    launch(tile, tiles());
+    launch(map, "texture_owner", triangles_, frameMemory_, indices_, uvs_, owners_);
+    launch(map, "texture_tiles", tiles(), frameMemory_, owners_, tileFlags_, counters_);
     events_.clear();
-}
-
-void TextureScatter::launch(cl::Launch& launch, size_t items) {
-    if (items) events_.push_back(device_->launch(launch, itemRange(*device_, items)));
 }
 
 void TextureScatter::describe(const ImageView& irradiance, const ImageView& albedo, const ImageView& out,
@@ -131,13 +120,13 @@ void TextureScatter::describe(const ImageView& irradiance, const ImageView& albe
 
 cl::Program TextureScatter::program(const char* file, const ImageView& irradiance, const ImageView& albedo,
                                     const ImageView& out) const {
-    const auto code = [](const ImageView& view) { return text(formatCode(view, 1)); };
     // A program needs some format to store in, also where it stores nothing.
-    return device_->programs().get({{file},
-                                    {{"PEL_WIDTH", text(1)},
-                                     {"PEL_FORMAT_IRRADIANCE", code(irradiance)},
-                                     {"PEL_FORMAT_ALBEDO", code(albedo)},
-                                     {"PEL_FORMAT_OUT", out ? code(out) : text(int(PEL_FORMAT_RGB32F))}}});
+    return device_->programs().get(
+        {{file},
+         {{"PEL_WIDTH", 1},
+          {"PEL_FORMAT_IRRADIANCE", formatCode(irradiance, 1)},
+          {"PEL_FORMAT_ALBEDO", formatCode(albedo, 1)},
+          {"PEL_FORMAT_OUT", out ? formatCode(out, 1) : uint32_t(PEL_FORMAT_RGB32F)}}});
 }
 
 void TextureScatter::checkSize(const ImageView& view, const char* name) const {
@@ -149,10 +138,8 @@ void TextureScatter::checkSize(const ImageView& view, const char* name) const {
 void TextureScatter::setPositions(const VertexView& positions) {
     events_.clear();
     if (!stretch_) stretch_ = device_->allocate(texels() * texelBytes);
-    cl::Launch stretch(program("diffusion/texture_map.cl", {}, {}, {}), "texture_stretch");
-    stretch.arg(frameMemory_).arg(indices_).arg(uvs_).arg(islands_);
-    stretch.arg(positions.memory).arg(positions.layout).arg(owners_).arg(stretch_);
-    launch(stretch, texels());
+    launch(program("diffusion/texture_map.cl", {}, {}, {}), "texture_stretch", texels(), frameMemory_,
+           indices_, uvs_, islands_, positions.memory, positions.layout, owners_, stretch_);
     placed_ = true;
 }
 
@@ -161,10 +148,8 @@ void TextureScatter::draw(const VertexView& values, bool unit, const ImageView& 
     checkSize(out, "output");
     describe({}, {}, out, 0, 0);
     events_.clear();
-    cl::Launch one(program("diffusion/texture_map.cl", {}, {}, out), "texture_draw");
-    one.arg(frameMemory_).arg(indices_).arg(uvs_).arg(values.memory).arg(values.layout).arg(owners_);
-    one.arg(cl_uint(unit)).arg(memoryOf(out));
-    launch(one, texels());
+    launch(program("diffusion/texture_map.cl", {}, {}, out), "texture_draw", texels(), frameMemory_, indices_,
+           uvs_, values.memory, values.layout, owners_, cl_uint(unit), out);
 }
 
 void TextureScatter::execute(const PelTextureScatterParams& params, const Ref<Profile>& profile,
@@ -205,23 +190,12 @@ void TextureScatter::execute(const PelTextureScatterParams& params, const Ref<Pr
     device_->fill(counters_.get(), PEL_COUNT_TEXELS_INVALID * sizeof(cl_uint), sizeof(cl_uint), 0);
     events_.clear();
     const cl::Program kernels = program("diffusion/scatter_texture.cl", irradiance, albedo, out);
-    cl::Launch light(kernels, "texture_light");
-    light.arg(frameMemory_)
-        .arg(stretch_)
-        .arg(memoryOf(irradiance))
-        .arg(memoryOf(albedo))
-        .arg(light_)
-        .arg(counters_);
-    launch(light, texels());
-    for (uint32_t i = 0; i < blurs.size(); ++i) {
-        cl::Launch blur(kernels, "texture_blur");
-        blur.arg(frameMemory_).arg(blurs_).arg(cl_uint(i)).arg(stretch_).arg(tileFlags_);
-        blur.arg(i % 2 ? blurred_ : light_).arg(i % 2 ? light_ : blurred_).arg(result_);
-        events_.push_back(device_->launch(blur, groupRange(*device_, groupsFor(*device_, tiles()))));
-    }
-    cl::Launch result(kernels, "texture_result");
-    result.arg(frameMemory_).arg(light_).arg(result_).arg(memoryOf(albedo)).arg(memoryOf(out));
-    launch(result, texels());
+    launch(kernels, "texture_light", texels(), frameMemory_, stretch_, irradiance, albedo, light_, counters_);
+    for (uint32_t i = 0; i < blurs.size(); ++i)
+        device_->launch(events_, kernels, "texture_blur", groupRange(*device_, groupsFor(*device_, tiles())),
+                        frameMemory_, blurs_, cl_uint(i), stretch_, tileFlags_, i % 2 ? blurred_ : light_,
+                        i % 2 ? light_ : blurred_, result_);
+    launch(kernels, "texture_result", texels(), frameMemory_, light_, result_, albedo, out);
 }
 
 PelTextureScatterStats TextureScatter::stats() {

@@ -1,9 +1,8 @@
 // PelTextureScatter: scattering in the texture of a mesh (kernels/diffusion/texture_map.cl and
 // scatter_texture.cl).
 #pragma once
-#include <vector>
-
 #include "core/image_view.h"
+#include "core/launch_policy.h"
 #include "diffusion/gaussian_chain.h"
 #include "mesh/vertex_view.h"
 #include "shared/texture_scatter.h"
@@ -39,7 +38,10 @@ class TextureScatter final : public Object {
     void checkSize(const ImageView& view, const char* name) const;
     cl::Program program(const char* file, const ImageView& irradiance, const ImageView& albedo,
                         const ImageView& out) const;
-    void launch(cl::Launch& launch, size_t items);
+    template <class... Values>
+    void launch(const cl::Program& program, const char* kernel, size_t items, const Values&... values) {
+        if (items) device_->launch(events_, program, kernel, itemRange(*device_, items), values...);
+    }
     size_t texels() const { return size_t(width_) * height_; }
     uint32_t tilesX() const { return (width_ + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE; }
     uint32_t tiles() const { return tilesX() * ((height_ + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE); }

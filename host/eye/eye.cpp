@@ -2,7 +2,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "cl/error.h"
 #include "core/check_range.h"
 #include "eye/eye.h"
 
@@ -142,11 +141,9 @@ AmbientNodes ambientNodes(const PelEye& eye) {
 }
 
 bool sameShape(const PelEye& a, const PelEye& b) {
-    return a.scleraRadius == b.scleraRadius && a.corneaRadius == b.corneaRadius &&
-           a.corneaConic == b.corneaConic && a.limbusRadius == b.limbusRadius &&
-           a.chamberDepth == b.chamberDepth && a.corneaIndex == b.corneaIndex &&
-           a.aqueousIndex == b.aqueousIndex && a.irisRadius == b.irisRadius &&
-           a.irisConcavity == b.irisConcavity;
+#define PEL_SAME_(type, name, ...) a.name == b.name&&
+    return PEL_EACH_EYE_SHAPE_FIELD(PEL_SAME_) true;
+#undef PEL_SAME_
 }
 
 PelShadeEye describeEye(const PelEye& eye, const AmbientNodes& ambient, double millimetresPerUnit) {

@@ -1,8 +1,5 @@
 // Eyes: their shape, their constants for kernels, and their caustic tables.
 #pragma once
-#include <pellucid/pellucid.h>
-#include <array>
-
 #include "lut/lut.h"
 #include "shared/eye.h"
 

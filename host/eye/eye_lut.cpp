@@ -1,10 +1,8 @@
 #include "eye/eye.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
-#include <optional>
 
 #include "core/launch_policy.h"
 #include "lut/lut_terms.h"

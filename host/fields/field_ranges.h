@@ -63,6 +63,9 @@ PEL_EACH_CURVATURE_LUT_FIELD(PEL_RANGE_)
 namespace shadowLut {
 PEL_EACH_SHADOW_LUT_FIELD(PEL_RANGE_)
 }
+namespace skin {
+PEL_EACH_SKIN_FIELD(PEL_RANGE_)
+}
 namespace eye {
 PEL_EACH_EYE_FIELD(PEL_RANGE_)
 }

@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "io/concat.h"
+
 namespace pellucid::io {
 
 // what() reads "FILE:LINE: message"; the message says what was wrong, where, and what would be right.

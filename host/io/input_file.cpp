@@ -38,8 +38,7 @@ std::string tooLarge(double bytes, uint64_t limit) {
 
 void refuseTooLarge(const std::string& path, uint64_t bytes, uint64_t limit) {
     if (limit == inputLimit()) throw FileError(path, "takes " + tooLarge(double(bytes), limit));
-    throw FileError(path, "has " + std::to_string(bytes) + " bytes or more; a text of this kind may have " +
-                              std::to_string(limit));
+    throw FileError(path, concat("has ", bytes, " bytes or more; a text of this kind may have ", limit));
 }
 
 std::string extensionOf(const std::string& path) {

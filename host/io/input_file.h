@@ -1,9 +1,7 @@
 // Input files: read completely, after their size was checked.
 #pragma once
-#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
-#include <string>
 #include <string_view>
 
 #include "io/file_error.h"

@@ -2,7 +2,6 @@
 #pragma once
 #include <charconv>
 #include <cmath>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -37,8 +36,7 @@ class TextScan {
     // Word i of the line as a finite number. `what` names it in the error.
     float number(size_t i, std::string_view what) const {
         if (i >= words_.size())
-            fail(std::string(what) + " is missing: the line has " + std::to_string(words_.size()) +
-                 " entries, not " + std::to_string(i + 1));
+            fail(concat(what, " is missing: the line has ", words_.size(), " entries, not ", i + 1));
         float value = 0;
         if (!parse(words_[i], value))
             fail(std::string(what) + " '" + std::string(words_[i]) + "' is not a number that fits a float");

@@ -1,8 +1,5 @@
 // The nesting depth of a TOML file, checked before toml++ parses it. toml++ makes and destroys a table for
 // each part of a key by recursion, and a key may have any number of parts.
-#include <string_view>
-
-#include "io/file_error.h"
 #include "io/toml_reader.h"
 
 namespace pellucid::io {
@@ -33,9 +30,9 @@ class Depth {
             if (c == '\n') ++line_;
             if (c == '.') ++dots_;
             if (std::string_view("[]{}=,\n").find(c) != std::string_view::npos) dots_ = 0;
-            if (dots_ >= mostParts) fail("a key has more than " + std::to_string(mostParts) + " parts");
+            if (dots_ >= mostParts) fail(concat("a key has more than ", mostParts, " parts"));
             if (brackets_ > mostBrackets)
-                fail("arrays and tables are nested more than " + std::to_string(mostBrackets) + " deep");
+                fail(concat("arrays and tables are nested more than ", mostBrackets, " deep"));
             ++at_;
         }
     }

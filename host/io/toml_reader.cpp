@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "io/input_file.h"
 #include "io/spelling.h"
@@ -56,8 +55,8 @@ struct TomlReader::Nodes {
         if (!node) return nullptr;
         if (!node->is_array()) reader.fail(key, "is " + typeName(*node) + "; " + wanted + " would be right");
         if (node->as_array()->size() != count)
-            reader.fail(key, "has " + std::to_string(node->as_array()->size()) + " " + elements + "; " +
-                                 wanted + " would be right" + (count == 16 ? " (a matrix, row by row)" : ""));
+            reader.fail(key, concat("has ", node->as_array()->size(), " ", elements, "; ", wanted,
+                                    " would be right", (count == 16 ? " (a matrix, row by row)" : "")));
         return node->as_array();
     }
 
@@ -86,8 +85,7 @@ struct TomlReader::Nodes {
 
 std::shared_ptr<const TomlTable> parseToml(const std::string& file, const std::string& text) {
     if (text.size() > textLimit)
-        throw FileError(file, "has " + std::to_string(text.size()) + " bytes; TOML may have " +
-                                  std::to_string(textLimit));
+        throw FileError(file, concat("has ", text.size(), " bytes; TOML may have ", textLimit));
     checkTomlDepth(file, text);
     try {
         const auto root = std::make_shared<const toml::table>(toml::parse(text, file));
@@ -120,13 +118,12 @@ void TomlReader::fail(std::string_view key, const std::string& message) const {
 int64_t TomlReader::version(int64_t known) {
     const toml::node* node = Nodes::find(*this, "version");
     if (!node) return 1;
-    const std::string versions = known == 1 ? "1" : "1 to " + std::to_string(known);
+    const std::string versions = known == 1 ? "1" : concat("1 to ", known);
     if (!node->is_integer()) fail("version", "is " + typeName(*node) + "; " + versions + " would be right");
     const int64_t given = node->as_integer()->get();
-    if (given < 1) fail("version", "is " + std::to_string(given) + "; " + versions + " would be right");
+    if (given < 1) fail("version", concat("is ", given, "; ", versions, " would be right"));
     if (given > known)
-        fail("version",
-             "is " + std::to_string(given) + ", of a later pellucid; this one reads version " + versions);
+        fail("version", concat("is ", given, ", of a later pellucid; this one reads version ", versions));
     return given;
 }
 
@@ -136,18 +133,18 @@ void TomlReader::number(std::string_view key, float& value, Range range) {
 
 void TomlReader::numbers(std::string_view key, float* values, size_t count, Range range) {
     const toml::array* array =
-        Nodes::array(*this, key, count, "an array of " + std::to_string(count) + " numbers", "values");
+        Nodes::array(*this, key, count, concat("an array of ", count, " numbers"), "values");
     for (size_t i = 0; array && i < count; ++i) values[i] = Nodes::toFloat(*this, key, (*array)[i], range);
 }
 
 void TomlReader::rows(std::string_view key, float* values, size_t rows, size_t columns) {
-    const std::string wanted = std::to_string(rows) + " arrays of " + std::to_string(columns) + " numbers";
+    const std::string wanted = concat(rows, " arrays of ", columns, " numbers");
     const toml::array* array = Nodes::array(*this, key, rows, wanted, "rows");
     for (size_t r = 0; array && r < rows; ++r) {
         const toml::array* row = (*array)[r].as_array();
         if (!row || row->size() != columns)
-            fail(key, "has a row " + std::to_string(r) + " (counted from 0) that is not an array of " +
-                          std::to_string(columns) + "; " + wanted + " would be right");
+            fail(key, concat("has a row ", r, " (counted from 0) that is not an array of ", columns, "; ",
+                             wanted, " would be right"));
         for (size_t c = 0; c < columns; ++c)
             values[r * columns + c] = Nodes::toFloat(*this, key, (*row)[c], range::any);
     }
@@ -157,14 +154,12 @@ void TomlReader::integer(std::string_view key, uint32_t& value, Range range) {
     const toml::node* node = Nodes::find(*this, key);
     if (!node) return;
     const uint32_t low = uint32_t(range.min), high = range.max < 0x1p32f ? uint32_t(range.max) : UINT32_MAX;
-    const std::string special =
-                          std::isnan(range.special) ? "" : std::to_string(uint32_t(range.special)) + ", or ",
-                      wanted = special + "a whole number from " + std::to_string(low) + " to " +
-                               std::to_string(high);
+    const std::string special = std::isnan(range.special) ? "" : concat(uint32_t(range.special), ", or "),
+                      wanted = concat(special, "a whole number from ", low, " to ", high);
     if (!node->is_integer()) fail(key, "is " + typeName(*node) + "; " + wanted + " would be right");
     const int64_t given = node->as_integer()->get();
     if ((given < low || given > high) && (special.empty() || given != int64_t(range.special)))
-        fail(key, "is " + std::to_string(given) + "; it must be " + wanted);
+        fail(key, concat("is ", given, "; it must be ", wanted));
     value = static_cast<uint32_t>(given);
 }
 
@@ -179,9 +174,8 @@ void TomlReader::texts(std::string_view key, std::vector<std::string>& values, s
     const toml::node* node = Nodes::find(*this, key);
     if (!node) return;
     const std::string wanted = most == 1      ? std::string("one channel name")
-                               : least < most ? "an array of " + std::to_string(least) + " to " +
-                                                    std::to_string(most) + " channel names"
-                                              : "an array of " + std::to_string(most) + " channel names";
+                               : least < most ? concat("an array of ", least, " to ", most, " channel names")
+                                              : concat("an array of ", most, " channel names");
     values.clear();
     if (node->is_string() && least == 1) {
         values.push_back(node->as_string()->get());
@@ -193,7 +187,7 @@ void TomlReader::texts(std::string_view key, std::vector<std::string>& values, s
         values.push_back(entry.as_string()->get());
     }
     if (values.size() > most || values.size() < least)
-        fail(key, "has " + std::to_string(values.size()) + " names; " + wanted + " would be right");
+        fail(key, concat("has ", values.size(), " names; ", wanted, " would be right"));
 }
 
 void TomlReader::choiceIndex(std::string_view key, uint32_t& index, std::span<const std::string_view> names) {

@@ -1,9 +1,6 @@
 // Profiles and row axes in the units of the integrating kernels: lengths in diffusion radii.
 #pragma once
-#include <vector>
-
 #include "lut/lut.h"
-#include "lut/profile.h"
 #include "shared/lut_integral.h"
 
 namespace pel {
@@ -45,7 +42,7 @@ cl::Memory upload(Device& device, const std::vector<T>& values) {
 // What the kernels for tabulated profiles (kernels/lut/table_*.cl) read, prepared in double precision.
 // Lengths in diffusion radii.
 
-// R at 0 and at each distance where it bends: (R, G, B, distance). Linear between them, 0 beyond the last.
+// R at 0 and at each distance where its slope changes: (R, G, B, distance). Linear between; 0 beyond.
 std::vector<cl_float4> tableKnots(const Profile& profile);
 
 // Where the line spread ends: at the end of the table, or at the cut.

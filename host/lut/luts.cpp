@@ -1,8 +1,6 @@
 #include "lut/luts.h"
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/launch_policy.h"
 #include "lut/lut_terms.h"

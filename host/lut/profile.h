@@ -2,8 +2,8 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/object.h"
@@ -30,7 +30,7 @@ class ProfileShape {
     // The sum of Gaussians that represents the profile on the device, variances rising. Exact for skin and
     // gaussians, within 1e-6 for burley and dipole, empty for tables.
     virtual std::vector<GaussianTerm> gaussians() const { return {}; }
-    // Distances where the radial profile of a table bends, length, rising; empty for other kinds.
+    // Distances where the slope of a tabulated radial profile changes, length, rising; empty for other kinds.
     virtual std::vector<double> knots() const { return {}; }
     virtual bool singular() const { return false; }  // the radial profile grows like 1/d
     // The share of R beyond a distance; > 0.
@@ -59,6 +59,9 @@ class Profile final : public Object {
     }
     void setName(const char* name);
     void setSource(const char* source) { source_ = source; }  // static storage; before the profile is used
+    // What skin of pelProfileCreateSkinLayers is made of; NULL for other profiles.
+    const PelSkin* pigments() const { return pigments_ ? &*pigments_ : nullptr; }
+    void setPigments(const PelSkin& skin) { pigments_ = skin; }  // before the profile is used
     // Distance within which 99.9 % of the light of each channel leaves.
     double reach() const;
 
@@ -73,6 +76,7 @@ class Profile final : public Object {
     mutable std::mutex nameMutex_;  // guards the name only, which may change
     std::string name_;
     const char* source_ = "";
+    std::optional<PelSkin> pigments_;
 };
 
 // Sums of Gaussians, in any order and scale. Weights are scaled to a sum of 1 per channel.

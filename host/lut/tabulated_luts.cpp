@@ -1,7 +1,6 @@
 // Beside kernels/lut/tabulated_curvature_lut.cl and kernels/lut/tabulated_shadow_lut.cl.
 #include "lut/luts.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cl/error.h"
 #include "shared/choices.h"
 
 namespace pel {
@@ -126,13 +125,11 @@ void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params,
     }
     if (params.estimator == PEL_CURVATURE_QUADRIC)
         return estimateQuadric(topology, defines, data, planes, rows, counts);
-    cl::Launch estimate(
-        topology.device().programs().get(edge ? "mesh/curvature.cl" : "mesh/curvature_tensor.cl", defines),
-        edge ? "curvature_edge" : "curvature_tensor");
-    ringArguments(topology, estimate, rows);
-    estimate.args(data.positions.memory, data.positions.layout.offset, data.normals.memory,
-                  data.normals.layout.offset, planeStrideOf(topology), planes);
-    launchRows(topology, estimate, rows, width(topology.device()));
+    const char* file = edge ? "mesh/curvature.cl" : "mesh/curvature_tensor.cl";
+    launchRings(topology, topology.device().programs().get(file, defines),
+                edge ? "curvature_edge" : "curvature_tensor", rows, 1, data.positions.memory,
+                data.positions.layout.offset, data.normals.memory, data.normals.layout.offset,
+                planeStrideOf(topology), planes);
 }
 
 void storeQuantity(MeshTopology& topology, const PelCurvatureParams& params, uint32_t stride,

@@ -1,10 +1,8 @@
 // Vectors of many megabytes that are written once.
 #pragma once
-#include <cstddef>
 #include <memory>
 #include <new>
 #include <utility>
-#include <vector>
 
 #include "cl/machine.h"
 

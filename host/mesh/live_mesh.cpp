@@ -33,14 +33,6 @@ void checkRanges(const PelVertexRange* changed, uint32_t numChanged, uint32_t ve
 LiveMesh::LiveMesh(Ref<MeshTopology> topology, const PelCurvatureParams& params)
     : Object(kind), topology_(std::move(topology)), params_(params) {}
 
-const cl::Memory& LiveMesh::keep(Memory& memory, size_t bytes) {
-    if (memory.bytes < bytes) {
-        memory.memory = topology_->device().allocate(bytes);
-        memory.bytes = bytes;
-    }
-    return memory.memory;
-}
-
 void LiveMesh::find(const std::vector<PelVertexRange>& changed) {
     if (listed_ && sameRanges(changed, changed_)) return;
     if (!reacher_) reacher_ = std::make_unique<MeshReacher>(*topology_);
@@ -88,9 +80,9 @@ void LiveMesh::update(const VertexView& positions, const VertexView& normals, co
     estimateReach_ = params_.estimator == PEL_CURVATURE_QUADRIC ? 3 : madeNormals_ ? 2 : 1;
 
     const Scratch scratch = [&](MeshTopology::Scratch which, size_t bytes) -> const cl::Memory& {
-        return keep(scratch_[which], bytes);
+        return scratch_[which].grow(topology.device(), bytes);
     };
-    const cl::Memory estimated = keep(estimated_, planeBytes * planes);
+    const cl::Memory estimated = estimated_.grow(topology.device(), planeBytes * planes);
     SlotPlanes values{std::min(planes, 2u), planeStride, estimated, {}, {}, {}};
     if (params_.smoothingPasses > 0 || params_.smoothingRadius > 0) {
         values.to = scratch(MeshTopology::scratchFrom, planeBytes * values.planes);
@@ -142,8 +134,8 @@ PelLiveMeshStats LiveMesh::stats() {
     const std::unique_lock guard(mutex_);
     PelLiveMeshStats stats = stats_;
     stats.rowsTotal = topology_->slots();
-    for (const Memory& memory : scratch_) stats.deviceBytes += memory.bytes;
-    stats.deviceBytes += estimated_.bytes + (reach_.slices.size() + reach_.lanes.size()) * sizeof(uint32_t);
+    for (const SizedMemory& memory : scratch_) stats.deviceBytes += memory.bytes();
+    stats.deviceBytes += estimated_.bytes() + (reach_.slices.size() + reach_.lanes.size()) * sizeof(uint32_t);
     stats.hostBytes = reacher_ ? reacher_->bytes() : 0;
     return stats;
 }

@@ -1,9 +1,6 @@
 // PelLiveMesh: curvature of a mesh when only a part of it moves.
 #pragma once
-#include <memory>
-
 #include "mesh/curvature.h"
-#include "mesh/mesh_topology.h"
 
 namespace pel {
 
@@ -50,11 +47,6 @@ class LiveMesh final : public Object {
 
   private:
     ~LiveMesh() override = default;
-    struct Memory {
-        cl::Memory memory;
-        size_t bytes = 0;
-    };
-    const cl::Memory& keep(Memory& memory, size_t bytes);
     void find(const std::vector<PelVertexRange>& changed);
     Rows rowsUpTo(uint32_t distance, Rows::Work& work) const;
 
@@ -63,7 +55,7 @@ class LiveMesh final : public Object {
     std::mutex mutex_;  // guards the rest
     std::unique_ptr<MeshReacher> reacher_;
     // Results of the previous update: values of the estimator, gathered rows, normals, weights.
-    Memory scratch_[MeshTopology::scratchCount], estimated_;
+    SizedMemory scratch_[MeshTopology::scratchCount], estimated_;
     bool fresh_ = true, madeNormals_ = false;
     VertexView target_;
     // The list of the last change, for a next change of the same vertices.

@@ -1,18 +1,14 @@
 #include "mesh/mesh_adjacency.h"
 
-#include <algorithm>
-
 #include "cl/error.h"
-#include "mesh/mesh_threads.h"
+#include "core/threads.h"
 #include "shared/mesh.h"
 
 namespace pel {
-namespace {
-
 // With fewer, a thread costs more than it saves.
 constexpr size_t leastSlots = 16384;
 
-MeshAdjacency buildAdjacency(const CornerTable& table, const Written& ready) {
+MeshAdjacency buildAdjacency(const CornerTable& table) {
     MeshAdjacency mesh;
     const LargeVector<uint32_t>& begins = table.begins;
     const auto slots = uint32_t(begins.size() - 1);
@@ -27,9 +23,7 @@ MeshAdjacency buildAdjacency(const CornerTable& table, const Written& ready) {
         const size_t count = table.corners.size() / parts.size();
         part.neighbours.reserve(count + count / 8);
         RingBuilder builder;
-        uint32_t there = 0;
         for (size_t slot = begin; slot < end; ++slot) {
-            if (slot >= there) there = ready.waitFor(uint32_t(slot) + 1);
             mesh.offsets[slot] = uint32_t(part.neighbours.size());
             part.edges += builder.build(uint32_t(slot), table.corners.data() + begins[slot],
                                         begins[slot + 1] - begins[slot], part.neighbours);
@@ -53,29 +47,6 @@ MeshAdjacency buildAdjacency(const CornerTable& table, const Written& ready) {
         for (size_t slot = begin; slot < end; ++slot) mesh.offsets[slot] += starts[index];
         std::ranges::copy(parts[index].neighbours, mesh.neighbours.begin() + starts[index]);
     });
-    return mesh;
-}
-
-}  // namespace
-
-MeshAdjacency buildAdjacency(const CornerTable& table) {
-    return buildAdjacency(table, Written(uint32_t(table.begins.size() - 1)));
-}
-
-MeshAdjacency buildRenumbered(const CornerTable& table, std::vector<uint32_t>& numbers) {
-    Renumbering renumbering(table);
-    MeshAdjacency mesh;
-    {
-        // One thread gives numbers, the others make lists of what it has moved.
-        std::jthread mover;
-        try {
-            mover = std::jthread([&] { renumbering.run(); });
-        } catch (const std::system_error&) {  // no more threads for this process
-            renumbering.run();
-        }
-        mesh = buildAdjacency(renumbering.moved, renumbering.ready);
-    }
-    numbers = std::move(renumbering.numbers);
     return mesh;
 }
 
@@ -134,54 +105,50 @@ std::vector<uint32_t> findRuns(std::span<const uint32_t> rows) {
     return runs;
 }
 
-Renumbering::Renumbering(const CornerTable& table)
-    : numbers(table.begins.size() - 1, none),
-      table_(table),
-      slots_(uint32_t(table.begins.size() - 1)),
-      queue_(table.begins.size()) {  // one more than slots, for one that turns out to have a number
+CornerTable renumbered(const CornerTable& table, std::vector<uint32_t>& numbers) {
+    constexpr uint32_t none = UINT32_MAX;
+    const auto slots = uint32_t(table.begins.size() - 1);
+    CornerTable moved;
     moved.corners.resize(table.corners.size());
     moved.begins.resize(table.begins.size());
-}
-
-void Renumbering::move(uint32_t next) {
-    // Lists lie anywhere in memory: those of the next slots are asked for before their turn.
-    if (next + 24 < known_) __builtin_prefetch(table_.begins.data() + queue_[next + 24]);
-    if (next + 12 < known_) {
-        const Corner* list = table_.corners.data() + table_.begins[queue_[next + 12]];
-        __builtin_prefetch(list);
-        __builtin_prefetch(list + 6);
-    }
-    if (next + 6 < known_) {  // this list has come meanwhile
-        const uint32_t slot = queue_[next + 6];
-        for (uint32_t i = table_.begins[slot]; i < table_.begins[slot + 1]; ++i)
-            __builtin_prefetch(numbers.data() + table_.corners[i].from);
-    }
-    const uint32_t begin = table_.begins[queue_[next]], end = table_.begins[queue_[next] + 1];
-    moved.begins[next] = written_;
-    Corner* const to = moved.corners.data() + written_;
-    for (uint32_t i = begin; i < end; ++i) to[i - begin].from = number(table_.corners[i].from);
-    for (uint32_t i = begin; i < end; ++i) to[i - begin].to = number(table_.corners[i].to);
-    written_ += end - begin;
-}
-
-void Renumbering::run() noexcept {
-    uint32_t next = 0, told = 0;
-    for (uint32_t first = 0; first < slots_; ++first) {
+    numbers.assign(slots, none);
+    LargeVector<uint32_t> queue(table.begins.size());  // one more than slots, for one that has a number
+    uint32_t known = 0, written = 0, next = 0;
+    const auto number = [&](uint32_t slot) {
+        const bool isNew = numbers[slot] == none;
+        queue[known] = slot;
+        const uint32_t n = isNew ? known : numbers[slot];
+        numbers[slot] = n;
+        known += isNew;
+        return n;
+    };
+    for (uint32_t first = 0; first < slots; ++first) {
         if (numbers[first] != none) continue;
         number(first);
-        for (; next < known_; ++next) {
-            move(next);
-            // RingBuilder reads a few corners past a slot's own. So a block is ready only when enough
-            // corners follow it.
-            if (next - told < block || next % block != 0) continue;
-            const uint32_t whole = next - block;
-            if (written_ - moved.begins[whole] < RingBuilder::readAhead) continue;
-            ready.tell(told = whole);
+        for (; next < known; ++next) {
+            // Lists lie anywhere in memory: those of the next slots are asked for before their turn.
+            if (next + 24 < known) __builtin_prefetch(table.begins.data() + queue[next + 24]);
+            if (next + 12 < known) {
+                const Corner* list = table.corners.data() + table.begins[queue[next + 12]];
+                __builtin_prefetch(list);
+                __builtin_prefetch(list + 6);
+            }
+            if (next + 6 < known) {  // this list has come meanwhile
+                const uint32_t slot = queue[next + 6];
+                for (uint32_t i = table.begins[slot]; i < table.begins[slot + 1]; ++i)
+                    __builtin_prefetch(numbers.data() + table.corners[i].from);
+            }
+            const uint32_t begin = table.begins[queue[next]], end = table.begins[queue[next] + 1];
+            moved.begins[next] = written;
+            Corner* const to = moved.corners.data() + written;
+            for (uint32_t i = begin; i < end; ++i) to[i - begin].from = number(table.corners[i].from);
+            for (uint32_t i = begin; i < end; ++i) to[i - begin].to = number(table.corners[i].to);
+            written += end - begin;
         }
     }
-    moved.begins[slots_] = written_;
-    std::ranges::fill(moved.corners.begin() + written_, moved.corners.end(), Corner{0, 0});
-    ready.tell(slots_);
+    moved.begins[slots] = written;
+    std::ranges::fill(moved.corners.begin() + written, moved.corners.end(), Corner{0, 0});
+    return moved;
 }
 
 }  // namespace pel

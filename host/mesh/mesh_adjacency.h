@@ -1,9 +1,7 @@
 // One-ring lists of a triangle mesh from raw index arrays: any connectivity, manifold or not.
 #pragma once
-#include <atomic>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "mesh/large_vector.h"
 
@@ -31,7 +29,6 @@ class RingBuilder {
     Edges build(uint32_t slot, const Corner* corners, uint32_t count, LargeVector<uint32_t>& out);
 
   private:
-    bool buildSmallFan(const Corner* corners, uint32_t count, LargeVector<uint32_t>& out);
     bool buildFan(const Corner* corners, uint32_t count, LargeVector<uint32_t>& out);
     void buildTrails(const Corner* corners, uint32_t count, LargeVector<uint32_t>& out);
 
@@ -48,7 +45,6 @@ class RingBuilder {
     Node& node(uint32_t slot);
     void walk(Node& start, LargeVector<uint32_t>& out);
 
-    std::vector<Corner> fan_;
     std::vector<End> ends_;
     std::vector<Node> nodes_;
     std::vector<char> used_;  // per triangle
@@ -84,56 +80,10 @@ struct CornerTable {
 };
 CornerTable sortCorners(const Triangles& triangles);
 
-// How many slots one thread has written for others to read.
-class Written {
-  public:
-    explicit Written(uint32_t slots) : slots_(slots) {}
-    void tell(uint32_t slots) {
-        slots_.store(slots, std::memory_order_release);
-        slots_.notify_all();
-    }
-    // At least `slots`; waits until there are so many.
-    uint32_t waitFor(uint32_t slots) const {
-        for (;;) {
-            const uint32_t now = slots_.load(std::memory_order_acquire);
-            if (now >= slots) return now;
-            slots_.wait(now);
-        }
-    }
-
-  private:
-    std::atomic<uint32_t> slots_;
-};
-
-// Breadth first from the first slot of each part of the mesh.
-class Renumbering {
-  public:
-    explicit Renumbering(const CornerTable& table);
-    void run() noexcept;
-
-    // Filled by run(). Another thread may read the corners of as many slots as `ready` says meanwhile, and
-    // RingBuilder::readAhead more.
-    CornerTable moved;
-    Written ready{0};
-    std::vector<uint32_t> numbers;  // the new number of each slot, once all is done
-
-  private:
-    static constexpr uint32_t none = UINT32_MAX, block = 4096;
-    uint32_t number(uint32_t slot) {
-        const bool isNew = numbers[slot] == none;
-        queue_[known_] = slot;
-        const uint32_t n = isNew ? known_ : numbers[slot];
-        numbers[slot] = n;
-        known_ += isNew;
-        return n;
-    }
-    void move(uint32_t next);
-
-    const CornerTable& table_;
-    uint32_t slots_;
-    LargeVector<uint32_t> queue_;
-    uint32_t known_ = 0, written_ = 0;
-};
+// The corners of a scattered table, whose slots get new numbers, so that neighbours get close ones: breadth
+// first from the first slot of each part of the mesh. `numbers`: of each slot. They do not depend on the
+// order of the triangles.
+CornerTable renumbered(const CornerTable& table, std::vector<uint32_t>& numbers);
 
 struct MeshAdjacency {
     LargeVector<uint32_t> offsets;     // slots + 1
@@ -146,10 +96,6 @@ struct MeshAdjacency {
 
 // No list depends on the order of a slot's corners.
 MeshAdjacency buildAdjacency(const CornerTable& table);
-
-// The same of a scattered table whose slots get new numbers first, so that neighbours get close ones.
-// `numbers`: of each slot. They do not depend on the order of the triangles.
-MeshAdjacency buildRenumbered(const CornerTable& table, std::vector<uint32_t>& numbers);
 
 // The lists in the layout that shared/mesh.h describes.
 struct MeshSlices {

@@ -1,9 +1,7 @@
 #include "mesh/mesh_adjacency.h"
 
-#include <algorithm>
-
 #include "cl/error.h"
-#include "mesh/mesh_threads.h"
+#include "core/threads.h"
 
 namespace pel {
 
@@ -57,25 +55,6 @@ void look(const Triangles& triangles, const Buckets& buckets, size_t begin, size
     }
 }
 
-// For few corners each finds its place by counting those before it: their order is random, and a branch on
-// it is guessed wrong.
-void sortByFrom(Corner* begin, Corner* end) {
-    constexpr size_t few = 8;
-    const auto count = size_t(end - begin);
-    if (count > few) {
-        std::sort(begin, end, [](const Corner& a, const Corner& b) { return a.from < b.from; });
-        return;
-    }
-    Corner sorted[few];
-    for (size_t a = 0; a < count; ++a) {
-        size_t before = 0;
-        for (size_t b = 0; b < count; ++b)
-            before += size_t(begin[b].from < begin[a].from) + size_t(begin[b].from == begin[a].from && b < a);
-        sorted[before] = begin[a];
-    }
-    std::copy_n(sorted, count, begin);
-}
-
 // Sorts the corners of one bucket, a run of slots from `first` on.
 void sortBucket(const PlacedCorner* placed, size_t count, uint32_t* begins, size_t slots, size_t first,
                 size_t before, bool byFrom, Corner* out) {
@@ -86,7 +65,8 @@ void sortBucket(const PlacedCorner* placed, size_t count, uint32_t* begins, size
     for (size_t s = 0; s < slots; ++s) places[s + 1] += places[s];
     for (size_t s = 0; s < slots; ++s) begins[s] = uint32_t(before + places[s]);
     for (size_t i = 0; i < count; ++i) out[before + places[placed[i].slot - first]++] = placed[i].corner;
-    for (size_t s = 0; byFrom && s < slots; ++s) sortByFrom(out + begins[s], out + before + places[s]);
+    for (size_t s = 0; byFrom && s < slots; ++s)
+        std::ranges::sort(out + begins[s], out + before + places[s], {}, &Corner::from);
 }
 
 }  // namespace

@@ -27,14 +27,6 @@ cl::Program program(const MeshTopology& topology, uint32_t stride, const Rows& r
     return topology.device().programs().get("mesh/mesh_normals.cl", defines);
 }
 
-void makeNormals(MeshTopology& topology, const SlotData& data, const Rows& rows) {
-    cl::Launch make(program(topology, data.stride, rows), "mesh_normals");
-    ringArguments(topology, make, rows);
-    make.args(data.positions.memory, data.positions.layout.offset, data.normals.memory,
-              data.normals.layout.offset);
-    launchRows(topology, make, rows, width(topology.device()));
-}
-
 }  // namespace
 
 SlotData gatherBySlot(MeshTopology& topology, const VertexView& positions, const VertexView& normals,
@@ -48,7 +40,10 @@ SlotData gatherBySlot(MeshTopology& topology, const VertexView& positions, const
     else  // without normals the second half of each row is overwritten
         data = gatherRows(topology, positions, normals.memory ? normals : positions,
                           scratch(MeshTopology::scratchRows, slots * 32ull), moved);
-    if (!normals.memory) makeNormals(topology, data, turned);
+    if (!normals.memory)
+        launchRings(topology, program(topology, data.stride, turned), "mesh_normals", turned, 1,
+                    data.positions.memory, data.positions.layout.offset, data.normals.memory,
+                    data.normals.layout.offset);
     return data;
 }
 

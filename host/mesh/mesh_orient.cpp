@@ -1,11 +1,8 @@
 #include "mesh/mesh_topology.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
-
-#include "cl/error.h"
 
 namespace pel {
 namespace {

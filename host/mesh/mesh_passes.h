@@ -1,9 +1,5 @@
 // What all passes over a topology's slots share.
 #pragma once
-#include <cstdint>
-#include <functional>
-#include <vector>
-
 #include "mesh/mesh_topology.h"
 #include "mesh/vertex_view.h"
 
@@ -43,12 +39,16 @@ inline void launchRows(const MeshTopology& topology, cl::Launch& launch, const R
 
 // The arguments that every pass over slots begins with.
 inline void rowArguments(const MeshTopology& topology, cl::Launch& launch, const Rows& rows) {
-    launch.arg(topology.slots()).arg(rows.slices).arg(rows.list);
+    launch.args(topology.slots(), rows.slices, rows.list);
 }
 
-inline void ringArguments(const MeshTopology& topology, cl::Launch& launch, const Rows& rows) {
-    rowArguments(topology, launch, rows);
-    launch.arg(topology.slices()).arg(topology.rings()).arg(topology.runs());
+// Launches a pass that walks rings; `values`: its arguments after those of the rings.
+template <class... Values>
+void launchRings(const MeshTopology& topology, const cl::Program& program, const char* kernel,
+                 const Rows& rows, uint32_t planes, const Values&... values) {
+    cl::Launch launch(program, kernel, topology.slots(), rows.slices, rows.list, topology.slices(),
+                      topology.rings(), topology.runs(), values...);
+    launchRows(topology, launch, rows, width(topology.device()), planes);
 }
 
 // Whether a pass may read rows as runs: true where measurements showed a gain.

@@ -9,9 +9,6 @@
 namespace pel {
 namespace {
 
-// With more triangles than this, sorting costs less than a search per step.
-constexpr uint32_t largestFan = 24;
-
 // Up to here all triangles are compared with one at once.
 constexpr uint32_t smallFan = RingBuilder::readAhead;
 
@@ -26,10 +23,7 @@ RingBuilder::Edges RingBuilder::build(uint32_t slot, const Corner* corners, uint
                                       LargeVector<uint32_t>& out) {
     const size_t begin = out.size();
     Edges edges;
-    const bool isFan = count <= smallFan     ? buildSmallFan(corners, count, out)
-                       : count <= largestFan ? buildFan(corners, count, out)
-                                             : false;
-    if (count > 0 && !isFan) {
+    if (count > 0 && !(count <= smallFan && buildFan(corners, count, out))) {
         buildTrails(corners, count, out);
         // A list of this kind can hold a neighbour several times.
         for (const Node& node : nodes_) {
@@ -53,8 +47,7 @@ RingBuilder::Edges RingBuilder::build(uint32_t slot, const Corner* corners, uint
 
 // The usual vertex: one fan of triangles, all in the same order. For any other vertex returns false and
 // appends nothing.
-bool RingBuilder::buildSmallFan(const Corner* corners, uint32_t count, LargeVector<uint32_t>& out) {
-    if (count == 0) return false;
+bool RingBuilder::buildFan(const Corner* corners, uint32_t count, LargeVector<uint32_t>& out) {
     // The corners whose `end` is `slot`, as bits. A loop over all eight becomes vector instructions.
     constexpr uint32_t bits[smallFan] = {1, 2, 4, 8, 16, 32, 64, 128};
     const uint32_t valid = (1u << count) - 1;
@@ -96,41 +89,6 @@ bool RingBuilder::buildSmallFan(const Corner* corners, uint32_t count, LargeVect
     return true;
 }
 
-// The same for more triangles.
-bool RingBuilder::buildFan(const Corner* unordered, uint32_t count, LargeVector<uint32_t>& out) {
-    fan_.assign(unordered, unordered + count);
-    Corner* const corners = fan_.data();
-    // Start at the corner that no triangle leads to, or at the smallest neighbour if there is none: the list
-    // must not depend on the order of the triangles.
-    uint32_t first = UINT32_MAX, entrances = 0;
-    for (uint32_t a = 0; a < count; ++a) {
-        bool reached = false;
-        for (uint32_t b = 0; b < count; ++b) {
-            if (a != b && (corners[a].from == corners[b].from || corners[a].to == corners[b].to))
-                return false;
-            reached |= corners[a].from == corners[b].to;
-        }
-        if (!reached) {
-            ++entrances;
-            first = a;
-        } else if (entrances == 0 && (first == UINT32_MAX || corners[a].from < corners[first].from))
-            first = a;
-    }
-    if (entrances > 1) return false;
-    std::swap(corners[0], corners[first]);
-    for (uint32_t a = 1; a < count; ++a) {
-        uint32_t next = a;
-        while (next < count && corners[next].from != corners[a - 1].to) ++next;
-        if (next == count) return false;  // two closed fans
-        std::swap(corners[a], corners[next]);
-    }
-    const uint32_t open = entrances ? PEL_MESH_SINGLE : 0;
-    for (uint32_t a = 0; a < count; ++a)
-        out.push_back(corners[a].from | (a == 0 ? PEL_MESH_START | open : 0));
-    if (open) out.push_back(corners[count - 1].to | PEL_MESH_SINGLE);
-    return true;
-}
-
 RingBuilder::Node& RingBuilder::node(uint32_t slot) {
     return *std::lower_bound(nodes_.begin(), nodes_.end(), slot,
                              [](const Node& n, uint32_t s) { return n.slot < s; });
@@ -160,8 +118,9 @@ void RingBuilder::buildTrails(const Corner* corners, uint32_t count, LargeVector
     }
     std::vector<uint32_t> firsts;
     for (const Node& n : nodes_) firsts.push_back(n.next);
-    for (Node& n : nodes_)
-        if (n.free % 2) walk(n, out);
+    for (uint32_t backward : {0u, 1u})  // an open fan is gone round forwards
+        for (Node& n : nodes_)
+            if (n.free % 2 && ends_[n.next].backward == backward) walk(n, out);
     for (Node& n : nodes_)
         while (n.free) walk(n, out);
     for (size_t n = 0; n < nodes_.size(); ++n) nodes_[n].next = firsts[n];

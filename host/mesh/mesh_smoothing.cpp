@@ -25,23 +25,12 @@ const cl::Memory& makeWeights(MeshTopology& topology, const SlotData& data, PelS
     const cl::Memory rates = scratch(MeshTopology::scratchRates, slotBytes);
     const bool area = kind == PEL_SMOOTHING_AREA;
     const cl::Memory factors = area ? scratch(MeshTopology::scratchFactors, slotBytes) : rates;
-    cl::Launch launch(program(topology, data, rows, kind), "diffuse_weights");
-    ringArguments(topology, launch, rows);
-    launch.args(data.positions.memory, data.positions.layout.offset, data.normals.memory,
-                data.normals.layout.offset, limit, crease2, weights, factors);
-    launchRows(topology, launch, rows, width(topology.device()));
-    if (area) {
-        cl::Launch balance(program(topology, data, rows, kind), "diffuse_balance");
-        ringArguments(topology, balance, rows);
-        balance.args(weights, factors, rates);
-        launchRows(topology, balance, rows, width(topology.device()));
-    }
-    if (area && limit > 0) {
-        cl::Launch slow(program(topology, data, rows, kind), "diffuse_limit");
-        ringArguments(topology, slow, rows);
-        slow.args(limit, weights, rates);
-        launchRows(topology, slow, rows, width(topology.device()));
-    }
+    const cl::Program kernels = program(topology, data, rows, kind);
+    launchRings(topology, kernels, "diffuse_weights", rows, 1, data.positions.memory,
+                data.positions.layout.offset, data.normals.memory, data.normals.layout.offset, limit, crease2,
+                weights, factors);
+    if (area) launchRings(topology, kernels, "diffuse_balance", rows, 1, weights, factors, rates);
+    if (area && limit > 0) launchRings(topology, kernels, "diffuse_limit", rows, 1, limit, weights, rates);
     return weights;
 }
 
@@ -73,10 +62,8 @@ void smoothUniform(MeshTopology& topology, const cl::Defines& defines, uint32_t 
         const Rows here = rows ? rows(pass) : Rows{};
         cl::Defines variant = defines;
         variant["PEL_MESH_LISTED"] = listed(here);
-        cl::Launch smooth(topology.device().programs().get("mesh/curvature.cl", variant), "curvature_smooth");
-        ringArguments(topology, smooth, here);
-        smooth.args(values.planeStride, values.from, values.to);
-        launchRows(topology, smooth, here, width(topology.device()), values.planes);
+        launchRings(topology, topology.device().programs().get("mesh/curvature.cl", variant),
+                    "curvature_smooth", here, values.planes, values.planeStride, values.from, values.to);
         values.advance();
     }
 }
@@ -116,12 +103,9 @@ void smoothToRadius(MeshTopology& topology, const SlotData& data, const Diffusio
         scratch(MeshTopology::scratchSum, size_t(values.planeStride) * values.planes * sizeof(float));
     for (uint32_t stage = 0; stage < diffusion.passes(); ++stage) {
         const Rows here = rows ? rows(stage) : Rows{};
-        cl::Launch launch(program(topology, data, here), "diffuse_stage");
-        ringArguments(topology, launch, here);
-        launch.args(weights, values.planeStride, values.from, stage == 0 ? values.from : values.before,
-                    values.to, sum, int(stage == 0), diffusion.coefficients[0],
-                    diffusion.coefficients[stage + 1]);
-        launchRows(topology, launch, here, width(topology.device()), values.planes);
+        launchRings(topology, program(topology, data, here), "diffuse_stage", here, values.planes, weights,
+                    values.planeStride, values.from, stage == 0 ? values.from : values.before, values.to, sum,
+                    int(stage == 0), diffusion.coefficients[0], diffusion.coefficients[stage + 1]);
         values.advance();
     }
     values.from = sum;

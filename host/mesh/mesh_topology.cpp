@@ -40,20 +40,18 @@ Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopology
     report.vertices = desc.numVertices;
     report.triangles = uint32_t(desc.numIndices / 3);
     report.uniquePositions = weld.slots;
-    const CornerTable corners =
+    CornerTable corners =
         sortCorners({desc.indices, desc.numIndices / 3, weld.slotOf, desc.numVertices, weld.slots});
     report.degenerateTriangles = corners.degenerate;
     report.unreferencedVertices = corners.unreferenced;
     progress(0.5);
-    MeshAdjacency adjacency;
     if (corners.scattered) {
         // Passes then work in an order of their own. Only the first and the last pass use the caller's order.
         std::vector<uint32_t> numbers;
-        adjacency = buildRenumbered(corners, numbers);
+        corners = renumbered(corners, numbers);
         renumberSlots(weld, std::move(numbers));
-    } else {
-        adjacency = buildAdjacency(corners);
     }
+    const MeshAdjacency adjacency = buildAdjacency(corners);
     progress(0.9);
     report.edges = adjacency.edges;
     report.borderEdges = adjacency.borderEdges;
@@ -74,15 +72,6 @@ Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopology
     topology->ringEntries_ = rings.rows.size();
     progress(1.0);
     return topology;
-}
-
-const cl::Memory& MeshTopology::scratch(Scratch which, size_t bytes) {
-    auto& s = scratch_[which];
-    if (s.bytes < bytes) {
-        s.memory = device_->allocate(bytes);
-        s.bytes = bytes;
-    }
-    return s.memory;
 }
 
 }  // namespace pel

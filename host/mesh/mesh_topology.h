@@ -1,13 +1,11 @@
 // The analysis of a mesh's indices, made once and kept on the device; and the scratch memory of the passes
 // over it.
 #pragma once
-#include <pellucid/pellucid.h>
-#include <cstdint>
 #include <functional>
 #include <span>
-#include <vector>
 
 #include "core/buffer.h"
+#include "core/sized_memory.h"
 #include "shared/mesh.h"
 
 namespace pel {
@@ -59,7 +57,7 @@ class MeshTopology final : public Object {
         scratchCount
     };
     std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
-    const cl::Memory& scratch(Scratch which, size_t bytes);
+    const cl::Memory& scratch(Scratch which, size_t bytes) { return scratch_[which].grow(*device_, bytes); }
 
     // Entries of the rings, including fillers.
     size_t ringEntries() const { return ringEntries_; }
@@ -86,10 +84,7 @@ class MeshTopology final : public Object {
     size_t ringEntries_ = 0;
     cl::Memory indices_, slotOf_, memberOffsets_, members_, slices_, rings_, runs_;
     std::mutex mutex_;
-    struct {
-        cl::Memory memory;
-        size_t bytes = 0;
-    } scratch_[scratchCount];
+    SizedMemory scratch_[scratchCount];
 };
 
 // Welding: which of the caller's vertices are at one place, and become one vertex of the topology.

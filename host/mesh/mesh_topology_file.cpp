@@ -7,7 +7,6 @@
 #include "mesh/mesh_topology.h"
 
 #define XXH_INLINE_ALL
-#include <xxhash.h>
 
 namespace pel {
 namespace {

@@ -1,12 +1,8 @@
 #include "mesh/mesh_topology.h"
 
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <numeric>
-#include <utility>
-
-#include "cl/error.h"
 
 namespace pel {
 namespace {

@@ -1,6 +1,5 @@
 #include "mesh/mesh_passes.h"
 
-#include <array>
 #include <cmath>
 
 namespace pel {

@@ -62,16 +62,4 @@ Camera frameHead(const Bounds& box, const HeadPose& pose, const Framing& framing
     return camera;
 }
 
-Vec3 keyLightDirection(const HeadPose& pose, KeyLight where) {
-    switch (where) {
-        case KeyLight::Front:
-            return headDirection(pose, 35, 35);
-        case KeyLight::Side:
-            return headDirection(pose, 80, 20);
-        case KeyLight::Back:
-            return headDirection(pose, 150, 10);
-    }
-    return pose.front;
-}
-
 }  // namespace pellucid::sample

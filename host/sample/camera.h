@@ -1,7 +1,6 @@
 // The view of the sample renderer, and where to put camera and light round a head.
 #pragma once
 #include "sample/mesh.h"
-#include "sample/vector.h"
 
 namespace pellucid::sample {
 
@@ -47,11 +46,5 @@ struct Framing {
 
 // The camera that sees the whole box as large as `framing` says. Near and far plane enclose the box.
 Camera frameHead(const Bounds& box, const HeadPose& pose, const Framing& framing, double aspect);
-
-// Where a key light stands: to the front and above, so that most of the face is lit; to the side, so that the
-// terminator crosses the face; behind, so that ears and other thin parts glow (best seen
-// from azimuth 25).
-enum class KeyLight { Front, Side, Back };
-Vec3 keyLightDirection(const HeadPose& pose, KeyLight where);  // unit, towards the light
 
 }  // namespace pellucid::sample

@@ -1,9 +1,6 @@
 // Renders what a deferred renderer hands to Pellucid: one sample through each pixel's centre.
 #pragma once
-#include <array>
 #include <cstddef>
-#include <cstdint>
-#include <vector>
 
 #include "sample/camera.h"
 #include "sample/look.h"
@@ -66,6 +63,11 @@ struct GBuffer {
     Image coverage;       // 1, 1 or 0
     std::vector<uint32_t> material;  // id per pixel, 0 background
 };
+
+// A pixel of three planes.
+inline Vec3 vectorAt(const Image& image, int x, int y) {
+    return {image.at(0, x, y), image.at(1, x, y), image.at(2, x, y)};
+}
 
 // Pixels are independent of each other and of the number of threads. Throws std::invalid_argument for a
 // negative size.

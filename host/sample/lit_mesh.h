@@ -1,11 +1,7 @@
 // Irradiance on a mesh, with ray-traced shadows, and triangles split until it is linear on each: what
 // pelSurfaceIntegral takes.
 #pragma once
-#include <array>
-#include <functional>
 #include <pellucid/pellucid.hpp>
-#include <span>
-#include <vector>
 
 #include "sample/scene.h"
 

@@ -1,7 +1,5 @@
 // What colour the surfaces of the sample renderer have: skin with redder places, eyes, teeth.
 #pragma once
-#include <array>
-#include <vector>
 
 #include "sample/vector.h"
 

@@ -94,19 +94,6 @@ Mesh makeSphere(double radius, int rings, int segments, Vec3 centre) {
     return mesh;
 }
 
-Mesh makeTorus(double major, double minor, int rings, int segments) {
-    Mesh mesh;
-    for (int i = 0; i <= rings; ++i)
-        for (int j = 0; j <= segments; ++j) {
-            const double theta = -2 * pi * i / rings, phi = 2 * pi * j / segments;
-            const Vec3 out{std::cos(phi), std::sin(phi), 0};
-            const Vec3 n = out * std::cos(theta) + Vec3{0, 0, std::sin(theta)};
-            addVertex(mesh, out * major + n * minor, n, double(j) / segments, double(i) / rings, 1 / minor);
-        }
-    addGrid(mesh, rings, segments, false);
-    return mesh;
-}
-
 Mesh makeRectangle(double x0, double x1, double y0, double y1, double z) {
     Mesh mesh;
     for (int i = 0; i < 2; ++i)

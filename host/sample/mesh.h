@@ -44,8 +44,6 @@ void checkMesh(const MeshView& mesh);
 
 // Normals, UVs and curvature are those of the surface meant, at the vertices exactly.
 Mesh makeSphere(double radius, int rings, int segments, Vec3 centre = {});
-// About the z axis; curvature is that of the tube, 1/minor.
-Mesh makeTorus(double major, double minor, int rings, int segments);
 // A rectangle in the plane z, facing +z.
 Mesh makeRectangle(double x0, double x1, double y0, double y1, double z);
 // A square of the given half side at z = 0 and, at `height` above it, another one twice that long that covers

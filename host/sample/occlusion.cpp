@@ -1,6 +1,5 @@
 #include "sample/occlusion.h"
 
-#include <cmath>
 #include <numbers>
 #include <stdexcept>
 
@@ -11,10 +10,6 @@ constexpr int pattern = 4;           // pixels along a side
 constexpr double offset = 0.05;      // mm from the surface, for the vertex normals lean from the triangles'
 constexpr double alikeNormal = 0.8;  // cosine
 constexpr double alikeHeight = 0.5;  // mm above or below the tangent plane
-
-Vec3 vectorAt(const Image& image, int x, int y) {
-    return {image.at(0, x, y), image.at(1, x, y), image.at(2, x, y)};
-}
 
 // The share of cosine-distributed rays from `p` that hit nothing. `k`: the place in the pattern.
 float unoccluded(const Scene& scene, Vec3 p, Vec3 n, int rays, int k) {

@@ -1,13 +1,6 @@
 // Light that walks through the volume of a body (docs/mathematics.md, section 14): what the surface integral
 // itself approximates.
 #pragma once
-#include <array>
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <span>
-#include <vector>
-
 #include "sample/lit_mesh.h"
 
 namespace pellucid::sample {

@@ -3,7 +3,6 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -196,6 +195,17 @@ void Scene::refine(const Ray& ray, Hit& hit) const {
     hit.weights[1] = std::clamp(hit.weights[1], 0.0, 1.0);
     hit.weights[2] = std::clamp(hit.weights[2], 0.0, 1 - hit.weights[1]);
     hit.weights[0] = 1 - hit.weights[1] - hit.weights[2];
+}
+
+void traceRays(const Scene& scene, int width, int height, const std::function<Ray(int, int)>& rayAt,
+               const std::function<void(int, int, const Ray&, const Hit&)>& put) {
+#pragma omp parallel for schedule(dynamic, 4)
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const Ray ray = rayAt(x, y);
+            const Hit hit = scene.intersect(ray);
+            if (hit.triangle != Hit::none) put(x, y, ray, hit);
+        }
 }
 
 }  // namespace pellucid::sample

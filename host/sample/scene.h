@@ -1,6 +1,6 @@
 // A mesh made ready for ray tracing. The sample renderer's only contact with Embree.
 #pragma once
-#include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "sample/mesh.h"
@@ -53,16 +53,8 @@ class Scene {
     std::unique_ptr<Device> device_;
 };
 
-// Calls put(x, y, ray, hit) for each ray rayAt(x, y) of width x height that hits the mesh.
-template <class RayAt, class Put>
-void traceRays(const Scene& scene, int width, int height, const RayAt& rayAt, const Put& put) {
-#pragma omp parallel for schedule(dynamic, 4)
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const Ray ray = rayAt(x, y);
-            const Hit hit = scene.intersect(ray);
-            if (hit.triangle != Hit::none) put(x, y, ray, hit);
-        }
-}
+// Calls put(x, y, ray, hit) for each ray rayAt(x, y) of width x height that hits the mesh, rows on all cores.
+void traceRays(const Scene& scene, int width, int height, const std::function<Ray(int, int)>& rayAt,
+               const std::function<void(int, int, const Ray&, const Hit&)>& put);
 
 }  // namespace pellucid::sample

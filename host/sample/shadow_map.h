@@ -1,7 +1,5 @@
 // Depth maps seen from a light.
 #pragma once
-#include <vector>
-
 #include "sample/scene.h"
 
 namespace pellucid::sample {

@@ -1,7 +1,6 @@
 #include "sample/sky.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <utility>
 #include <vector>

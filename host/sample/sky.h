@@ -1,6 +1,5 @@
 // Light from everywhere, as nine spherical harmonics per channel.
 #pragma once
-#include <array>
 #include <functional>
 
 #include "sample/vector.h"

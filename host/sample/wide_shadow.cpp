@@ -134,9 +134,6 @@ Image filterWideShadow(const GBuffer& gbuffer, const ShadowMap& map, const WideS
     if (map.size == 0) return out;
     if (!(options.filterWidth > 0) || options.maxTexels < 4)
         throw std::invalid_argument("wide shadow: filterWidth must be above 0 and maxTexels 4 or more");
-    const auto vectorAt = [](const Image& image, int x, int y) {
-        return Vec3{image.at(0, x, y), image.at(1, x, y), image.at(2, x, y)};
-    };
 #pragma omp parallel for schedule(dynamic, 4)
     for (int y = 0; y < gbuffer.height; ++y)
         for (int x = 0; x < gbuffer.width; ++x)

@@ -1,12 +1,9 @@
 #include "scene/scene_frame.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <cstring>
 
 #include "io/choice_keys.h"
-#include "io/file_error.h"
 #include "io/lut/lut_file.h"
 #include "io/lut/profile_file.h"
 
@@ -52,7 +49,7 @@ void clear(const Buffer& buffer) {
 // R, G and B, or the first three channels; `need` says what the image should have.
 std::vector<std::string> colorChannels(const std::string& file, const Image& image, const char* need) {
     if (image.channels.size() < 3)
-        throw FileError(file, "has " + std::to_string(image.channels.size()) + " channels; " + need);
+        throw FileError(file, concat("has ", image.channels.size(), " channels; ", need));
     std::vector<std::string> names{"R", "G", "B"};
     if (!(image.has("R") && image.has("G") && image.has("B")))
         for (size_t c = 0; c < 3; ++c) names[c] = image.channels[c].name;
@@ -172,7 +169,9 @@ PelShaderOptions withOptionsOf(const SceneFile& scene, PelShaderOptions options)
     options.blurNormals |= own.blurNormals;
     options.rotateTaps |= own.rotateTaps;
     options.everyPixel |= own.everyPixel;
+    options.buildInBackground |= own.buildInBackground;
     options.targetError = own.targetError;
+    if (options.timeBudget == 0) options.timeBudget = own.timeBudget;
     if (own.frameIndex) options.frameIndex = own.frameIndex;
     options.millimetresPerUnit = own.millimetresPerUnit;
     return options;
@@ -257,8 +256,7 @@ void SceneFrame::setMaterial(const SceneFile& scene, const SceneMaterial& m, Lut
     try {
         if (!m.profile.empty()) profile = findProfile(m.profile).profile;
     } catch (const FileError& e) {
-        throw FileError(scene.source,
-                        "the profile of material " + std::to_string(m.id) + " is refused: " + e.what(),
+        throw FileError(scene.source, concat("the profile of material ", m.id, " is refused: ", e.what()),
                         m.line);
     }
     if (m.preset == ScenePreset::faceworks) {
@@ -295,8 +293,9 @@ PelImageDesc SceneFrame::cubeImage(const std::string& file) {
     if (image.height != 6 * image.width && image.width != 6 * image.height)
         throw FileError(
             file,
-            "is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-                "; a cube map is six square faces, one below the other (n x 6n) or side by side (6n x n)");
+            concat(
+                "is ", image.width, " x ", image.height,
+                "; a cube map is six square faces, one below the other (n x 6n) or side by side (6n x n)"));
     return images_[{file}] =
                upload(image, colorChannels(file, image, "a cube map needs three: red, green, blue"), files_);
 }

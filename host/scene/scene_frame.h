@@ -3,9 +3,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "io/image/image_file.h"
 #include "io/scene/scene_file.h"
@@ -124,6 +121,7 @@ class SceneFrame {
     // One of `outputs`: RGB interleaved, or a value per pixel of PEL_SLOT_OUT_THICKNESS.
     std::vector<float> output(PelImageSlot slot) const { return outputs_.at(slot).readAll<float>(); }
     PelShaderStats stats() const { return shader_.stats(); }
+    std::vector<PelPassStats> passes() const { return shader_.passes(); }
     std::string warnings() const { return shader_.warnings(); }
     // Material `id` with every default filled in.
     PelMaterial material(uint32_t id) const { return shader_.material(id); }

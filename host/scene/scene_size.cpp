@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 
 #include "io/lut/profile_file.h"
 #include "scene/scene_frame.h"
@@ -92,13 +91,14 @@ std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene, 
         const float reach = findProfile(m.profile).profile.info().reach;
         // An object of skin is not smaller than a fingertip, nor larger than a few people.
         if (size > 2.3f * reach && size < 500 * reach) continue;
-        found.push_back("what is seen is " + shown(size) + " mm long with unit_mm = " +
-                        shown(scene.options.millimetresPerUnit) + ", and light reaches " + shown(reach) +
-                        " mm far in the profile of material " + std::to_string(m.id) +
-                        ": unit_mm says how many millimetres a unit of the positions is" +
-                        (fromDepth ? ", or the depth is not what inverse_view_projection takes, such as a "
-                                     "distance along the view"
-                                   : ""));
+        found.push_back(
+            concat("what is seen is ", shown(size),
+                   " mm long with unit_mm = ", shown(scene.options.millimetresPerUnit),
+                   ", and light reaches ", shown(reach), " mm far in the profile of material ", m.id,
+                   ": unit_mm says how many millimetres a unit of the positions is",
+                   (fromDepth ? ", or the depth is not what inverse_view_projection takes, such as a "
+                                "distance along the view"
+                              : "")));
     }
     return found;
 }

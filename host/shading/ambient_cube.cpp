@@ -1,7 +1,5 @@
 // The ambient cube map and the reflection cube map of eyes, in the form that the shading kernel reads
 // (lib/shading/ambient_cube.clh). Both are made from the caller's six faces in each execution.
-#include <algorithm>
-
 #include "core/launch_policy.h"
 #include "shading/launch_ranges.h"
 #include "shading/pass.h"
@@ -32,7 +30,7 @@ class CubeNodes final : public Pass {
                  {{"PEL_WIDTH", "1"}, {"PEL_FORMAT_CUBE", formatCode(plan.state.*Faces, 1)}}}};
     }
 
-    void enqueueFrame(PassWork& work) const override {
+    void enqueueFrame(PassWork& work) override {
         const ImageView& faces = work.plan.state.*Faces;
         const cl_uint size = edgeOf(faces);
         // Bytes from one face to the next.
@@ -51,8 +49,10 @@ class CubeNodes final : public Pass {
 }  // namespace
 
 constinit const PassKind ambientCubePass =
-    passKind<CubeNodes<&ShaderState::ambientCube, &ShaderPlan::ambientNodes, PEL_FEATURE_AMBIENT_CUBE>>();
+    passKind<CubeNodes<&ShaderState::ambientCube, &ShaderPlan::ambientNodes, PEL_FEATURE_AMBIENT_CUBE>>(
+        "ambient_cube");
 constinit const PassKind reflectionCubePass = passKind<
-    CubeNodes<&ShaderState::reflectionCube, &ShaderPlan::reflectionNodes, PEL_FEATURE_REFLECTION_CUBE>>();
+    CubeNodes<&ShaderState::reflectionCube, &ShaderPlan::reflectionNodes, PEL_FEATURE_REFLECTION_CUBE>>(
+    "reflection_cube");
 
 }  // namespace pel

@@ -3,7 +3,6 @@
 
 #include "shading/launch_ranges.h"
 #include "shading/pass.h"
-#include "shading/scratch_image.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
@@ -49,7 +48,7 @@ class BlurNormals final : public Pass {
         cl::Launch launch(program(), "prepare_normals", work.constants.frameMemory(), work.plan.tileLists);
         for (PelImageSlot slot :
              {PEL_SLOT_MATERIAL, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_POSITION, PEL_SLOT_DEPTH})
-            launch.arg(memoryOf(images[slot]));
+            launch.arg(images[slot]);
         launch.args(normals_.memory(), positions_->memory(), tags_->memory(),
                     cl_uint(work.plan.scratchPlane));
         work.launch(launch, tileRange(work.device, work.tiles()));
@@ -62,7 +61,7 @@ class BlurNormals final : public Pass {
         const cl::Memory &from = alongY ? between_->memory() : normals_.memory(),
                          &to = alongY ? normals_.memory() : between_->memory();
         cl::Launch launch(program(), "blur_normals", work.constants.frameMemory(), work.constants.materials(),
-                          work.plan.tileLists, memoryOf(work.plan.state.images[PEL_SLOT_MATERIAL]), from,
+                          work.plan.tileLists, work.plan.state.images[PEL_SLOT_MATERIAL], from,
                           positions_->memory(), tags_->memory(), to, cl_uint(work.plan.scratchPlane),
                           cl_uint(alongY));
         work.launch(launch, tileRange(work.device, work.tiles()));
@@ -74,6 +73,6 @@ class BlurNormals final : public Pass {
 
 }  // namespace
 
-constinit const PassKind blurNormalsPass = passKind<BlurNormals>();
+constinit const PassKind blurNormalsPass = passKind<BlurNormals>("blur_normals");
 
 }  // namespace pel

@@ -10,15 +10,11 @@ namespace {
 bool isAuto(const ShaderMaterial& material) {
     return material.given.scattering == PEL_SCATTERING_AUTO;
 }
+bool hasBorder(const PelMaterial& m) {
+    return m.borderColor[0] > 0 || m.borderColor[1] > 0 || m.borderColor[2] > 0;
+}
 bool bringsTables(const ShaderMaterial& material) {
     return material.givenCurvatureLut || material.givenShadowLut;
-}
-
-// What is asked for that differs from pixel to pixel, and blocks of pixels do not know; "" if nothing is.
-const char* perPixel(const ShaderState& state, const PelMaterial& m) {
-    if (m.borderColor[0] > 0 || m.borderColor[1] > 0 || m.borderColor[2] > 0) return "it has a borderColor";
-    const ImageView& weight = state.images[PEL_SLOT_SCATTER_WEIGHT];
-    return weight && weight.info().components > 1 ? "the scatter weight image has radii" : "";
 }
 
 // Whether every light's shadow is sharp where irradiance is made, or can be made so.
@@ -49,12 +45,12 @@ std::string chooseMethods(ShaderState& state, uint32_t methods, uint64_t tooMany
         if (onScreen) {
             material.params.scattering = PEL_SCATTERING_SCREEN;
             scatters = true;
-            const std::string why = perPixel(state, material.params);
-            material.params.scatterTaps = why.empty() ? 0 : diskTapsForBlocks;
-            if (!why.empty())
-                say("material ", id, " scatters by ", diskTapsForBlocks, " taps on a disk, for ", why,
-                    ": without, it would scatter over the whole profile, and with what the lights' shadow "
-                    "maps show beside it");
+            const bool border = hasBorder(material.params);  // which blocks of pixels do not know
+            material.params.scatterTaps = border ? diskTapsForBlocks : 0;
+            if (border)
+                say("material ", id, " scatters by ", diskTapsForBlocks,
+                    " taps on a disk, for it has a borderColor: without, it would scatter over the whole "
+                    "profile, and with what the lights' shadow maps show beside it");
         } else if (tooMany) {
             say("material ", id, " scatters by its tables, for PelShaderOptions.scratchBudget is ",
                 state.options.scratchBudget,
@@ -77,6 +73,22 @@ std::string chooseMethods(ShaderState& state, uint32_t methods, uint64_t tooMany
         for (ShaderLight& light : state.lights)
             if (light.images[PEL_LIGHT_SHADOW_MAP]) light.images[PEL_LIGHT_WIDE_SHADOW] = ImageView();
     return all;
+}
+
+ShaderState standInOf(const ShaderState& given) {
+    ShaderState state = given;
+    state.options.blurNormals = 0;
+    state.options.tileLists = PEL_TILES_ONE_LIST;
+    for (auto& [id, material] : state.materials) {
+        PelMaterial& m = material.params;
+        m.scattering = material.given.scattering = PEL_SCATTERING_NONE;
+        m.specular = m.transmission = m.thinThickness = m.albedoBefore = m.deepScatterAmbient = 0;
+        std::fill_n(m.deepScatterColor, 3, 0.0f);
+        std::fill_n(material.gain, 3, 0.0f);
+        material.normalMap.clear();
+        material.eye.reset();
+    }
+    return state;
 }
 
 namespace {
@@ -102,16 +114,10 @@ void checkMaterial(uint32_t id, const ShaderMaterial& material, const ShaderStat
                             ? "UV image to sample it by"
                             : "such texture: pelShaderSetScatteredTexture gives it one");
     if (!readsIrradiance(material) || m.scattering == PEL_SCATTERING_NONE || byTaps(m)) return;
-    if (m.borderColor[0] > 0 || m.borderColor[1] > 0 || m.borderColor[2] > 0)
+    if (hasBorder(m))
         fail(PEL_ERROR_UNSUPPORTED, "material ", id, " has a borderColor and scatters by \"",
              scatteringName(m.scattering),
              "\"; separable, and screen with scatterTaps of 8 to 256, let light flow over borders");
-    if (const ImageView& weight = state.images[PEL_SLOT_SCATTER_WEIGHT];
-        weight && weight.info().components > 1 && m.scattering != PEL_SCATTERING_TEXTURE)
-        fail(PEL_ERROR_UNSUPPORTED,
-             "the scatter weight image has a second component, the radius, and material ", id,
-             " scatters by \"", scatteringName(m.scattering),
-             "\"; separable, and screen with scatterTaps of 8 to 256, take it");
 }
 
 }  // namespace

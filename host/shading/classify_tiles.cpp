@@ -1,13 +1,12 @@
 // Lists of the tiles with a material, and of the tiles of each variant of the shading kernel.
-#include "shading/pass.h"
-#include "shading/scratch_image.h"
 #include "shading/shade_variants.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
 namespace {
 
-constexpr size_t countBytes = PEL_TILE_LISTS * sizeof(cl_uint);
+constexpr size_t countBytes = PEL_TILE_LISTS * sizeof(cl_uint),
+                 countsAt = PEL_TILE_COUNT(0) * sizeof(cl_uint);
 
 class ClassifyTiles final : public Pass {
   public:
@@ -15,11 +14,10 @@ class ClassifyTiles final : public Pass {
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
         const size_t lists = plan.variants.size() > 1 ? 1 + plan.variants.size() : 1;
-        const size_t bytes =
-            (PEL_TILE_LISTS + lists * size_t(plan.listRows()) * plan.tilesX) * sizeof(cl_uint);
-        resize(lists_, device, bytes);
+        const size_t tiles = lists * plan.listRows() * plan.tilesX;
+        resize(lists_, device, countsAt + countBytes + tiles * sizeof(cl_uint));
         resize(bandCounts_, device, plan.bandRows < plan.tileRows ? plan.tileRows * countBytes : 0);
-        plan.tileLists = lists_->memory();
+        plan.counters = plan.tileLists = lists_->memory();
     }
     size_t bytes() const override {
         return (lists_ ? lists_->bytes() : 0) + (bandCounts_ ? bandCounts_->bytes() : 0);
@@ -29,6 +27,7 @@ class ClassifyTiles final : public Pass {
         return {shadeKey(device, plan.state, plan.variants[0])};
     }
 
+    void enqueueFrame(PassWork&) override { cleared_ = true; }
     void enqueueAround(PassWork& work) override { classify(work); }
 
     void enqueue(PassWork& work) override {
@@ -40,8 +39,8 @@ class ClassifyTiles final : public Pass {
                   PelShaderStats& stats) const override {
         if (!listsTiles(plan)) return;
         std::vector<cl_uint> counts(std::max<size_t>(bands, 1) * PEL_TILE_LISTS);
-        device.read((bands > 1 ? bandCounts_ : lists_)->memory().get(), 0, counts.size() * sizeof(cl_uint),
-                    counts.data(), true);
+        device.read((bands > 1 ? bandCounts_ : lists_)->memory().get(), bands > 1 ? 0 : countsAt,
+                    counts.size() * sizeof(cl_uint), counts.data(), true);
         stats.tilesShaded = stats.tilesEye = 0;
         for (size_t i = 0; i < counts.size(); ++i) {
             const size_t list = i % PEL_TILE_LISTS;
@@ -57,11 +56,12 @@ class ClassifyTiles final : public Pass {
         return plan.state.options.tileLists != PEL_TILES_NO_LIST || plan.scratch;
     }
 
-    void classify(PassWork& work) const {
+    void classify(PassWork& work) {
         const ShaderPlan& plan = work.plan;
         if (!listsTiles(plan)) return;
         const bool listAll = plan.variants.size() == 1 || plan.scratch;
-        work.device.fill(lists_->memory().get(), 0, countBytes, 0);
+        if (!std::exchange(cleared_, false))
+            work.device.fill(lists_->memory().get(), countsAt, countBytes, 0);
         cl::Launch launch(program(), "classify_tiles", work.constants.frameMemory(),
                           work.constants.materials(), plan.state.images[PEL_SLOT_MATERIAL].buffer->memory(),
                           lists_->memory(), cl_uint(plan.variants.size()), cl_uint(listAll));
@@ -71,16 +71,17 @@ class ClassifyTiles final : public Pass {
     // The next band starts counting again.
     void keepCounts(PassWork& work) const {
         cl::check(
-            clEnqueueCopyBuffer(work.device.queue(), lists_->memory().get(), bandCounts_->memory().get(), 0,
-                                work.band * countBytes, countBytes, 0, nullptr, nullptr),
+            clEnqueueCopyBuffer(work.device.queue(), lists_->memory().get(), bandCounts_->memory().get(),
+                                countsAt, work.band * countBytes, countBytes, 0, nullptr, nullptr),
             "clEnqueueCopyBuffer");
     }
 
     Ref<Buffer> lists_, bandCounts_;  // bandCounts_: the counts of the lists, one band after another
+    bool cleared_ = false;            // the counts, with the frame's counters
 };
 
 }  // namespace
 
-constinit const PassKind classifyTilesPass = passKind<ClassifyTiles>();
+constinit const PassKind classifyTilesPass = passKind<ClassifyTiles>("classify_tiles");
 
 }  // namespace pel

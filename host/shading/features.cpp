@@ -252,6 +252,11 @@ uint32_t mapsOf(const ShaderLight& light) {
     return isCube(light.params) ? 6 : cascadesOf(light);
 }
 
+bool usesSkinMaps(const ShaderState& state) {
+    return state.images[PEL_SLOT_SKIN] &&
+           std::ranges::any_of(state.materials, [](const auto& m) { return takesSkinMaps(m.second); });
+}
+
 bool lightIsMapped(const ShaderState& state) {
     uint32_t maps = 0;
     for (const ShaderLight& light : state.lights) {

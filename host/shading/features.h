@@ -42,6 +42,12 @@ uint32_t mapsOf(const ShaderLight& light);
 // there is no ambient light.
 bool lightIsMapped(const ShaderState& state);
 
+// Whether the material's albedo and radius come from maps of skin, if there are some.
+inline bool takesSkinMaps(const ShaderMaterial& material) {
+    return material.profile && material.profile->pigments();
+}
+bool usesSkinMaps(const ShaderState& state);
+
 // Puts a method in the place of auto in each material's params, and takes away the wide shadow images that
 // sharp shadows from maps replace. `methods`: bit i: the build has the PelScattering i. Returns sentences,
 // one a line, about what auto had to do without. `tooMany`: bytes that scattering on the screen takes, where
@@ -51,7 +57,15 @@ std::string chooseMethods(ShaderState& state, uint32_t methods, uint64_t tooMany
 // Throws if a control cannot be honoured.
 void checkScattering(const ShaderState& state);
 
+// The state with "none" for each material's method, and without whatever else needs further programs:
+// specular light, light through thin parts, normal maps, eyes.
+ShaderState standInOf(const ShaderState& state);
+
 // Ambient light on each iris, and the table of each eye that brought none; eyes of one shape share them.
 void prepareEyes(const Ref<Device>& device, std::map<uint32_t, ShaderMaterial>& materials);
+// Both from eyes of the same shape among others.
+void adoptEyes(std::map<uint32_t, ShaderMaterial>& materials, const std::map<uint32_t, ShaderMaterial>& from);
+// Tables without content for a warm-up; false if there is no eye that needs one.
+bool pretendEyes(const Ref<Device>& device, std::map<uint32_t, ShaderMaterial>& materials);
 
 }  // namespace pel

@@ -2,7 +2,6 @@
 
 #include <iterator>
 
-#include "shared/choices.h"
 #include "shared/shade.h"
 
 namespace pel {

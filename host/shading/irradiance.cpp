@@ -3,10 +3,8 @@
 // slot of the plan.
 #include "shading/features.h"
 #include "shading/launch_ranges.h"
-#include "shading/pass.h"
 #include "shading/scratch_image.h"
 #include "shading/shade_variants.h"
-#include "shared/features.h"
 
 namespace pel {
 namespace {
@@ -46,6 +44,6 @@ class Irradiance final : public Pass {
 
 }  // namespace
 
-constinit const PassKind irradiancePass = passKind<Irradiance>();
+constinit const PassKind irradiancePass = passKind<Irradiance>("irradiance");
 
 }  // namespace pel

@@ -1,7 +1,7 @@
 #include "shading/launch_ranges.h"
 
 #include "core/launch_policy.h"
-#include "shared/formats.h"
+#include "shared/shade.h"
 
 namespace pel {
 
@@ -30,13 +30,17 @@ PelImageSlot geometricNormalSlot(const ShaderState& state) {
     return state.images[PEL_SLOT_NORMAL_GEOMETRIC] ? PEL_SLOT_NORMAL_GEOMETRIC : PEL_SLOT_NORMAL_SHADING;
 }
 
+void lightBufferArguments(cl::Launch& launch, const std::vector<cl::Memory>& buffers) {
+    for (size_t i = 0; i < PEL_LIGHT_BUFFERS; ++i) launch.arg(i < buffers.size() ? buffers[i] : cl::Memory());
+}
+
 cl::Defines surfaceDefines(const Device& device, const ShaderState& state, uint32_t lanes) {
-    const auto code = [&](PelImageSlot slot) { return text(formatCode(state.images[slot], lanes)); };
+    const auto code = [&](PelImageSlot slot) { return formatCode(state.images[slot], lanes); };
     return {{"PEL_PASS_GROUP", tileGroup(device)},
             {"PEL_WIDTH", lanes},
             {"PEL_FORMAT_MATERIAL", code(PEL_SLOT_MATERIAL)},
             {"PEL_FORMAT_POSITION", code(PEL_SLOT_POSITION)},
-            {"PEL_FORMAT_DEPTH", state.images[PEL_SLOT_POSITION] ? text(0) : code(PEL_SLOT_DEPTH)}};
+            {"PEL_FORMAT_DEPTH", state.images[PEL_SLOT_POSITION] ? 0 : code(PEL_SLOT_DEPTH)}};
 }
 
 }  // namespace pel

@@ -9,6 +9,9 @@ uint32_t tileGroup(const Device& device);
 // Enough work-items to keep every unit busy to the end; each group takes a run of the tiles.
 cl::Range tileRange(const Device& device, uint32_t tiles);
 
+// Sets a kernel's last arguments (kernels/lib/image/light_buffers.clh): PEL_LIGHT_BUFFERS at most.
+void lightBufferArguments(cl::Launch& launch, const std::vector<cl::Memory>& buffers);
+
 // The define of a kernel variant for an image: its format, and whether its pixels are read one by one. Packed
 // images of at least `lanes` pixels a row are read in vectors. 0: no image.
 uint32_t formatCode(const ImageView& view, uint32_t lanes);

@@ -1,9 +1,5 @@
 // The defaults of a material, and the tables that follow from its profile.
 #pragma once
-#include <string>
-#include <vector>
-
-#include "lut/profile.h"
 #include "shading/shader_state.h"
 
 namespace pel {

@@ -1,11 +1,9 @@
 // Blurred normals from the materials' normal maps.
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "shading/launch_ranges.h"
 #include "shading/pass.h"
-#include "shading/scratch_image.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
@@ -52,7 +50,7 @@ class NormalMap final : public Pass {
     }
 
     std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
-        const auto code = [&](PelImageSlot slot) { return text(formatCode(plan.state.images[slot], 1)); };
+        const auto code = [&](PelImageSlot slot) { return formatCode(plan.state.images[slot], 1); };
         const ImageView& tangent = plan.state.images[PEL_SLOT_TANGENT];
         const PelImageSlot normal = geometricNormalSlot(plan.state);
         cl::Defines defines = surfaceDefines(device, plan.state, 1);
@@ -92,9 +90,9 @@ class NormalMap final : public Pass {
                               work.constants.materials(), work.plan.tileLists);
             for (PelImageSlot slot : {PEL_SLOT_MATERIAL, geometricNormalSlot(state), PEL_SLOT_UV,
                                       PEL_SLOT_UV_GRADIENT, PEL_SLOT_TANGENT})
-                launch.arg(memoryOf(state.images[slot]));
-            launch.args(constants_[k].memory(), memoryOf(state.materials.at(ids_[k]).normalMap[0]),
-                        memoryOf(state.images[PEL_SLOT_NORMAL_BLURRED]), cl_uint(work.plan.scratchPlane));
+                launch.arg(state.images[slot]);
+            launch.args(constants_[k].memory(), state.materials.at(ids_[k]).normalMap[0],
+                        state.images[PEL_SLOT_NORMAL_BLURRED], cl_uint(work.plan.scratchPlane));
             work.launch(launch, tileRange(work.device, work.tiles()));
         }
     }
@@ -107,6 +105,6 @@ class NormalMap final : public Pass {
 
 }  // namespace
 
-constinit const PassKind normalMapPass = passKind<NormalMap>();
+constinit const PassKind normalMapPass = passKind<NormalMap>("normal_map");
 
 }  // namespace pel

@@ -2,9 +2,6 @@
 // and calls the same functions of each. Passes exchange data only through the plan, so other folders may add
 // passes: the list comes from host/api/shader.cpp.
 #pragma once
-#include <memory>
-#include <span>
-
 #include "shading/shader_plan.h"
 
 namespace pel {
@@ -38,6 +35,11 @@ struct PassWork {
     void launch(cl::Launch& launch, const cl::Range& range) {
         events.push_back(device.launch(launch, range));
     }
+    template <class... Values>
+    void launch(const cl::Program& program, const char* kernel, const cl::Range& range,
+                const Values&... values) {
+        device.launch(events, program, kernel, range, values...);
+    }
 };
 
 class Pass {
@@ -65,7 +67,7 @@ class Pass {
     virtual void moveScratch(Device&, const ShaderPlan&, const ShadingConstants&, uint32_t /*row*/) {}
 
     // Launches: once in an execution; for a band with its halo; for a band.
-    virtual void enqueueFrame(PassWork&) const {}
+    virtual void enqueueFrame(PassWork&) {}
     virtual void enqueueAround(PassWork&) {}
     virtual void enqueue(PassWork&) {}
 
@@ -83,11 +85,12 @@ class Pass {
 struct PassKind {
     bool (*needed)(const ShaderPlan& plan);
     std::unique_ptr<Pass> (*make)();
-    uint32_t methods = 0;  // bit i: materials may name the PelScattering i because of it
+    std::string_view name;  // PelPassStats.name
+    uint32_t methods = 0;   // bit i: materials may name the PelScattering i because of it
 };
 template <class P>
-constexpr PassKind passKind(uint32_t methods = 0) {
-    return {P::needed, [] { return std::unique_ptr<Pass>(std::make_unique<P>()); }, methods};
+constexpr PassKind passKind(std::string_view name, uint32_t methods = 0) {
+    return {P::needed, [] { return std::unique_ptr<Pass>(std::make_unique<P>()); }, name, methods};
 }
 
 // The passes of a shader, and the memory that they share.
@@ -109,6 +112,8 @@ class PassList {
         for (const auto& pass : passes_)
             if (pass) call(*pass);
     }
+    // The pass of a kind; nullptr: not needed.
+    Pass* at(size_t kind) const { return kind < passes_.size() ? passes_[kind].get() : nullptr; }
 
   private:
     PassScratch choose(const ShaderPlan& plan);

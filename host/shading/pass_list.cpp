@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "shared/shade.h"
-
 namespace pel {
 namespace {
 

@@ -7,11 +7,6 @@
 
 namespace pel {
 
-const cl::Memory& memoryOf(const ImageView& view) {
-    static const cl::Memory none;
-    return view ? view.buffer->memory() : none;
-}
-
 void resize(Ref<Buffer>& buffer, const Ref<Device>& device, size_t bytes) {
     if ((buffer ? buffer->bytes() : 0) == bytes) return;
     buffer = Ref<Buffer>();
@@ -41,10 +36,15 @@ void moveImage(Device& device, cl_mem memory, size_t at, const ImageView& view, 
 size_t CachedUpload::update(Device& device, const void* bytes, size_t count) {
     const auto* from = static_cast<const unsigned char*>(bytes);
     if (memory_ && bytes_.size() == count && std::equal(from, from + count, bytes_.begin())) return 0;
-    // A new buffer, because an execution that is still queued keeps reading the old one.
+    const bool fits = memory_ && bytes_.size() == count;
+    bytes_.clear();
     std::vector<unsigned char> padded(from, from + count);
     padded.resize(std::max<size_t>(count, 16));
-    memory_ = device.allocate(padded.size(), padded.data());
+    // Executions that are still queued read the old values first.
+    if (fits)
+        device.writeLater(memory_.get(), std::move(padded));
+    else
+        memory_ = device.allocate(padded.size(), padded.data());
     bytes_.assign(from, from + count);
     return count;
 }

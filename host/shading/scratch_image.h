@@ -1,14 +1,9 @@
 // Images that passes make.
 #pragma once
-#include "core/device.h"
-#include "core/image_view.h"
 #include "shading/shader_plan.h"
 #include "shared/shade_passes.h"
 
 namespace pel {
-
-// The memory of an image; none for an empty one.
-const cl::Memory& memoryOf(const ImageView& view);
 
 // Gives `buffer` this many bytes; 0: none. An old one of another size is released before the new one is made.
 void resize(Ref<Buffer>& buffer, const Ref<Device>& device, size_t bytes);

@@ -1,6 +1,5 @@
 #include "shading/screen_curvature.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/launch_policy.h"
@@ -57,10 +56,8 @@ void screenCurvature(Device& device, const PelScreenCurvatureParams& params,
     frame.position = describeImage(where);
     if (images.ids) frame.ids = describeImage(images.ids);
     frame.curvature = describeImage(images.curvature);
-    const size_t group = launchPolicy(device).texels;
     cl::Launch launch(device.programs().get("shading/screen_curvature.cl",
-                                            {{"PEL_SCREEN_GROUP", group},
-                                             {"PEL_FORMAT_NORMAL", formatCode(images.normals, lanes)},
+                                            {{"PEL_FORMAT_NORMAL", formatCode(images.normals, lanes)},
                                              {"PEL_FORMAT_POSITION", formatCode(images.positions, lanes)},
                                              {"PEL_FORMAT_DEPTH", formatCode(images.depth, lanes)},
                                              {"PEL_FORMAT_IDS", formatCode(images.ids, lanes)},
@@ -70,8 +67,7 @@ void screenCurvature(Device& device, const PelScreenCurvatureParams& params,
     const cl::Memory memory = device.allocate(sizeof frame, &frame);
     launch.args(memory, images.normals.buffer->memory(), where.buffer->memory(),
                 images.ids ? images.ids.buffer->memory() : cl::Memory(), images.curvature.buffer->memory());
-    const size_t across = (frame.width + lanes - 1) / lanes;
-    device.launch(launch, {{across * frame.height, 1, 1}, {group, 1, 1}});
+    device.launch(launch, vectorRange(device, frame.width, frame.height));
 }
 
 }  // namespace pel

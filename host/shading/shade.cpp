@@ -1,8 +1,6 @@
 // The shading kernel, in the variants that the materials need: the last pass, which writes the caller's
 // images.
-#include "shared/shade.h"
 #include "shading/launch_ranges.h"
-#include "shading/pass.h"
 #include "shading/shade_variants.h"
 
 namespace pel {
@@ -53,6 +51,6 @@ class Shade final : public Pass {
 
 }  // namespace
 
-constinit const PassKind shadePass = passKind<Shade>();
+constinit const PassKind shadePass = passKind<Shade>("shade");
 
 }  // namespace pel

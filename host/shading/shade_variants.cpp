@@ -1,6 +1,5 @@
 #include "shading/shade_variants.h"
 
-#include <algorithm>
 #include <bit>
 #include <set>
 
@@ -8,11 +7,8 @@
 #include "shading/features.h"
 #include "shading/image_slots.h"
 #include "shading/launch_ranges.h"
-#include "shading/scratch_image.h"
 #include "shading/shading_constants.h"
 #include "shading/tap_cells.h"
-#include "shared/features.h"
-#include "shared/shade.h"
 
 namespace pel {
 namespace {
@@ -82,7 +78,6 @@ cl::ProgramKey shadeKey(const Device& device, const ShaderState& state, uint32_t
     if (state.images[PEL_SLOT_MATERIAL]) key.files.push_back("shading/classify_tiles.cl");
     if (usesCells(state, features)) {
         key.files.push_back("shading/tap_cells.cl");
-        key.defines["PEL_CELLS_GROUP"] = launchPolicy(device).texels;
         key.defines["PEL_CELLS_RUN"] = cellsRun(device);
     }
     return key;
@@ -130,9 +125,8 @@ void sceneArguments(cl::Launch& launch, const PassWork& work) {
                 work.plan.tileLists, work.plan.counters, work.plan.ambientNodes, constants.eyes(),
                 work.plan.irises, work.plan.reflectionNodes, work.plan.tapCells);
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
-        if (imageSlot(slot).role != SlotRole::PASS) launch.arg(memoryOf(work.plan.state.images[slot]));
-    const auto& lights = constants.lightBuffers();
-    for (size_t i = 0; i < PEL_LIGHT_BUFFERS; ++i) launch.arg(i < lights.size() ? lights[i] : cl::Memory());
+        if (imageSlot(slot).role != SlotRole::PASS) launch.arg(work.plan.state.images[slot]);
+    lightBufferArguments(launch, constants.lightBuffers());
 }
 
 }  // namespace pel

@@ -1,7 +1,6 @@
 // The variants of the shading kernel: smaller ones for tiles whose materials need fewer features.
 #pragma once
 #include "shading/pass.h"
-#include "shading/shader_plan.h"
 
 namespace pel {
 

@@ -2,9 +2,8 @@
 #include "shading/shader.h"
 
 #include <algorithm>
-#include <mutex>
 
-#include "cl/launch.h"
+#include "shading/background_build.h"
 #include "shading/features.h"
 #include "shading/image_slots.h"
 #include "shading/shade_variants.h"
@@ -18,6 +17,7 @@ ShaderPlan planOf(const ShaderState& given, uint32_t methods, uint64_t tooMany, 
     ShaderPlan plan;
     plan.state = given;
     plan.warnings = chooseMethods(plan.state, methods, tooMany);
+    if (given.options.timeBudget > 0) plan.taken = keepToBudget(plan.state, methods, *device, plan.warnings);
     withTables(plan.state, device, tables);
     const ShaderState& state = plan.state;
     plan.features = deriveFeatures(state);
@@ -26,7 +26,7 @@ ShaderPlan planOf(const ShaderState& given, uint32_t methods, uint64_t tooMany, 
     plan.tilesX = (frame.width + PEL_TILE_WIDTH - 1) / PEL_TILE_WIDTH;
     plan.tileRows = (frame.height + PEL_TILE_HEIGHT - 1) / PEL_TILE_HEIGHT;
     for (uint32_t i = 0; i < state.lights.size(); ++i)
-        if (filtersShadow(state, state.lights[i])) plan.filteredLights.push_back({i, cl::Memory()});
+        if (filtersShadow(state, state.lights[i])) plan.filteredLights.push_back(i);
     return plan;
 }
 
@@ -35,19 +35,64 @@ ShaderPlan planOf(const ShaderState& given, uint32_t methods, uint64_t tooMany, 
 Shader::Shader(Ref<Device> device, std::span<const PassKind> passes)
     : Object(kind), device_(std::move(device)), passKinds_(passes) {}
 
+Shader::~Shader() = default;
+
 void Shader::commit() {
-    allocate(UINT32_MAX);
+    const unsigned builders = buildersFor(*device_, 0);
+    if (!state_.options.buildInBackground || builders < 2) background_.reset();
+    if (background_ && !background_->done()) return commitStandIn();
+    if (const auto build = std::move(background_)) {
+        profileTables_ = build->built().profileTables_;
+        adoptEyes(state_.materials, build->built().state_.materials);
+    }
+    if (!state_.options.buildInBackground || builders < 2) {
+        prepareEyes(device_, state_.materials);
+        return commitState(state_);
+    }
+    try {
+        const cl::ReadyScope ready;
+        prepareEyes(device_, state_.materials);
+        return commitState(state_);
+    } catch (const cl::NotBuilt&) {
+    }
+    // The programs of the stand-in first: the caller waits for them.
+    const auto helpers = std::make_shared<cl::BuildHelpers>(device_->id(), builders);
+    const Ref<Shader> standIn = copy(standInOf(state_));
+    BuildJobs jobs;
+    standIn->addBuildJobs(jobs);
+    runJobs(*device_, jobs, builders, *helpers, [](size_t) {});
+    commitStandIn();
+    background_ = std::make_unique<BackgroundBuild>(copy(state_), helpers, builders);
+}
+
+// By programs that take little time to build, while others build those of the state.
+void Shader::commitStandIn() {
+    commitState(standInOf(state_));
+    standsIn_ = true;
+    warnings_ = text("materials shade by \"none\" while the programs of their methods are built",
+                     warnings_.empty() ? "" : "\n", warnings_);
+}
+
+void Shader::commitState(const ShaderState& state) {
+    standsIn_ = false;
+    allocate(state, UINT32_MAX);
     finishPlan();
 }
 
+Ref<Shader> Shader::copy(const ShaderState& state) const {
+    Ref<Shader> shader = make<Shader>(device_, passKinds_);
+    shader->state_ = state;
+    shader->profileTables_ = profileTables_;
+    return shader;
+}
+
 // Makes a plan and the memory of its passes, in bands of at most this many rows of tiles.
-void Shader::allocate(uint32_t mostRows) {
-    prepareEyes(device_, state_.materials);
-    ShaderPlan plan = planOf(state_, methods(), 0, device_, profileTables_);
+void Shader::allocate(const ShaderState& given, uint32_t mostRows) {
+    ShaderPlan plan = planOf(given, methods(), 0, device_, profileTables_);
     // What scatters on the screen because it was chosen to must fit.
-    const uint64_t budget = state_.options.scratchBudget,
+    const uint64_t budget = given.options.scratchBudget,
                    bytes = budget ? PassList(passKinds_).bytesOfWholeFrame(plan) : 0;
-    if (bytes > budget) plan = planOf(state_, methods(), bytes, device_, profileTables_);
+    if (bytes > budget) plan = planOf(given, methods(), bytes, device_, profileTables_);
     checkMethods(plan.state);
     checkScattering(plan.state);
     // Old images go before new ones are made: both together would not keep to a budget. After a failure
@@ -57,8 +102,10 @@ void Shader::allocate(uint32_t mostRows) {
     PassList passes = std::exchange(passes_, PassList());
     if (passes.empty()) passes = PassList(passKinds_);
     passes.allocate(device_, plan, mostRows);
-    if (!counters_) counters_ = device_->allocate(PEL_COUNTERS * sizeof(cl_uint));
-    plan.counters = counters_;
+    if (!plan.counters) {
+        if (!counters_) counters_ = device_->allocate(PEL_COUNTERS * sizeof(cl_uint));
+        plan.counters = counters_;
+    }
     plan_ = std::move(plan);
     passes_ = std::move(passes);
 }
@@ -92,7 +139,7 @@ void Shader::finishPlan() {
 
 // Sends the plan's constants.
 void Shader::send() {
-    scratchRow_.reset();
+    if (scratchRow_ != 0u) scratchRow_.reset();
     bytesUploaded_ +=
         constants_.update(*device_, plan_.state, plan_.variants, plan_.tilesX * plan_.listRows());
     passes_.each([&](Pass& pass) { bytesUploaded_ += pass.upload(*device_, plan_); });
@@ -111,19 +158,30 @@ bool Shader::halveBand(bool blocking) {
 }
 
 PassWork Shader::beginWork(bool codeAlone) {
-    events_.clear();
+    while (frames_.size() > 1 && hasFinished(frames_[1])) frames_.pop_front();
+    frames_.push_back({++executions_, {}, {}});
     bands_ = 0;
-    device_->fill(counters_.get(), 0, PEL_COUNTERS * sizeof(cl_uint), 0);
-    PassWork work{*device_, plan_, constants_, events_};
+    const size_t counters = PEL_COUNTERS + (plan_.tileLists ? PEL_TILE_LISTS : 0);
+    device_->fill(plan_.counters.get(), 0, counters * sizeof(cl_uint), 0);
+    PassWork work{*device_, plan_, constants_, frames_.back().events};
     work.codeAlone = codeAlone;
-    passes_.each([&](Pass& pass) { pass.enqueueFrame(work); });
+    runPasses(work, &Pass::enqueueFrame);
     return work;
+}
+
+void Shader::runPasses(PassWork& work, void (Pass::*part)(PassWork&)) {
+    for (size_t i = 0; i < passKinds_.size(); ++i)
+        if (Pass* const pass = passes_.at(i)) {
+            frames_.back().parts.push_back({i, work.events.size(), work.tiles()});
+            (pass->*part)(work);
+        }
 }
 
 void Shader::execute(bool blocking) {
     if (!committed_)
         fail(PEL_ERROR_INVALID_STATE,
              "something was set after the last pelShaderCommit, or nothing was committed yet");
+    if (standsIn_ && (!background_ || background_->done())) commit();
     PassWork work = beginWork(false);
     work.interruptible = blocking && device_->hasProgress();
     for (uint32_t row = 0; row < plan_.tileRows;) {
@@ -142,7 +200,7 @@ void Shader::execute(bool blocking) {
         ++bands_;
     }
     if (work.interruptible) device_->progress(1, "shading");
-    launches_ = events_.size();
+    launches_ = work.events.size();
     uploadedBefore_ = std::exchange(bytesUploaded_, 0);
     executed_ = true;
 }
@@ -165,23 +223,17 @@ void Shader::runBand(PassWork& work) {
     }
     setRows(work, work.around);
     work.rows = work.around;
-    passes_.each([&](Pass& pass) { pass.enqueueAround(work); });
+    runPasses(work, &Pass::enqueueAround);
     work.rows = rows;
     if (!work.alone()) setRows(work, rows);
-    passes_.each([&](Pass& pass) { pass.enqueue(work); });
+    runPasses(work, &Pass::enqueue);
 }
 
-void Shader::addWarmUpJobs(std::vector<std::function<void()>>& jobs) {
-    Ref<Shader> shader = make<Shader>(device_, passKinds_);
-    {
-        // The other process makes the tables of eyes, which nothing here looks at.
-        const cl::BuildScope scope(cl::helpsToBuild() ? cl::BuildScope::none : cl::BuildScope::all);
-        prepareEyes(device_, state_.materials);
-    }
-    const cl::BuildScope zeroes(cl::BuildScope::all);
-    shader->state_ = state_;
-    shader->profileTables_ = profileTables_;
-    shader->allocate(1);
+void Shader::addBuildJobs(BuildJobs& jobs) {
+    const Ref<Shader> self(this), shader = copy(state_);
+    if (pretendEyes(device_, shader->state_.materials))
+        jobs.push_back([self] { prepareEyes(self->device_, self->state_.materials); });
+    shader->allocate(shader->state_, 1);
     profileTables_ = shader->profileTables_;
     std::vector<cl::ProgramKey> keys;  // each once
     shader->passes_.each([&](const Pass& pass) {
@@ -189,9 +241,7 @@ void Shader::addWarmUpJobs(std::vector<std::function<void()>>& jobs) {
             if (std::ranges::find(keys, key) == keys.end()) keys.push_back(std::move(key));
     });
     for (const cl::ProgramKey& key : keys)
-        jobs.push_back([device = device_, key] {
-            if (cl::claimBuild(device->programs().name(key))) device->programs().get(key);
-        });
+        jobs.push_back([device = device_, key] { device->programs().get(key); });
     // A job for each pass, for drivers compile kernels when they are launched first. Whichever job comes next
     // launches the next pass: passes read what those before them made.
     struct Launches {
@@ -211,18 +261,16 @@ void Shader::addWarmUpJobs(std::vector<std::function<void()>>& jobs) {
 
 // A frame without tiles: an execution launches every kernel, and none does anything.
 void Shader::beginOnNothing() {
-    const cl::BuildScope scope(cl::BuildScope::claimed);
     finishPlan();
     PassWork work = beginWork(true);
     constants_.setBand(*device_, 0, 0, 0);
     work.rows = work.around = {0, 1};
-    passes_.each([&](Pass& pass) { pass.enqueueAround(work); });
+    runPasses(work, &Pass::enqueueAround);
     device_->finish();
 }
 
 void Shader::launchOnNothing(Pass& pass) {
-    const cl::BuildScope scope(cl::BuildScope::claimed);
-    PassWork work{*device_, plan_, constants_, events_};
+    PassWork work{*device_, plan_, constants_, frames_.back().events};
     work.rows = work.around = {0, 1};
     pass.enqueue(work);
     device_->finish();
@@ -233,8 +281,12 @@ PelShaderStats Shader::stats() {
     PelShaderStats stats = pelShaderStatsDefaults();
     stats.features = plan_.features;
     stats.programsBuilt = programsBuilt_;
-    stats.scratchBytes =
-        constants_.scratchBytes() + passes_.bytes() + (counters_ ? PEL_COUNTERS * sizeof(cl_uint) : 0);
+    stats.standsIn = standsIn_;
+    stats.takenTargetError = plan_.taken.targetError;
+    stats.expectedMilliseconds = plan_.taken.milliseconds;
+    stats.expectedError = plan_.taken.error;
+    stats.tuned = plan_.taken.own;
+    stats.scratchBytes = ownBytes() + passes_.bytes();
     if (!executed_) return stats;
     stats.launches = launches_;
     stats.bytesUploaded = uploadedBefore_;
@@ -245,7 +297,7 @@ PelShaderStats Shader::stats() {
     stats.variants = plan_.variants.size();
     if (committed_) {
         cl_uint counts[PEL_COUNTERS];
-        device_->read(counters_.get(), 0, sizeof counts, counts, true);
+        device_->read(plan_.counters.get(), 0, sizeof counts, counts, true);
         stats.pixelsShaded = counts[PEL_COUNT_SHADED];
         stats.pixelsShadowLut = counts[PEL_COUNT_SHADOW_LUT];
         stats.pixelsThickness = counts[PEL_COUNT_THICKNESS];
@@ -264,7 +316,67 @@ PelShaderStats Shader::stats() {
         }
     }
     if (committed_) passes_.each([&](const Pass& pass) { pass.addStats(*device_, plan_, bands_, stats); });
-    for (const cl::Event& event : events_) stats.deviceMilliseconds += eventMilliseconds(event);
+    for (const cl::Event& event : frames_.back().events) stats.deviceMilliseconds += eventMilliseconds(event);
+    return stats;
+}
+
+// Beside that of passes.
+uint64_t Shader::ownBytes() const {
+    return constants_.scratchBytes() + (counters_ ? PEL_COUNTERS * sizeof(cl_uint) : 0);
+}
+
+std::vector<PelPassMemory> Shader::memory() {
+    prepareEyes(device_, state_.materials);
+    planOf(state_, methods(), 0, device_, profileTables_);  // makes the tables
+    const Ref<Shader> planned = copy(state_);
+    {
+        const CountedRun counted;
+        planned->allocate(planned->state_, UINT32_MAX);
+        planned->send();
+    }
+    std::vector<PelPassMemory> all;
+    const auto add = [&](std::string_view name, uint64_t held, uint64_t needed) {
+        if (!held && !needed) return;
+        PelPassMemory& pass = all.emplace_back(pelPassMemoryDefaults());
+        name.copy(pass.name, sizeof pass.name - 1);
+        pass.held = held, pass.needed = needed;
+    };
+    const auto bytes = [](const Pass* pass) { return pass ? pass->bytes() : 0; };
+    for (size_t i = 0; i < passKinds_.size(); ++i)
+        add(passKinds_[i].name, bytes(passes_.at(i)), bytes(planned->passes_.at(i)));
+    add("constants", ownBytes(), planned->ownBytes());
+    return all;
+}
+
+// The queue is in order: what was launched last finishes last.
+bool Shader::hasFinished(const Frame& frame) const {
+    for (size_t i = frame.events.size(); i-- > 0;)
+        if (const cl::Event& last = frame.events[i])
+            return cl::info<cl_int>(last.get(), CL_EVENT_COMMAND_EXECUTION_STATUS) <= CL_COMPLETE;
+    return true;
+}
+
+std::vector<PelPassStats> Shader::passStats() {
+    std::vector<PelPassStats> stats;
+    while (frames_.size() > 1 && hasFinished(frames_[1])) frames_.pop_front();
+    if (frames_.empty() || !hasFinished(frames_[0])) return stats;
+    const Frame& frame = frames_[0];
+    for (size_t kind = 0; kind < passKinds_.size(); ++kind) {
+        PelPassStats pass = pelPassStatsDefaults();
+        for (size_t i = 0; i < frame.parts.size(); ++i) {
+            const auto& [which, begin, tiles] = frame.parts[i];
+            const size_t end = i + 1 < frame.parts.size() ? frame.parts[i + 1].begin : frame.events.size();
+            if (which != kind || begin == end) continue;
+            pass.launches += uint32_t(end - begin);
+            pass.tiles += tiles;
+            for (size_t e = begin; e < end; ++e) pass.milliseconds += eventMilliseconds(frame.events[e]);
+        }
+        if (!pass.launches) continue;
+        passKinds_[kind].name.copy(pass.name, sizeof pass.name - 1);
+        pass.execution = frame.number;
+        if (const Pass* held = passes_.at(kind)) pass.bytes = held->bytes();
+        stats.push_back(pass);
+    }
     return stats;
 }
 

@@ -1,14 +1,15 @@
 // PelShader: keeps what the caller sets, plans a frame at commit, and runs its passes.
 #pragma once
-#include <functional>
-#include <optional>
-#include <string>
+#include <deque>
 
+#include "core/build_jobs.h"
 #include "shading/material.h"
 #include "shading/pass.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
+
+class BackgroundBuild;
 
 class Shader final : public Object {
   public:
@@ -39,16 +40,22 @@ class Shader final : public Object {
     // `blocking`: the caller waits, and may want progress.
     void execute(bool blocking);
     PelShaderStats stats();
+    // Of the newest execution that has finished, each pass that launched something, in order. Does not wait.
+    std::vector<PelPassStats> passStats();
+    std::vector<PelPassMemory> memory();
     // Warnings of the last commit, one sentence a line.
     const std::string& warnings() const { return warnings_; }
-    // Jobs for a warm-up: they build what a commit would, and launch each kernel on no tile. Tables of eyes
-    // and profiles are made here, and kept. Throws what a commit would.
-    void addWarmUpJobs(std::vector<std::function<void()>>& jobs);
+    // Jobs for a warm-up: they build what a commit would, and launch each kernel on no tile. Tables of
+    // profiles are made here, those of eyes by a job, and kept. Throws what a commit would.
+    void addBuildJobs(BuildJobs& jobs);
     Device& device() const { return *device_; }
 
   private:
-    ~Shader() override = default;
-    void allocate(uint32_t mostRows);
+    ~Shader() override;
+    void commitState(const ShaderState& state);
+    void commitStandIn();
+    Ref<Shader> copy(const ShaderState& state) const;
+    void allocate(const ShaderState& state, uint32_t mostRows);
     ShaderMaterial& materialFor(uint32_t id, const char* what);
     template <class Check>
     void setView(ImageView& to, const PelImageDesc* image, const char* name, const Check& check);
@@ -59,6 +66,7 @@ class Shader final : public Object {
     void beginOnNothing();
     void launchOnNothing(Pass& pass);
     PassWork beginWork(bool codeAlone);
+    void runPasses(PassWork& work, void (Pass::*part)(PassWork&));
     void runBand(PassWork& work);
     void setRows(const PassWork& work, TileRows rows);
     bool halveBand(bool blocking);
@@ -71,12 +79,28 @@ class Shader final : public Object {
     PassList passes_;
     ShadingConstants constants_;
     cl::Memory counters_;
-    std::optional<uint32_t> scratchRow_;  // at which images of passes begin, in the device's constants;
-                                          // empty: it has to be written
+    // At which images of passes begin, in the device's constants; empty: it has to be written.
+    std::optional<uint32_t> scratchRow_ = 0;
     std::string warnings_;
     bool committed_ = false, executed_ = false;
+    std::unique_ptr<BackgroundBuild> background_;
+    bool standsIn_ = false;  // what is committed
     uint64_t bands_ = 0, programsBuilt_ = 0, launches_ = 0, bytesUploaded_ = 0, uploadedBefore_ = 0;
-    std::vector<cl::Event> events_;
+
+    // An execution: its launches in order, and which of them are a pass's, from `begin` to the next part's.
+    struct Frame {
+        struct Part {
+            size_t pass, begin;
+            uint64_t tiles;
+        };
+        uint64_t number = 0;
+        std::vector<cl::Event> events;
+        std::vector<Part> parts;
+    };
+    uint64_t ownBytes() const;
+    bool hasFinished(const Frame& frame) const;
+    uint64_t executions_ = 0;
+    std::deque<Frame> frames_;  // those in flight, and before them the newest that has finished
 };
 
 }  // namespace pel

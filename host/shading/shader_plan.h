@@ -1,6 +1,8 @@
 // What a commit makes of a shader's state (shader_state.h), and what its passes pass on to each other.
 #pragma once
 #include "shading/shader_state.h"
+#include "shading/time_budget.h"
+#include "shared/shade.h"
 
 namespace pel {
 
@@ -9,23 +11,19 @@ struct TileRows {
     uint32_t begin, end;
 };
 
-// A light whose wide shadow is made from its shadow map.
-struct FilteredLight {
-    uint32_t index;        // of ShaderState.lights
-    cl::Memory constants;  // PelWideShadow of each of its maps
-};
-
 // A shadow map with bounds of its blocks.
 struct BoundedMap {
     uint32_t filtered, cascade;  // of ShaderPlan.filteredLights, and which of its maps
     uint32_t pairs;              // of blocks side by side
     uint32_t offset;             // of its bounds, floats
+    uint32_t index() const { return filtered * PEL_CASCADES + cascade; }  // in ShaderPlan.wideShadows
 };
 
 struct ShaderPlan {
     ShaderState state;  // as of the commit, with the images that passes make in their slots
     uint32_t features = 0;
     std::string warnings;            // of what auto had to do without
+    TakenSetting taken;              // by auto, for PelShaderOptions.timeBudget
     std::vector<uint32_t> variants;  // features of each variant of the shading kernel
     uint32_t tilesX = 0, tileRows = 0;
 
@@ -34,15 +32,17 @@ struct ShaderPlan {
     bool wholeFrame = false;
     bool scratch = false;  // whether a pass makes images, which hold the rows of a band and of its halo
 
-    cl::Memory counters;         // PEL_COUNTERS
+    cl::Memory counters;         // PEL_COUNTERS, of tileLists if there are some
     cl::Memory tileLists;        // lists of tiles; none without a material image
     cl::Memory ambientNodes;     // of the ambient cube
     cl::Memory reflectionNodes;  // of the cube that eyes reflect
     cl::Memory irises;           // texels of all eyes' irises
     cl::Memory tapCells;         // what thickness taps read, at nodes (tap_cells.h)
     uint32_t scratchPlane = 0;   // floats from plane to plane of images that passes make (scratch_image.h)
+    ImageView radii;             // factors of the profile's radius, where maps of skin make them
     ImageView arriving;          // irradiance before it is scattered, where a pass needs it later
-    std::vector<FilteredLight> filteredLights;
+    std::vector<uint32_t> filteredLights;  // of state.lights: wide shadows are made from their shadow maps
+    cl::Memory wideShadows;                // PelWideShadow of their maps, room for PEL_CASCADES each
     std::vector<BoundedMap> boundedMaps;
     cl::Memory bounds;
 

@@ -1,12 +1,8 @@
 // What the caller sets on a PelShader: checked, and kept until the next commit.
-#include <algorithm>
-
 #include "core/handle_table.h"
 #include "core/struct_size.h"
-#include "eye/eye.h"
 #include "shading/check_settings.h"
 #include "shading/shader.h"
-#include "shared/shade_passes.h"
 
 namespace pel {
 
@@ -133,6 +129,8 @@ void Shader::setIrisTexture(uint32_t id, const PelImageDesc* texture) {
     if (!material.eye)
         invalidArgument("material ", id, " is no eye: pelShaderSetEye comes before its iris texture");
     setView(material.eye->iris, texture, "iris texture", checkIrisTexture);
+    static std::atomic<uint64_t> last;
+    material.eye->textureNumber = ++last;
 }
 
 void Shader::setLights(const PelLight* lights, uint32_t count) {

@@ -1,14 +1,7 @@
 // What the caller set on a PelShader. A commit makes a ShaderPlan of it (shader_plan.h).
 #pragma once
-#include <array>
-#include <map>
-#include <optional>
-#include <vector>
-
 #include "core/image_view.h"
 #include "eye/eye.h"
-#include "lut/lut.h"
-#include "lut/profile.h"
 
 namespace pel {
 
@@ -20,7 +13,8 @@ struct ShaderEye {
     bool ownCaustics = false;
     AmbientNodes ambient{};
     bool ambientKnown = false;
-    ImageView iris;  // texture; none: fibres are drawn
+    ImageView iris;              // texture; none: fibres are drawn
+    uint64_t textureNumber = 0;  // no other call that set a texture has it
 };
 
 // Texels along a side of its iris in the form that shading samples.

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "eye/eye.h"
 #include "shading/features.h"
 #include "shading/material.h"
 #include "shading/tap_cells.h"
@@ -98,10 +97,8 @@ void ShadingConstants::gatherLuts(Device& device, const ShaderState& state) {
         bytes = texels * sizeof(cl_float4);
         memory = device.allocate(bytes);
         for (size_t i = 0; i < wanted.size(); ++i)
-            cl::check(clEnqueueCopyBuffer(device.queue(), wanted[i]->texels().get(), memory.get(), 0,
-                                          offsets[i] * sizeof(cl_float4),
-                                          texelCount(*wanted[i]) * sizeof(cl_float4), 0, nullptr, nullptr),
-                      "clEnqueueCopyBuffer");
+            device.copy(wanted[i]->texels().get(), memory.get(), offsets[i] * sizeof(cl_float4),
+                        texelCount(*wanted[i]) * sizeof(cl_float4));
     }
     luts_ = memory;
     lutBytes_ = bytes;

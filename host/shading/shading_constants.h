@@ -1,12 +1,6 @@
 // The shading constants of a shader: frame, materials, lights and look-up tables, sent when they change.
 #pragma once
-#include <array>
-#include <vector>
-
-#include "lut/lut.h"
 #include "shading/scratch_image.h"
-#include "shared/eye.h"
-#include "shared/shade.h"
 
 namespace pel {
 

@@ -1,12 +1,9 @@
 #include "shading/tap_cells.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/launch_policy.h"
 #include "shading/features.h"
-#include "shading/pass.h"
-#include "shading/scratch_image.h"
 #include "shading/shade_variants.h"
 #include "shading/shading_constants.h"
 
@@ -68,7 +65,7 @@ class TapCells final : public Pass {
                 cl::Launch one(program(), kernel, work.constants.frameMemory(), work.constants.lights(),
                                lists ? plan.tileLists : cl::Memory(), cl_uint(map.light),
                                cl_uint(map.cascade), cl_uint(map.disk));
-                if (readsMap) one.arg(memoryOf(*shadowCascade(light, map.cascade).map));
+                if (readsMap) one.arg(*shadowCascade(light, map.cascade).map);
                 one.arg(cells_->memory());
                 work.launch(one, {{size_t(items), 1, 1}, {launchPolicy(work.device).texels, 1, 1}});
             };
@@ -160,6 +157,6 @@ std::vector<MapCells> mapCells(const ShaderState& state) {
     return maps;
 }
 
-constinit const PassKind tapCellsPass = passKind<TapCells>();
+constinit const PassKind tapCellsPass = passKind<TapCells>("tap_cells");
 
 }  // namespace pel

@@ -1,7 +1,5 @@
 // Which shadow maps are sampled once for all pixels, in cells of taps (kernels/lib/shading/tap_cells.clh).
 #pragma once
-#include <vector>
-
 #include "shading/shader_state.h"
 #include "shared/shade.h"
 

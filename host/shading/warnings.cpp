@@ -74,6 +74,8 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
                      " scatters by \"preintegrated\" and gets no shadow from the map ", "of light ", i,
                      ", whose shadowFilterTexels is 0; 4 to 256 would be right, 48 is the default");
         }
+    if (state.images[PEL_SLOT_SKIN] && !usesSkinMaps(state))
+        warn("the skin image is without effect: no material has a profile of pelProfileCreateSkinLayers");
     for (const auto& [id, material] : state.materials) {
         const PelMaterial& m = material.params;
         if (!isBlack(m.deepScatterColor) && !state.lights.empty() && !thickness && !(map && m.thicknessTaps))

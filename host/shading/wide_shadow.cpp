@@ -1,5 +1,4 @@
 // Wide shadows from shadow maps, for lights whose wide shadow the caller did not give.
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -7,10 +6,7 @@
 #include "shading/features.h"
 #include "shading/launch_ranges.h"
 #include "shading/pass.h"
-#include "shading/scratch_image.h"
 #include "shading/shading_constants.h"
-#include "shared/features.h"
-#include "shared/shade_passes.h"
 
 namespace pel {
 
@@ -22,8 +18,8 @@ static cl::ProgramKey wideShadowKey(const Device& device, const ShaderPlan& plan
     uint32_t bits = (plan.state.options.countPixels ? PEL_BIT_COUNT : 0) |
                     (plan.state.options.disableSkipping ? PEL_BIT_NO_SKIPPING : 0);
     uint32_t map = 0, content = 0;
-    for (const FilteredLight& filtered : plan.filteredLights) {
-        const ShaderLight& light = plan.state.lights[filtered.index];
+    for (const uint32_t index : plan.filteredLights) {
+        const ShaderLight& light = plan.state.lights[index];
         map |= mapFormatCode(light);
         content = light.params.shadowContent;
         bits |= formFeatures(light.params) & (PEL_BIT_SHADOW_CUBE | PEL_BIT_SHADOW_CASCADES);
@@ -36,11 +32,11 @@ static cl::ProgramKey wideShadowKey(const Device& device, const ShaderPlan& plan
     defines["PEL_SHADOW_CONTENT"] = content;
     defines["PEL_BOUNDS"] = int(!plan.boundedMaps.empty());
     defines["PEL_THIN"] = int(makesLightFromBehind(plan.state, plan.features));
+    defines["PEL_FILTERS_WIDE"] = int(std::ranges::any_of(plan.filteredLights, [&](uint32_t light) {
+        return filtersWide(plan.state, plan.state.lights[light]);
+    }));
     cl::ProgramKey key{{"shading/wide_shadow.cl"}, defines};
-    if (!plan.boundedMaps.empty()) {
-        key.files.push_back("shading/shadow_bounds.cl");
-        key.defines["PEL_BOUNDS_GROUP"] = launchPolicy(device).texels;
-    }
+    if (!plan.boundedMaps.empty()) key.files.push_back("shading/shadow_bounds.cl");
     return key;
 }
 
@@ -51,6 +47,7 @@ static PelWideShadow describeWideShadow(const ShaderLight& light, uint32_t index
     const ShadowCascade from = shadowCascade(light, cascade);
     const float(&matrix)[16] = *from.worldToShadow;
     PelWideShadow to{};
+    to.light = index;
     std::copy_n(matrix, 16, to.worldToShadow);
     to.projection = l.shadowProjection;
     to.depthA = l.shadowDepthA;
@@ -115,8 +112,8 @@ class WideShadow final : public Pass {
     static bool needed(const ShaderPlan& plan) { return plan.features & PEL_FEATURE_FILTER_SHADOW; }
 
     PassScratch scratch(const ShaderPlan& plan) const override {
-        const bool between = std::ranges::any_of(
-            plan.filteredLights, [&](const FilteredLight& f) { return interpolates(plan, f); });
+        const bool between = std::ranges::any_of(plan.filteredLights,
+                                                 [&](uint32_t light) { return interpolates(plan, light); });
         return {plan.filteredLights.size() * sizeof(float), 0, between ? PEL_BETWEEN_ROWS : 0u};
     }
 
@@ -124,7 +121,7 @@ class WideShadow final : public Pass {
         const ImageView& frame = plan.state.images[PEL_SLOT_RADIANCE];
         const size_t lightBytes = size_t(frame.width) * plan.scratchRows() * sizeof(float);
         const auto slot = [&](size_t k) -> ImageView& {
-            return plan.state.lights[plan.filteredLights[k].index].images[PEL_LIGHT_WIDE_SHADOW];
+            return plan.state.lights[plan.filteredLights[k]].images[PEL_LIGHT_WIDE_SHADOW];
         };
         const size_t lights = plan.filteredLights.size();
         for (size_t k = 0; k < lights; ++k) slot(k) = ImageView();
@@ -132,79 +129,80 @@ class WideShadow final : public Pass {
         for (size_t k = 0; k < lights; ++k)
             slot(k) = scratchImage(images_, frame, PEL_FORMAT_R32F, k * lightBytes);
     }
-    size_t bytes() const override {
-        size_t bytes = images_ ? images_->bytes() : 0;
-        for (const CachedUpload& one : constants_) bytes += one.bytes();
-        return bytes;
-    }
+    size_t bytes() const override { return (images_ ? images_->bytes() : 0) + constants_.bytes(); }
 
     std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
         return {wideShadowKey(device, plan)};
     }
 
     size_t upload(Device& device, ShaderPlan& plan) override {
-        constants_.resize(plan.filteredLights.size());
-        size_t bytes = 0;
-        for (size_t k = 0; k < constants_.size(); ++k) {
-            FilteredLight& filtered = plan.filteredLights[k];
-            const ShaderLight& light = plan.state.lights[filtered.index];
-            std::vector<PelWideShadow> maps;
+        std::vector<PelWideShadow> maps(plan.filteredLights.size() * PEL_CASCADES);
+        for (size_t k = 0; k < plan.filteredLights.size(); ++k) {
+            const uint32_t index = plan.filteredLights[k];
+            const ShaderLight& light = plan.state.lights[index];
             for (uint32_t i = 0; i < cascadesOf(light); ++i)
-                maps.push_back(describeWideShadow(light, filtered.index, i));
-            for (const BoundedMap& map : plan.boundedMaps)
-                if (map.filtered == k) maps[map.cascade].bounds = map.offset;
-            bytes += constants_[k].update(device, maps.data(), maps.size() * sizeof maps[0]);
-            filtered.constants = constants_[k].memory();
+                maps[k * PEL_CASCADES + i] = describeWideShadow(light, index, i);
         }
+        for (const BoundedMap& map : plan.boundedMaps) maps[map.index()].bounds = map.offset;
+        const size_t bytes = constants_.update(device, maps.data(), maps.size() * sizeof maps[0]);
+        plan.wideShadows = constants_.memory();
         return bytes;
     }
     void moveScratch(Device& device, const ShaderPlan& plan, const ShadingConstants& constants,
                      uint32_t row) override {
-        for (const FilteredLight& filtered : plan.filteredLights) {
-            const ImageView& view = plan.state.lights[filtered.index].images[PEL_LIGHT_WIDE_SHADOW];
+        for (size_t k = 0; k < plan.filteredLights.size(); ++k) {
+            const uint32_t index = plan.filteredLights[k];
+            const ImageView& view = plan.state.lights[index].images[PEL_LIGHT_WIDE_SHADOW];
             moveImage(device, constants.lights().get(),
-                      filtered.index * sizeof(PelShadeLight) + offsetof(PelShadeLight, wide), view, row);
-            moveImage(device, filtered.constants.get(), offsetof(PelWideShadow, out), view, row);
+                      index * sizeof(PelShadeLight) + offsetof(PelShadeLight, wide), view, row);
+            moveImage(device, constants_.memory().get(),
+                      k * PEL_CASCADES * sizeof(PelWideShadow) + offsetof(PelWideShadow, out), view, row);
         }
     }
 
-    void enqueueAround(PassWork& work) override {
-        for (const FilteredLight& light : work.plan.filteredLights)
-            if (interpolates(work.plan, light)) filter(work, light, PEL_PIXELS_SECOND);
-    }
+    void enqueueAround(PassWork& work) override { filter(work, true, PEL_PIXELS_SECOND); }
     void enqueue(PassWork& work) override {
-        for (const FilteredLight& light : work.plan.filteredLights)
-            filter(work, light, interpolates(work.plan, light) ? PEL_PIXELS_BETWEEN : PEL_PIXELS_ALL);
+        filter(work, true, PEL_PIXELS_BETWEEN);
+        filter(work, false, PEL_PIXELS_ALL);
     }
 
   private:
     // Sharp shadows are not interpolated.
-    static bool interpolates(const ShaderPlan& plan, const FilteredLight& light) {
-        return plan.interpolates() && filtersWide(plan.state, plan.state.lights[light.index]);
+    static bool interpolates(const ShaderPlan& plan, uint32_t light) {
+        return plan.interpolates() && filtersWide(plan.state, plan.state.lights[light]);
     }
 
-    void filter(PassWork& work, const FilteredLight& filtered, cl_uint pixels) const {
+    // The lights that interpolate, or the others: a launch for those that follow one another.
+    void filter(PassWork& work, bool interpolating, cl_uint pixels) const {
         const ShaderPlan& plan = work.plan;
-        const ShaderLight& light = plan.state.lights[filtered.index];
-        cl::Launch launch(program(), "wide_shadow", work.constants.frameMemory(), work.constants.materials(),
-                          work.constants.lights(), plan.tileLists, plan.counters);
-        for (PelImageSlot slot :
-             {PEL_SLOT_MATERIAL, geometricNormalSlot(plan.state), PEL_SLOT_POSITION, PEL_SLOT_DEPTH})
-            launch.arg(memoryOf(plan.state.images[slot]));
-        launch.args(filtered.constants, cl_uint(filtered.index));
-        for (uint32_t i = 0; i < PEL_CASCADES; ++i)
-            launch.arg(i < cascadesOf(light) ? memoryOf(*shadowCascade(light, i).map) : cl::Memory());
-        launch.args(plan.bounds, images_->memory(), pixels);
-        work.launch(launch, tileRange(work.device, work.tiles()));
+        const auto takes = [&](size_t k) {
+            return interpolates(plan, plan.filteredLights[k]) == interpolating;
+        };
+        const size_t lights = plan.filteredLights.size();
+        for (size_t first = 0, end; first < lights; first = end + 1) {
+            for (end = first; end < lights && takes(end);) ++end;
+            if (end == first) continue;
+            cl::Launch launch(program(), "wide_shadow", work.constants.frameMemory(),
+                              work.constants.materials(), work.constants.lights(), plan.tileLists,
+                              plan.counters);
+            for (PelImageSlot slot :
+                 {PEL_SLOT_MATERIAL, geometricNormalSlot(plan.state), PEL_SLOT_POSITION, PEL_SLOT_DEPTH})
+                launch.arg(plan.state.images[slot]);
+            launch.args(constants_.memory(), cl_uint(first), plan.bounds, images_->memory(), pixels);
+            lightBufferArguments(launch, work.constants.lightBuffers());
+            cl::Range range = tileRange(work.device, work.tiles());
+            range.items[2] = end - first;
+            work.launch(launch, range);
+        }
     }
 
     Ref<Buffer> images_;  // of one light after another
-    std::vector<CachedUpload> constants_;
+    CachedUpload constants_;
 };
 
 }  // namespace
 
-constinit const PassKind wideShadowPass = passKind<WideShadow>();
+constinit const PassKind wideShadowPass = passKind<WideShadow>("wide_shadow");
 
 // Bounds of the blocks of shadow maps, which decide most wide shadows without reading texels.
 namespace {
@@ -217,16 +215,15 @@ uint32_t blocks(uint32_t texels) {
 class ShadowBounds final : public Pass {
   public:
     static bool needed(const ShaderPlan& plan) {
-        return std::ranges::any_of(plan.filteredLights, [&](const FilteredLight& f) {
-            return isBounded(plan, plan.state.lights[f.index]);
-        });
+        return std::ranges::any_of(plan.filteredLights,
+                                   [&](uint32_t light) { return isBounded(plan, plan.state.lights[light]); });
     }
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
         plan.boundedMaps.clear();
         uint64_t floats = 0;
         for (size_t k = 0; k < plan.filteredLights.size(); ++k) {
-            const ShaderLight& light = plan.state.lights[plan.filteredLights[k].index];
+            const ShaderLight& light = plan.state.lights[plan.filteredLights[k]];
             if (!isBounded(plan, light)) continue;
             for (uint32_t i = 0; i < cascadesOf(light); ++i) {
                 const ImageView& map = *shadowCascade(light, i).map;
@@ -252,11 +249,10 @@ class ShadowBounds final : public Pass {
 
     void enqueueAround(PassWork& work) override {
         for (const BoundedMap& map : work.plan.boundedMaps) {
-            const FilteredLight& filtered = work.plan.filteredLights[map.filtered];
-            const ShaderLight& light = work.plan.state.lights[filtered.index];
+            const ShaderLight& light = work.plan.state.lights[work.plan.filteredLights[map.filtered]];
             cl::Launch launch(program(), "shadow_bounds", work.constants.frameMemory(), work.plan.tileLists,
-                              filtered.constants, cl_uint(map.cascade),
-                              memoryOf(*shadowCascade(light, map.cascade).map), bounds_->memory());
+                              work.plan.wideShadows, cl_uint(map.index()),
+                              *shadowCascade(light, map.cascade).map, bounds_->memory());
             work.launch(launch, {{map.pairs, 1, 1}, {launchPolicy(work.device).texels, 1, 1}});
         }
     }
@@ -271,6 +267,6 @@ class ShadowBounds final : public Pass {
 
 }  // namespace
 
-constinit const PassKind shadowBoundsPass = passKind<ShadowBounds>();
+constinit const PassKind shadowBoundsPass = passKind<ShadowBounds>("shadow_bounds");
 
 }  // namespace pel

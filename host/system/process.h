@@ -1,5 +1,6 @@
 // This process: its environment, program and streams.
 #pragma once
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -22,17 +23,23 @@ bool errorsAreSeen();
 // Opens the standard streams that are closed, so that no file takes their place; false if that fails. From
 // now on a limit on file sizes is an error, as a full disk is.
 bool prepareStreams();
+// Standard output for this program alone: what libraries print there from now on goes to standard error.
+std::FILE* keepOutput();
 
-// Another program that runs beside this one, with these variables ("NAME=VALUE") added to the environment and
-// without standard streams. Does nothing on Windows.
+// Another program that runs beside this one. Its standard input and output are a connection to this process;
+// its errors are not shown. None runs on Windows.
 class Child {
   public:
-    Child(const std::vector<std::string>& words, const std::vector<std::string>& variables);
-    ~Child();  // ends it
-    Child(Child&& other) noexcept : process_(other.process_) { other.process_ = 0; }
-    void wait();
+    explicit Child(const std::vector<std::string>& words);
+    ~Child();  // closes its input, and waits for its end
+    Child(const Child&) = delete;
+    // Wait for all bytes. False if it has ended.
+    bool write(const void* bytes, size_t count);
+    bool read(void* bytes, size_t count);
+    void end();  // at once
 
   private:
+    int connection_ = -1;
     long process_ = 0;  // 0: none
 };
 

@@ -71,11 +71,12 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void classify_sc
         differences[k][item] = maxDifference2(frame, pyramid, tileX, tileY, (int)k);
     // the coarsest level has no coarser blocks
     differences[frame->levels - 1][item] = differences[frame->levels - 2][item];
+    const float widest = maxRadius(frame, pyramid, tileX, tileY);
     uint levels = 0;
     bool near = false;
     float greatest = 0.0f;
     for (uint t = 0; t < frame->tables; ++t) {
-        const PelProfileTable table = tables[t];
+        const PelProfileTable table = atRadius(tables[t], widest);
         float error = 0.0f, errorOfPixels = 0.0f;
         uint end = 1;
         for (uint k = 0; k < frame->levels; ++k) {

@@ -5,9 +5,11 @@
 // radii. Output: PEL_GATHER_FLOATS floats a pixel. gather_points copies the images; one work-item is a
 // pixel. gather_areas measures pixels against their neighbours and flags tiles that have something to
 // gather; one work-group is one tile. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_POSITION or
-// PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SCATTER_WEIGHT (0: all 1).
+// PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SCATTER_WEIGHT and
+// PEL_FORMAT_RADIUS (0: all 1).
 #include "lib/diffusion/gather.clh"
 #include "lib/diffusion/item.clh"
+#include "lib/diffusion/radius.clh"
 #include "lib/diffusion/usable_light.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/position.clh"
@@ -25,7 +27,8 @@ static inline float clampedShare(float v) {
 // Copies one pixel.
 static inline void copyPoint(__global const PelGatherFrame* frame, __global uchar* irradiance,
                              __global uchar* position, __global uchar* ids, __global uchar* weight,
-                             __global float* points, uint x, uint y, uint* covered, uint* invalid) {
+                             __global uchar* radii, __global float* points, uint x, uint y, uint* covered,
+                             uint* invalid) {
     uint id = 1;
 #if PEL_FORMAT_MATERIAL
     id = loadId(PEL_FORMAT_MATERIAL, imageSpan(ids, &frame->ids, x, y));
@@ -47,11 +50,11 @@ static inline void copyPoint(__global const PelGatherFrame* frame, __global ucha
             p = (float4)(at.x - frame->origin[0], at.y - frame->origin[1], at.z - frame->origin[2], 0.0f);
             e = (float4)(light.x, light.y, light.z, 0.0f);
 #if PEL_FORMAT_SCATTER_WEIGHT
-            const Span span = imageSpan(weight, &frame->weight, x, y);
-            pixel.w = clampedShare(loadScalar(PEL_FORMAT_SCATTER_WEIGHT, span));
-#if PEL_WEIGHT_COMPONENTS > 1
-            pixel.z = clampedShare(gatherComponent(PEL_FORMAT_SCATTER_WEIGHT, span, 1));
+            pixel.w =
+                clampedShare(loadScalar(PEL_FORMAT_SCATTER_WEIGHT, imageSpan(weight, &frame->weight, x, y)));
 #endif
+#if PEL_FORMAT_RADIUS
+            pixel.z = loadRadius(imageSpan(radii, &frame->radii, x, y));
 #endif
         } else {
             id = 0;
@@ -66,12 +69,13 @@ static inline void copyPoint(__global const PelGatherFrame* frame, __global ucha
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void gather_points(
     __global const PelGatherFrame* restrict frame, __global uchar* irradiance, __global uchar* position,
-    __global uchar* ids, __global uchar* weight, __global float* points, __global uint* restrict counters) {
+    __global uchar* ids, __global uchar* weight, __global uchar* radii, __global float* points,
+    __global uint* restrict counters) {
     __local uint sums[2];
     const uint x = itemOfFolded() % frame->width, y = itemOfFolded() / frame->width;
     uint covered = 0, invalid = 0;
     if (y < frame->height)
-        copyPoint(frame, irradiance, position, ids, weight, points, x, y, &covered, &invalid);
+        copyPoint(frame, irradiance, position, ids, weight, radii, points, x, y, &covered, &invalid);
     addOfGroup(&counters[PEL_COUNT_PIXELS_COVERED], covered, &sums[0]);
     addOfGroup(&counters[PEL_COUNT_IRRADIANCE_INVALID], invalid, &sums[1]);
 }

@@ -5,25 +5,49 @@
 // PEL_TILE_HIDDEN and all levels, since their weight has to be known. Output: the packed flags, and the
 // largest light per tile. Without PEL_HIDDEN: a tile has 4 x 4 parts of 4 x 4 pixels, which are blocks of
 // level 2 of the screen's pyramid. A part counts where the sum over the texels differs from the irradiance,
-// or where classify_scatter has flagged the tile. Output: a bit per part. One work-item is one tile.
-// Variants: PEL_HIDDEN.
+// or where classify_scatter has flagged the tile. Output: a bit per part. One work-item is one tile; one
+// lane: a work-group is, whose work-items share the blocks of each ring. Variants: PEL_HIDDEN.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/windowed.clh"
 
 #define PART_LEVEL 2
 #define LEFT_ALONE 0.5f  // of the tolerance
 
+#if PEL_WIDTH == 1
+#define LANE get_local_id(0)
+#define LANES PEL_GROUP
+
+// The sum over the work-items of a group, which all call it.
+static inline float3 sumOfGroup(float3 v, __local float3* partial) {
+    partial[LANE] = v;
+    for (uint half_ = LANES / 2; half_ > 0; half_ /= 2) {
+        barrier(CLK_LOCAL_MEM_FENCE);
+        if (LANE < half_) partial[LANE] += partial[LANE + half_];
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    const float3 sum = partial[0];
+    barrier(CLK_LOCAL_MEM_FENCE);
+    return sum;
+}
+#else
+#define LANE 0
+#define LANES 1
+static inline float3 sumOfGroup(float3 v, __local float3* partial) {
+    return v;
+}
+#endif
+
 static inline float3 farLight(__global const PelLightMap* maps, uint mapCount, __global const float* lights,
                               __global const float* nodes, const PelProfileTable table, Receiver* receiver,
-                              uint* texels) {
+                              uint* texels, __local float3* partial) {
     float3 light = (float3)(0.0f);
     for (uint k = 0; k < mapCount; ++k) {
         Windowed sums;
         clearWindowed(&sums);
-        *texels += addMap(&sums, maps + k, lights, nodes, table, receiver);
+        *texels += addMap(&sums, maps + k, lights, nodes, table, receiver, LANE, LANES);
         light += sumOfLanes3(sums.farLight) * vload3(0, maps[k].color);
     }
-    return light;
+    return sumOfGroup(light, partial);
 }
 
 // Fills in the position and the id of a block. Returns the profile table of the block, -1 if it does not
@@ -49,14 +73,17 @@ static inline float maxStep(__global const float* block, uint stride, uint level
 static inline float changeByLight(__global const PelDiffusionFrame* frame, __global const float* pyramid,
                                   uint tileX, uint tileY, __global const PelProfileTable* tables,
                                   __global const float* nodes, __global const PelLightMap* maps,
-                                  uint mapCount, __global const float* lights, uint* texels) {
+                                  uint mapCount, __global const float* lights, uint* texels,
+                                  __local float3* partial) {
     __global const PelPyramidLevel *whole = &frame->level[PEL_TILE_LEVEL], *part = &frame->level[PART_LEVEL];
     const uint side = PEL_DIFFUSION_TILE >> PART_LEVEL;
     Receiver receiver;
     receiver.rho = 0.0f;
-    receiver.directed = (float3)(0.0f);
+    receiver.normal = (float3)(0.0f);
+    receiver.curvature = 0.0f;
     float3 middle = (float3)(0.0f);
     float change = 0.0f, around = 0.0f;
+    const float widest = maxRadius(frame, pyramid, tileX, tileY);
     int number = -1;
     for (uint k = 0; k <= side * side; ++k) {  // 0: the whole tile
         const uint x = k ? tileX * side + (k - 1) % side : tileX,
@@ -70,7 +97,9 @@ static inline float changeByLight(__global const PelDiffusionFrame* frame, __glo
         if (table < 0 || (k && table == number && distance(receiver.p, middle) < around)) continue;
         receiver.margin = 0.71f * (float)(1 << atLevel) * maxStep(block, level->stride, atLevel);
         if (k == 0) number = table, middle = receiver.p, around = receiver.margin;
-        const float3 light = farLight(maps, mapCount, lights, nodes, tables[table], &receiver, texels);
+        receiver.directed = tables[table].directed;
+        const float3 light = farLight(maps, mapCount, lights, nodes, atRadius(tables[table], widest),
+                                      &receiver, texels, partial);
         change = fmax(change, fmax(light.x, fmax(light.y, light.z)));
     }
     return change;
@@ -88,20 +117,23 @@ static inline float curvatureOfBlock(__global const PelDiffusionFrame* frame, __
 static inline bool lightMatters(__global const PelDiffusionFrame* frame, __global const float* block,
                                 uint stride, __global const PelProfileTable* tables,
                                 __global const float* nodes, __global const PelLightMap* maps, uint mapCount,
-                                __global const float* lights, bool tapped, float curvature, uint* texels) {
+                                __global const float* lights, bool tapped, float curvature, uint* texels,
+                                __local float3* partial) {
     Receiver receiver;
     const int number = receiverOf(frame, block, stride, &receiver);
     if (number < 0) return false;
     if (tapped) return true;
-    const PelProfileTable table = tables[number];
+    const PelProfileTable table = tableAt(tables + number, block, stride);
     receiver.rho = 2.0f * maxStep(block, stride, PART_LEVEL);
     receiver.margin = 0.0f;
-    receiver.directed = table.directed * outwardNormal(frame, block, stride);
+    receiver.directed = table.directed;
+    receiver.normal = outwardNormal(frame, block, stride);
     const float3 e = (float3)(block[PEL_PLANE_RED * stride], block[PEL_PLANE_GREEN * stride],
                               block[PEL_PLANE_BLUE * stride]);
     const float3 window = shareOfWindow(nodes, table, receiver.rho), gain = directedGainAt(table, curvature),
-                 light = fabs(farLight(maps, mapCount, lights, nodes, table, &receiver, texels) / gain -
-                              e * (1.0f - window * directedGainWithin(gain, window) / gain));
+                 light =
+                     fabs(farLight(maps, mapCount, lights, nodes, table, &receiver, texels, partial) / gain -
+                          e * (1.0f - window * directedGainWithin(gain, window) / gain));
     return fmax(light.x, fmax(light.y, light.z)) > (frame->everyTile ? 0.0f : LEFT_ALONE * frame->tolerance);
 }
 #endif
@@ -111,20 +143,27 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_class
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global uint* tiles, __global const PelLightMap* restrict maps, uint mapCount,
     __global const float* restrict lights, __global uint* parts, __global uint* restrict counters) {
+#if PEL_WIDTH == 1
+    __local float3 partial[LANES];
+    __local uint texelsOfGroup;
+    const uint tile = get_group_id(0);
+#else
+    __local float3* const partial = 0;
     const uint tile = itemOfFolded();
     if (tile >= frame->tilesX * frame->tilesY) return;
+#endif
     const uint tileX = tile % frame->tilesX, tileY = tile / frame->tilesX;
     uint texels = 0;
 #if PEL_HIDDEN
     const uint word = tiles[tile];
     const float change = changeByLight(frame, pyramid, tileX, tileY, tables, nodes, maps, mapCount, lights,
-                                       &texels),
+                                       &texels, partial),
                 least = frame->everyTile ? 0.0f : LEFT_ALONE * frame->tolerance;
     const bool reached = change > least;
-    if (reached)
+    if (reached && LANE == 0)
         tiles[tile] = (word & PEL_TILE_NEAR) | frame->levels << 8 | PEL_TILE_HIDDEN |
                       max(word >> 24 << 24, packedWeight(weightOfTile(change, least)));
-    parts[tile] = as_uint(change);
+    if (LANE == 0) parts[tile] = as_uint(change);
 #else
     const uint side = PEL_DIFFUSION_TILE >> PART_LEVEL;
     uint reached = 0;
@@ -135,11 +174,17 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_class
             if (x >= level->width || y >= level->height) continue;
             if (lightMatters(frame, pyramid + pyramidRow(level, (int)y) + x, level->stride, tables, nodes,
                              maps, mapCount, lights, tiles[tile] != 0, curvatureOfBlock(frame, pyramid, x, y),
-                             &texels))
+                             &texels, partial))
                 reached |= 1u << (j * side + i);
         }
-    parts[tile] = reached;
+    if (LANE == 0) parts[tile] = reached;
 #endif
-    if (reached) atomic_inc(&counters[PEL_COUNT_LIGHT_TILES]);
+    if (LANE == 0) {
+        if (reached) atomic_inc(&counters[PEL_COUNT_LIGHT_TILES]);
+    }
+#if PEL_WIDTH == 1
+    addOfGroup(&counters[PEL_COUNT_LIGHT_TEXELS], texels, &texelsOfGroup);
+#else
     if (texels) atomic_add(&counters[PEL_COUNT_LIGHT_TEXELS], texels);
+#endif
 }

@@ -19,7 +19,7 @@ static inline void addHidden(__global const PelLightMap* maps, uint mapCount, __
         const uint number = maps[k].light;
         const float3 color = vload3(0, maps[k].color);
         for (; k < mapCount && maps[k].light == number; ++k)
-            *texels += addMap(&sums, maps + k, lights, nodes, table, receiver);
+            *texels += addMap(&sums, maps + k, lights, nodes, table, receiver, 0, 1);
         const float3 all = sumOfLanes3(sums.farLight);
         *light += color * all;
         *far += color * (all - sumOfLanes3(sums.nearLight));
@@ -84,8 +84,15 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_hidde
                 const float step = sqrt(fmax(block[PEL_PLANE_SIZE * stride], FLT_MIN));
                 receiver.rho = WINDOW * fmax(block[PEL_PLANE_AREA * stride] / (4.0f * step), step);
                 receiver.p = pointAt(block, stride);
-                const PelProfileTable table = tables[frame->tableOf[id] - 1];
-                receiver.directed = table.directed * outwardNormal(frame, block, stride);
+                const PelProfileTable table = tableAt(tables + frame->tableOf[id] - 1, block, stride);
+                receiver.directed = table.directed;
+                receiver.curvature = 0.0f;
+                if (PEL_FORMAT_MEAN_CURVATURE) {  // of a pixel
+                    const uint pixels = frame->level[0].stride;
+                    receiver.curvature = pyramid[pyramidRow(&frame->level[0], (int)(2 * y)) + 2 * x +
+                                                 PEL_PLANE_CURVATURE * pixels];
+                }
+                receiver.normal = outwardNormal(frame, block, stride);
                 addHidden(maps, mapCount, lights, nodes, table, &receiver, &light, &weight, &far, &texels);
                 ++pixels;
             }

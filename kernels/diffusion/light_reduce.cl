@@ -2,16 +2,12 @@
 //
 // The flux of a block is stored in two clusters. The first begins at the brightest child. Children far from
 // it, or of another id, go to the second, which begins at the farthest of them. Input and output: the
-// pyramid. One work-item: PEL_WIDTH blocks of a row. Variants: PEL_HIDDEN.
+// pyramid; level 1 also clears the marks of light_seen. One work-item: PEL_WIDTH blocks of a row of a map's
+// level; one lane: a work-group is a block of the last of `count` levels. Variants: PEL_HIDDEN.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/light_space.clh"
 #include "lib/diffusion/pyramid.clh"
 
-#if PEL_WIDTH == 1
-#define UNROLL _Pragma("unroll")
-#else
-#define UNROLL
-#endif
 #define APART 1.5f  // widths of a block between two clusters
 
 typedef struct Cluster {
@@ -20,6 +16,21 @@ typedef struct Cluster {
     Vec3w p;
 } Cluster;
 
+#if PEL_WIDTH == 1
+// Cluster k of the children, loaded each time that it is needed: eight of them take half of a GPU's
+// registers.
+static inline Cluster clusterOf(__global const float* upper, uint stride, uint points, uint k) {
+    __global const float* at =
+        upper + (k & 1) + ((k & 2 ? lightPlanes(points) : 0) + (k & 4 ? lightPlanes(1) : 0)) * stride;
+    Cluster c;
+    c.flux = at[PEL_LIGHT_FLUX * stride], c.extent = at[PEL_LIGHT_EXTENT * stride];
+    c.id = PEL_HIDDEN ? 0 : as_uint(at[PEL_LIGHT_ID * stride]);
+    c.p = vec3(at[PEL_LIGHT_X * stride], at[PEL_LIGHT_Y * stride], at[PEL_LIGHT_Z * stride]);
+    return c;
+}
+#define CLUSTER(k) clusterOf(upper, stride, points, k)
+#else
+#define CLUSTER(k) clusters[k]
 static inline void loadClusters(__global const float* at, uint stride, Cluster* even, Cluster* odd) {
     loadEvenOdd(at + PEL_LIGHT_FLUX * stride, &even->flux, &odd->flux);
     loadEvenOdd(at + PEL_LIGHT_EXTENT * stride, &even->extent, &odd->extent);
@@ -33,6 +44,7 @@ static inline void loadClusters(__global const float* at, uint stride, Cluster* 
     loadEvenOdd(at + PEL_LIGHT_Y * stride, &even->p.y, &odd->p.y);
     loadEvenOdd(at + PEL_LIGHT_Z * stride, &even->p.z, &odd->p.z);
 }
+#endif
 
 static inline maskw sameId(Cluster a, Cluster b) {
     return PEL_HIDDEN ? (maskw)(-1) : (maskw)(a.id == b.id);
@@ -71,31 +83,49 @@ static inline void storeCluster(Cluster sum, Cluster seed, size_t at, uint strid
     storew(p.z, at + PEL_LIGHT_Z * stride, pyramid);
 }
 
+// Sets the marks of light_seen to 0 for the next frame: those of the texels of PEL_WIDTH blocks of level 1.
+static inline void clearMarks(__global const PelLightMap* map, __global uchar* seen, uint x, uint y) {
+    const uint width = map->level[0].width, end = min(2 * (x + PEL_WIDTH), width);
+    for (uint j = 2 * y; j < min(2 * y + 2, map->level[0].height); ++j) {
+        __global uchar* row = seen + map->seen + (size_t)j * width;
+#if PEL_WIDTH == 16
+        if (end == 2 * x + 32)
+            vstore16((uchar16)(0), 0, row + 2 * x), vstore16((uchar16)(0), 1, row + 2 * x);
+        else
+#endif
+            for (uint i = 2 * x; i < end; ++i) row[i] = 0;
+    }
+}
+
 // Whether some cell between the texels (left, top) and (right, bottom) has flux, or had flux in the frame
 // before.
 static inline bool cellsMatter(__global const PelLightMap* map, __global const uchar* before,
-                               __global const uchar* now, uint left, uint top, uint right, uint bottom) {
+                               __global const uchar* now, uint frameNumber, uint left, uint top, uint right,
+                               uint bottom) {
     const uint across = cellsAcross(map), width = map->level[0].width, height = map->level[0].height;
     for (uint y = top / PEL_LIGHT_CELL; y * PEL_LIGHT_CELL < min(bottom, height); ++y)
         for (uint x = left / PEL_LIGHT_CELL; x * PEL_LIGHT_CELL < min(right, width); ++x) {
             const uint cell = map->cells + y * across + x;
-            if (before[cell] | now[cell]) return true;
+            if (cellOfFrame(before[cell], frameNumber - 1) || cellOfFrame(now[cell], frameNumber))
+                return true;
         }
     return false;
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_reduce(
-    __global const PelLightMap* restrict maps, uint index, uint to, __global const uchar* restrict before,
-    __global const uchar* now, __global float* pyramid) {
-    __global const PelLightMap* map = maps + index;
+// PEL_WIDTH blocks of level `to`.
+static inline void reduceLight(__global const PelLightMap* map, uint to, uint x, uint y, uint frameNumber,
+                               __global const uchar* before, __global const uchar* now, __global uchar* seen,
+                               __global float* pyramid) {
     __global const PelPyramidLevel *fine = &map->level[to - 1], *coarse = &map->level[to];
-    const uint across = (coarse->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
-    if (y >= coarse->height) return;
-    const uint x = itemOfFolded() % across * PEL_WIDTH, points = to == 1 ? 1 : 2, stride = fine->stride;
-    if (!cellsMatter(map, before, now, x << to, y << to, (x + PEL_WIDTH) << to, (y + 1) << to)) return;
+    const uint points = to == 1 ? 1 : 2, stride = fine->stride;
+    if (to == 1) clearMarks(map, seen, x, y);
+    if (!cellsMatter(map, before, now, frameNumber, x << to, y << to, (x + PEL_WIDTH) << to, (y + 1) << to))
+        return;
     __global const float* upper = pyramid + lightRow(fine, points, 2 * (int)y) + 2 * x;
-    __global const float* lower = pyramid + lightRow(fine, points, 2 * (int)y + 1) + 2 * x;
     const size_t at = lightRow(coarse, 2, (int)y) + x;
+    const uint count = 4 * points;
+#if PEL_WIDTH > 1
+    __global const float* lower = upper + lightPlanes(points) * stride;
     const uint layer = lightPlanes(1) * stride;
     Cluster clusters[8];
     loadClusters(upper, stride, &clusters[0], &clusters[1]);
@@ -103,14 +133,12 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_reduc
     if (points == 2) {
         loadClusters(upper + layer, stride, &clusters[4], &clusters[5]);
         loadClusters(lower + layer, stride, &clusters[6], &clusters[7]);
-    } else if (PEL_WIDTH == 1) {
-        for (uint k = 4; k < 8; ++k) clusters[k] = clusters[0], clusters[k].flux = 0.0f;
     }
-    // One lane: loops of constant length are unrolled, and the clusters stay in registers.
-    const uint count = PEL_WIDTH == 1 || points == 2 ? 8 : 4;
-    Cluster first = clusters[0];
-    UNROLL for (uint k = 1; k < count; ++k) {
-        first = chooseCluster(first, clusters[k], clusters[k].flux > first.flux);
+#endif
+    Cluster first = CLUSTER(0);
+    for (uint k = 1; k < count; ++k) {
+        const Cluster c = CLUSTER(k);
+        first = chooseCluster(first, c, c.flux > first.flux);
     }
     if (!anyw(first.flux > 0.0f)) {
         storew((floatw)(0.0f), at + PEL_LIGHT_FLUX * coarse->stride, pyramid);
@@ -119,9 +147,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_reduc
     }
     Cluster second = first;
     floatw farthest = 0.0f;
-    UNROLL for (uint k = 0; k < count; ++k) {
-        const floatw distance2 = selectw((floatw)(0.0f), apart2(clusters[k], first), clusters[k].flux > 0.0f);
-        second = chooseCluster(second, clusters[k], distance2 > farthest);
+    for (uint k = 0; k < count; ++k) {
+        const Cluster c = CLUSTER(k);
+        const floatw distance2 = selectw((floatw)(0.0f), apart2(c, first), c.flux > 0.0f);
+        second = chooseCluster(second, c, distance2 > farthest);
         farthest = fmax(farthest, distance2);
     }
     const floatw width = APART * map->texel * (float)(1u << to) * matrixRow(map->toMap, 3, first.p);
@@ -129,13 +158,23 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_reduc
     Cluster a, b;
     a.flux = a.extent = b.flux = b.extent = 0.0f;
     a.p = b.p = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
-    UNROLL for (uint k = 0; k < count; ++k) {
-        const maskw there = clusters[k].flux > 0.0f;
-        const floatw toFirst = apart2(clusters[k], first), toSecond = apart2(clusters[k], second);
+    for (uint k = 0; k < count; ++k) {
+        const Cluster c = CLUSTER(k);
+        const maskw there = c.flux > 0.0f;
+        const floatw toFirst = apart2(c, first), toSecond = apart2(c, second);
         const maskw beyond = two & (toSecond < toFirst);
-        addToCluster(&a, first, clusters[k], there & notw(beyond) & sameId(clusters[k], first));
-        addToCluster(&b, second, clusters[k], there & beyond & sameId(clusters[k], second));
+        addToCluster(&a, first, c, there & notw(beyond) & sameId(c, first));
+        addToCluster(&b, second, c, there & beyond & sameId(c, second));
     }
     storeCluster(a, first, at, coarse->stride, pyramid);
     storeCluster(b, second, at + lightPlanes(1) * coarse->stride, coarse->stride, pyramid);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_reduce(
+    __global const PelLightMap* restrict maps, uint to, uint count, __global const uchar* restrict before,
+    __global const uchar* restrict now, uint frameNumber, __global uchar* seen, __global float* pyramid) {
+    __global const PelLightMap* map = maps + get_global_id(2);
+#define PEL_REDUCE_(level, x, y) reduceLight(map, level, x, y, frameNumber, before, now, seen, pyramid)
+    PEL_REDUCE_LEVELS(map->level, map->levels, to, count, PEL_REDUCE_)
+#undef PEL_REDUCE_
 }

@@ -7,7 +7,8 @@
 // texel, set to 0 beforehand: the id of the pixel, or PEL_SEEN_OTHER where the pixel does not scatter.
 // Patches of several work-items meet at a texel, so bytes are merged atomically, and the result does not
 // depend on their order: with PEL_HIDDEN the bits of all ids, since only "not 0" matters, otherwise the
-// smallest id. One work-item: PEL_WIDTH pixels of every other row. Variants: PEL_FORMAT_POSITION or
+// smallest id. One work-item: PEL_WIDTH pixels of every other row, in a
+// map. Variants: PEL_FORMAT_POSITION or
 // PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT,
 // PEL_HIDDEN.
 #include "lib/diffusion/item.clh"
@@ -144,11 +145,11 @@ static inline void fetchDepths(__global const PelLightMap* map, __global const u
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_seen(
     __global const PelDiffusionFrame* restrict frame, __global uchar* position, __global uchar* ids,
-    __global const PelLightMap* restrict maps, uint index, __global uchar* texels,
-    __global const float* restrict pyramid, volatile __global uint* seen) {
+    __global const PelLightMap* restrict maps, __global const float* restrict pyramid,
+    volatile __global uint* seen PEL_LIGHT_BUFFER_ARGUMENTS) {
     const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across * EVERY;
     if (y >= frame->height) return;
-    __global const PelLightMap* map = maps + index;
+    __global const PelLightMap* map = maps + get_global_id(2);
     const uint from = itemOfFolded() % across * PEL_WIDTH, x = vectorStart(from, frame->width);
     const intw column = lanesw() + (int)x;
     const maskw mine = (column >= (int)from) & (column < (int)frame->width) & (column % EVERY == 0);
@@ -186,7 +187,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_seen(
                        (loadw(PEL_PLANE_BLUE * stride, own) == 0.0f);
     on &= notw(dark & (as_uintw(loadw(PEL_PLANE_ID * stride, own)) != (uintw)(0)));
     if (!anyw(on)) return;
-    __global const uchar* first = firstTexel(texels, &map->map);
+    __global const uchar* first = firstTexel(PEL_LIGHT_BUFFER_OF(map->buffer), &map->map);
 #define FETCH(k, s) \
     if (on s) fetchDepths(map, first, patch.column s, patch.row s);
     PEL_EACH_LANE(FETCH)

@@ -54,18 +54,36 @@ static inline maskw isBeside(Vec3w p, Vec3w q, floatw most, maskw seen) {
 }
 #endif
 
+// The step from texel (x, y) to the next one along a row or a column. With PEL_HIDDEN, lanes of `there`
+// beside a camera-visible texel are cleared: between two patches, and where light grazes, texels of
+// camera-visible surface remain unmarked. They come and go while the light moves.
+static inline Vec3w stepAlong(__global const PelLightMap* map, __global const uchar* first,
+                              __global const uchar* seen, Vec3w p, floatw columns, floatw rows, int x, int y,
+                              int dx, int dy, maskw* there) {
+    const float sx = (float)dx, sy = (float)dy;
+    const Vec3w before = pointOfTexel(map, columns - sx, rows - sy, texelDepths(map, first, x - dx, y - dy)),
+                after = pointOfTexel(map, columns + sx, rows + sy, texelDepths(map, first, x + dx, y + dy));
+#if PEL_HIDDEN
+    const floatw near = MIN_DISTANCE * map->texel * matrixRow(map->toMap, 3, p);
+    __global const uchar* all = seen + map->seen;
+    *there &= notw(isBeside(p, before, near, isSeen(all, &map->level[0], x - dx, y - dy)) |
+                   isBeside(p, after, near, isSeen(all, &map->level[0], x + dx, y + dy)));
+#endif
+    return stepOf(p, before, after);
+}
+
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_texels(
-    __global const PelLightMap* restrict maps, uint index, __global uchar* texels,
-    __global const uchar* restrict seen, __global const uchar* restrict before, __global uchar* now,
-    __global float* pyramid) {
-    __global const PelLightMap* map = maps + index;
+    __global const PelLightMap* restrict maps, __global const uchar* restrict seen,
+    __global const uchar* restrict before, __global uchar* now, uint frameNumber,
+    __global float* pyramid PEL_LIGHT_BUFFER_ARGUMENTS) {
+    __global const PelLightMap* map = maps + get_global_id(2);
     __global const PelPyramidLevel* level = &map->level[0];
     const uint across = (level->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
     if (y >= level->height) return;
     const uint x = itemOfFolded() % across * PEL_WIDTH;
     const size_t at = lightRow(level, 1, (int)y) + x;
     const uint stride = level->stride;
-    __global const uchar* first = firstTexel(texels, &map->map);
+    __global const uchar* first = firstTexel(PEL_LIGHT_BUFFER_OF(map->buffer), &map->map);
     const intw column = lanesw() + (int)x;
     const uintw id = idsOfTexels(seen + map->seen + (size_t)y * level->width + x);
     maskw there =
@@ -103,27 +121,15 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_texel
                           (t.y <= (float)finer->level[0].height - 0.5f) & (t.z >= 0.0f) & (t.z <= 1.0f));
         }
         there &= finite3(p) & finitew(across) & finitew(strength);
-        const Vec3w previous =
-                        pointOfTexel(map, columns - 1.0f, rows, texelDepths(map, first, (int)x - 1, (int)y)),
-                    next =
-                        pointOfTexel(map, columns + 1.0f, rows, texelDepths(map, first, (int)x + 1, (int)y)),
-                    over =
-                        pointOfTexel(map, columns, rows - 1.0f, texelDepths(map, first, (int)x, (int)y - 1)),
-                    below =
-                        pointOfTexel(map, columns, rows + 1.0f, texelDepths(map, first, (int)x, (int)y + 1));
-#if PEL_HIDDEN
-        // Between two patches, and where light grazes, texels of camera-visible surface remain unmarked.
-        // They come and go while the light moves, so they are dropped.
-        const floatw near = MIN_DISTANCE * map->texel * matrixRow(map->toMap, 3, p);
-        __global const uchar* all = seen + map->seen;
-        const int i = (int)x, j = (int)y;
-        there &= notw(isBeside(p, previous, near, isSeen(all, level, i - 1, j)) |
-                      isBeside(p, next, near, isSeen(all, level, i + 1, j)) |
-                      isBeside(p, over, near, isSeen(all, level, i, j - 1)) |
-                      isBeside(p, below, near, isSeen(all, level, i, j + 1)));
-#endif
+        Vec3w along = p, below = p;
+        PEL_ROLL for (int axis = 0; axis < 2; ++axis) {
+            const Vec3w step =
+                stepAlong(map, first, seen, p, columns, rows, (int)x, (int)y, 1 - axis, axis, &there);
+            if (axis == 0) along = step;
+            below = step;
+        }
         flux = selectw((floatw)(0.0f), strength * across, there);
-        const Vec3w area = cross3(stepOf(p, previous, next), stepOf(p, over, below));
+        const Vec3w area = cross3(along, below);
         floatw extent = sqrt(dot3(area, area));
         extent = fmin(selectw(across, extent, finitew(extent)), MAX_SLOPE * across);
         const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
@@ -135,8 +141,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_texel
         storew(q.z, at + PEL_LIGHT_Z * stride, pyramid);
     }
     if (anyw(flux > 0.0f))
-        now[cell] = 1;
-    else if (!before[cell])
+        now[cell] = (uchar)frameNumber;
+    else if (!cellOfFrame(before[cell], frameNumber - 1))
         return;
     storew(flux, at + PEL_LIGHT_FLUX * stride, pyramid);
 }

@@ -110,7 +110,7 @@ static inline floatw curvatureOf(const Images* in, const Point* here, uint x, ui
 }
 
 // `firstRow`: of the launch; `outRow`: that the output begins with.
-__kernel __attribute__((reqd_work_group_size(PEL_CURVATURE_GROUP, 1, 1))) void mean_curvature(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void mean_curvature(
     __global const PelMeanCurvature* restrict frame, __global uchar* normal, __global uchar* position,
     __global uchar* ids, __global uchar* restrict out, uint firstRow, uint rows, uint outRow) {
     const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, row = itemOfFolded() / across,

@@ -2,7 +2,9 @@
 //
 // A block belongs to one object, that of the child with the largest area, and takes in the other children
 // that have its id and lie near it. So no light bleeds from one object to another, or to a surface behind.
-// Inputs: the finer level. Output: the coarser one. One work-item: PEL_WIDTH blocks of a row.
+// Inputs: the finer level. Output: the coarser one. One work-item: PEL_WIDTH blocks of a row. One lane: a
+// work-group is a block of the last of `count` levels; surface_differences follows, for second differences
+// need neighbours that other groups make. There an item is a block of any level.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/pyramid.clh"
 
@@ -13,7 +15,7 @@ typedef struct Child {
     floatw area;
     uintw id;
     Vec3w p, e;
-    floatw size;
+    floatw size, radius;
 } Child;
 
 typedef struct Pair {
@@ -27,6 +29,9 @@ static inline Pair loadPair(__global const float* at, uint stride) {
     pair.left.id = as_uintw(left), pair.right.id = as_uintw(right);
     loadEvenOdd(at + PEL_PLANE_AREA * stride, &pair.left.area, &pair.right.area);
     loadEvenOdd(at + PEL_PLANE_SIZE * stride, &pair.left.size, &pair.right.size);
+#if PEL_RADII
+    loadEvenOdd(at + PEL_PLANE_RADIUS * stride, &pair.left.radius, &pair.right.radius);
+#endif
     loadEvenOdd(at + PEL_PLANE_X * stride, &pair.left.p.x, &pair.right.p.x);
     loadEvenOdd(at + PEL_PLANE_Y * stride, &pair.left.p.y, &pair.right.p.y);
     loadEvenOdd(at + PEL_PLANE_Z * stride, &pair.left.p.z, &pair.right.p.z);
@@ -99,6 +104,9 @@ static inline void addChild(Child* block, const Child* child, const Child* large
     block->p = add3(block->p, scale3(select3(none, between, near), area));
     block->e = add3(block->e, scale3(select3(none, child->e, near), area));
     block->size += selectw((floatw)(0.0f), child->size, near) * area;
+#if PEL_RADII
+    block->radius += selectw((floatw)(0.0f), child->radius, near) * area;
+#endif
 }
 
 static inline Child largerChild(Child a, Child b) {
@@ -110,12 +118,25 @@ static inline Child largerChild(Child a, Child b) {
     return larger;
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void reduce_surface(
-    __global const PelDiffusionFrame* restrict frame, __global float* pyramid, uint to) {
+// The largest second difference of the children of PEL_WIDTH blocks of level `to`.
+static inline floatw differences(__global const PelDiffusionFrame* frame, __global const float* pyramid,
+                                 uint to, uint x, uint y) {
+    __global const PelPyramidLevel* fine = &frame->level[to - 1];
+    const uint stride = fine->stride;
+    const size_t rowValues = (size_t)stride * PEL_PYRAMID_PLANES;
+    __global const float* upper = pyramid + pyramidRow(fine, 2 * (int)y) + 2 * x;
+    const Row before = loadRow(upper - rowValues, stride), first = loadRow(upper, stride),
+              second = loadRow(upper + rowValues, stride), after = loadRow(upper + 2 * rowValues, stride);
+    const intw column = (lanesw() + (int)x) * 2;
+    return fmax(difference2OfRows(&before, &first, &second, column, fine->width, y == 0),
+                difference2OfRows(&first, &second, &after, column, fine->width, 2 * y + 2 >= fine->height));
+}
+
+// PEL_WIDTH blocks of level `to`.
+static inline void reduceBlocks(__global const PelDiffusionFrame* frame, __global float* pyramid, uint to,
+                                uint x, uint y) {
     __global const PelPyramidLevel *fine = &frame->level[to - 1], *coarse = &frame->level[to];
-    const uint across = (coarse->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
-    if (y >= coarse->height) return;
-    const uint x = itemOfFolded() % across * PEL_WIDTH, stride = fine->stride;
+    const uint stride = fine->stride;
     __global const float* upper = pyramid + pyramidRow(fine, 2 * (int)y) + 2 * x;
     const size_t rowValues = (size_t)stride * PEL_PYRAMID_PLANES;
     const size_t at = pyramidRow(coarse, (int)y) + x;
@@ -126,13 +147,13 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void reduce_surf
     loadEvenOdd(upper + rowValues + PEL_PLANE_AREA * stride, &lowerLeft, &lowerRight);
     if (!anyw((left > 0.0f) | (right > 0.0f) | (lowerLeft > 0.0f) | (lowerRight > 0.0f))) {
         storew((floatw)(0.0f), at + PEL_PLANE_AREA * out, pyramid);
-        storew((floatw)(0.0f), at + PEL_PLANE_DIFFERENCE2 * out, pyramid);
+        if (PEL_WIDTH > 1) storew((floatw)(0.0f), at + PEL_PLANE_DIFFERENCE2 * out, pyramid);
         return;
     }
     const Pair a = loadPair(upper, stride), b = loadPair(upper + rowValues, stride);
     const Child largest = largerChild(largerChild(a.left, a.right), largerChild(b.left, b.right));
     Child block;
-    block.area = 0.0f, block.size = 0.0f;
+    block.area = block.size = block.radius = 0.0f;
     block.p = block.e = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
     addChild(&block, &a.left, &largest);
     addChild(&block, &a.right, &largest);
@@ -142,12 +163,6 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void reduce_surf
     const floatw share = 1.0f / selectw((floatw)(1.0f), block.area, any);
     block.p = add3(largest.p, scale3(block.p, share));
     block.e = scale3(block.e, share);
-    const Row before = loadRow(upper - rowValues, stride), first = loadRow(upper, stride),
-              second = loadRow(upper + rowValues, stride), after = loadRow(upper + 2 * rowValues, stride);
-    const intw column = (lanesw() + (int)x) * 2;
-    const floatw largest2 =
-        fmax(difference2OfRows(&before, &first, &second, column, fine->width, y == 0),
-             difference2OfRows(&first, &second, &after, column, fine->width, 2 * y + 2 >= fine->height));
     storew(block.area, at + PEL_PLANE_AREA * out, pyramid);
     storew(as_floatw(largest.id), at + PEL_PLANE_ID * out, pyramid);
     storew(block.p.x, at + PEL_PLANE_X * out, pyramid);
@@ -156,6 +171,30 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void reduce_surf
     storew(block.e.x, at + PEL_PLANE_RED * out, pyramid);
     storew(block.e.y, at + PEL_PLANE_GREEN * out, pyramid);
     storew(block.e.z, at + PEL_PLANE_BLUE * out, pyramid);
-    storew(largest2, at + PEL_PLANE_DIFFERENCE2 * out, pyramid);
+    if (PEL_WIDTH > 1)
+        storew(differences(frame, pyramid, to, x, y), at + PEL_PLANE_DIFFERENCE2 * out, pyramid);
     storew(block.size * share, at + PEL_PLANE_SIZE * out, pyramid);
+#if PEL_RADII
+    storew(block.radius * share, at + PEL_PLANE_RADIUS * out, pyramid);
+#endif
 }
+
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void reduce_surface(
+    __global const PelDiffusionFrame* restrict frame, __global float* pyramid, uint to, uint count){
+#define PEL_REDUCE_(level, x, y) reduceBlocks(frame, pyramid, level, x, y)
+    PEL_REDUCE_LEVELS(frame->level, frame->levels, to, count, PEL_REDUCE_)
+#undef PEL_REDUCE_
+}
+
+#if PEL_WIDTH == 1
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void surface_differences(
+    __global const PelDiffusionFrame* restrict frame, __global float* pyramid) {
+    uint x, y;
+    const uint level = blockOfItem(frame, &x, &y);
+    if (level == frame->levels) return;
+    const uint stride = frame->level[level].stride;
+    __global float* at = pyramid + pyramidRow(&frame->level[level], (int)y) + x;
+    at[PEL_PLANE_DIFFERENCE2 * stride] =
+        at[PEL_PLANE_AREA * stride] > 0.0f ? differences(frame, pyramid, level, x, y) : 0.0f;
+}
+#endif

@@ -8,7 +8,6 @@
 // by pixel. Variants: PEL_HIDDEN is 0, PEL_FORMAT_OUT.
 #include "lib/diffusion/lit_surface.clh"
 #include "lib/diffusion/windowed.clh"
-#include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 
 #define PART 4  // pixels along a side
@@ -113,9 +112,9 @@ static inline bool scatterPixel(__global const PelDiffusionFrame* frame, __globa
                                 __global const PelProfileTable* tables, __global const float* nodes,
                                 __global const PelLightMap* maps, uint mapCount, __global const float* lights,
                                 int x, int y, const Pixel* here, uint* blocks, uint* texels, float3* result) {
-    const PelProfileTable table = tables[frame->tableOf[here->id] - 1];
     const uint stride = frame->level[0].stride;
     __global const float* at = pyramid + pyramidRow(&frame->level[0], y) + x;
+    const PelProfileTable table = tableAt(tables + frame->tableOf[here->id] - 1, at, stride);
     const float3 right = shorterWay(at, 1, stride),
                  down = shorterWay(at, (long)stride * PEL_PYRAMID_PLANES, stride),
                  across = cross(right, down);
@@ -124,7 +123,8 @@ static inline bool scatterPixel(__global const PelDiffusionFrame* frame, __globa
     receiver.p = here->p;
     receiver.id = here->id;
     receiver.margin = 0.0f;
-    receiver.directed = table.directed * outwardNormal(frame, at, stride);
+    receiver.directed = table.directed;
+    receiver.normal = outwardNormal(frame, at, stride);
     const float3 normal = across * rsqrt(fmax(dot(across, across), FLT_MIN));
     float texel = 0.0f, point = 0.0f, shown = 0.0f;  // the longest on the surface
     float steepest = 1.0f;                           // least cosine
@@ -140,7 +140,7 @@ static inline bool scatterPixel(__global const PelDiffusionFrame* frame, __globa
     lit.p = here->p;
     lit.id = here->id;
     lit.directed = table.directed;
-    lit.normal = outwardNormal(frame, at, stride);
+    lit.normal = receiver.normal;
     lit.curvature = at[PEL_PLANE_CURVATURE * stride];
     lit.own = OWN_WINDOW * point * (1.0f / PEL_TEXEL_ACROSS);
     receiver.rho = lit.shown = fmax(SHOWN_WINDOW * shown, lit.own);

@@ -82,35 +82,42 @@ static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __glo
     const Vec3w e = loadPlanes3(at + PEL_PLANE_RED * stride, stride);
     Slope slope = slopeAt(at, stride, here, e, frame->facing, active);
     if (PEL_FORMAT_MEAN_CURVATURE) slope.curvature = loadw(PEL_PLANE_CURVATURE * stride, at);
-    Interpolated all = interpolateSums(frame, pyramid, sums, hidden, 1, x, y, here, active);
-    all.sums.light = movedLight(&all.sums, &slope, all.place, here);
-    // Pixels are too coarse for their weights to add up: within the ring of level 1 no weight is missing.
-    const Vec3w known = add3(all.sums.weight, all.sums.centre);
-    Vec3w gain = vec3((floatw)(1.0f), (floatw)(1.0f), (floatw)(1.0f));
+    // First, so that fewer values are kept meanwhile.
+    Sums single = noSums();
+    Vec3w own = single.light, gain = vec3((floatw)(1.0f), (floatw)(1.0f), (floatw)(1.0f));
     if (near || PEL_FORMAT_MEAN_CURVATURE) {
         const intw table = selectw((intw)(0), tablesOf(frame, here->id), active);
         for (uint t = 1; t <= frame->tables; ++t) {
             const maskw mine = table == (intw)((int)t);
             if (!anyw(mine)) continue;
+            const floatw curvature = PEL_TIMES_RADIUS(slope.curvature, here);
             if (PEL_FORMAT_MEAN_CURVATURE)
-                gain = select3(gain,
-                               vec3(directedGain(tables[t - 1], 0, slope.curvature),
-                                    directedGain(tables[t - 1], 1, slope.curvature),
-                                    directedGain(tables[t - 1], 2, slope.curvature)),
-                               mine);
+                gain = select3(
+                    gain,
+                    vec3(directedGain(tables[t - 1], 0, curvature), directedGain(tables[t - 1], 1, curvature),
+                         directedGain(tables[t - 1], 2, curvature)),
+                    mine);
             if (!near) continue;
             Sums more = noSums();
             addPixels(at, stride, nodes, tables[t - 1], here, &slope, mine, &more);
-            const Vec3w own = shareOfPixelItself(nodes, tables[t - 1], here->area, here->size);
-            addNear(&all.sums.light.x, &all.sums.weight.x, &all.sums.centre.x, more.light.x, more.weight.x,
-                    own.x, mine);
-            addNear(&all.sums.light.y, &all.sums.weight.y, &all.sums.centre.y, more.light.y, more.weight.y,
-                    own.y, mine);
-            addNear(&all.sums.light.z, &all.sums.weight.z, &all.sums.centre.z, more.light.z, more.weight.z,
-                    own.z, mine);
+            single.light = select3(single.light, more.light, mine);
+            single.weight = select3(single.weight, more.weight, mine);
+            own = select3(own,
+                          shareOfPixelItself(nodes, tables[t - 1], PEL_OVER_RADIUS2(here->area, here),
+                                             PEL_OVER_RADIUS2(here->size, here)),
+                          mine);
         }
     }
-    const Sums* s = &all.sums;
+    Interpolated all = interpolateSums(frame, pyramid, sums, hidden, 1, x, y, here, active);
+    Sums* s = &all.sums;
+    s->light = movedLight(s, &slope, all.place, here);
+    // Pixels are too coarse for their weights to add up: within the ring of level 1 no weight is missing.
+    const Vec3w known = add3(s->weight, s->centre);
+    if (near) {
+        addNear(&s->light.x, &s->weight.x, &s->centre.x, single.light.x, single.weight.x, own.x, active);
+        addNear(&s->light.y, &s->weight.y, &s->centre.y, single.light.y, single.weight.y, own.y, active);
+        addNear(&s->light.z, &s->weight.z, &s->centre.z, single.light.z, single.weight.z, own.z, active);
+    }
     const Vec3w found = vec3(lightOf(s->light.x, s->weight.x, s->centre.x, e.x, gain.x, known.x,
                                      all.hiddenLight.x, all.hiddenWeight.x, all.hiddenFar.x),
                              lightOf(s->light.y, s->weight.y, s->centre.y, e.y, gain.y, known.y,

@@ -1,13 +1,14 @@
 // The finest level of the screen's pyramid (shared/diffusion.h): position, irradiance and area of the
 // surface under each pixel (docs/mathematics.md, sections 9 and 10).
 //
-// Inputs: images of irradiance, of positions (length) or depth, of ids (0 is background), of mean curvature.
-// Output: level 0 of the pyramid. surface_points copies the images, surface_areas measures pixels against
-// their neighbours; one work-item is PEL_WIDTH pixels of a row. Variants: PEL_FORMAT_IRRADIANCE,
-// PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1),
-// PEL_FORMAT_MEAN_CURVATURE (0: none).
+// Inputs: images of irradiance, of positions (length) or depth, of ids (0 is background), of mean curvature,
+// of factors of the radius. Output: level 0 of the pyramid. surface_points copies the images, surface_areas
+// measures pixels against their neighbours; one work-item is PEL_WIDTH pixels of a row. Variants:
+// PEL_FORMAT_IRRADIANCE, PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is
+// id 1), PEL_FORMAT_MEAN_CURVATURE and PEL_FORMAT_RADIUS (0: none).
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/pyramid.clh"
+#include "lib/diffusion/radius.clh"
 #include "lib/diffusion/usable_light.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
@@ -20,7 +21,8 @@
 // PEL_WIDTH pixels from (`from`, y) on.
 static inline void copyPoints(__global const PelDiffusionFrame* frame, __global uchar* irradiance,
                               __global uchar* position, __global uchar* ids, __global uchar* curvature,
-                              __global float* pyramid, uint from, uint y, uint* covered, uint* invalid) {
+                              __global uchar* radii, __global float* pyramid, uint from, uint y,
+                              uint* covered, uint* invalid) {
     const uint x = vectorStart(from, frame->width);
     const intw column = lanesw() + (int)x;
     const maskw mine = (column >= (int)from) & (column < (int)frame->width);
@@ -64,19 +66,23 @@ static inline void copyPoints(__global const PelDiffusionFrame* frame, __global 
                    selectw((floatw)(0.0f), mean, sound & (fabs(mean) < (floatw)(1e9f))), mine);
 #endif
     }
+#if PEL_FORMAT_RADIUS
+    storePlane(pyramid, row + PEL_PLANE_RADIUS * stride, loadRadius(imageSpan(radii, &frame->radii, x, y)),
+               mine);
+#endif
     storePlane(pyramid, row + PEL_PLANE_ID * stride, as_floatw(id), mine);
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void surface_points(
     __global const PelDiffusionFrame* restrict frame, __global uchar* irradiance, __global uchar* position,
-    __global uchar* ids, __global uchar* curvature, __global float* pyramid,
+    __global uchar* ids, __global uchar* curvature, __global uchar* radii, __global float* pyramid,
     __global uint* restrict counters) {
     __local uint sums[2];
     const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
     uint covered = 0, invalid = 0;
     if (y < frame->height)
-        copyPoints(frame, irradiance, position, ids, curvature, pyramid, itemOfFolded() % across * PEL_WIDTH,
-                   y, &covered, &invalid);
+        copyPoints(frame, irradiance, position, ids, curvature, radii, pyramid,
+                   itemOfFolded() % across * PEL_WIDTH, y, &covered, &invalid);
     addOfGroup(&counters[PEL_COUNT_PIXELS_COVERED], covered, &sums[0]);
     addOfGroup(&counters[PEL_COUNT_IRRADIANCE_INVALID], invalid, &sums[1]);
 }

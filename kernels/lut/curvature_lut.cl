@@ -23,7 +23,6 @@
 // Variants: PEL_WIDTH; PEL_FORM, one of PEL_FORM_ARC ... (PelCurvatureForm); PEL_GROUP, work-items in a
 // group; PEL_NODES, N; PEL_COLUMNS (curvature_texels.clh).
 #include "lib/lut/normal.clh"
-#include "lib/width.clh"
 #include "lut/curvature_texels.clh"
 
 // Gauss points of a mesh interval.

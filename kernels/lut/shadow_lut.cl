@@ -18,7 +18,6 @@
 // Variants: PEL_WIDTH; PEL_GROUP, work-items in a group; PEL_COLUMNS, columns per work-item, a multiple of
 // PEL_WIDTH.
 #include "lib/lut/normal.clh"
-#include "lib/width.clh"
 #include "shared/lut.h"
 #include "shared/lut_integral.h"
 

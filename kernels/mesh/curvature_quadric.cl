@@ -98,20 +98,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
     // A copy, so that the sums of the loop stay in registers.
     Fit solved = fit;
     factorize(&solved, &chart);
-    substitute(&solved, solved.right);
-    if (anyw(spread & solved.poor)) {
-        floatw residual[TERMS];
-#pragma unroll
-        for (int i = 0; i < TERMS; ++i) residual[i] = -ridgeOf(&solved, &chart, i) * solved.right[i];
-        for (uint row = list.row; row < list.end; ++row) {
-            const Slots at = pointsAt(&list, row, points);
-            addResidual(residual, &solved,
-                        locate(at, spread & (at.each != list.self.each), &chart, positions));
-        }
-        substitute(&solved, residual);
-#pragma unroll
-        for (int i = 0; i < TERMS; ++i) solved.right[i] += residual[i];
-    }
+    substitute(&solved);
     const maskw low = spread & solved.low;
     if (counts && anyw(low)) atomic_add(&counts->lowDegreeFits, countLanes(low, first, slots));
 

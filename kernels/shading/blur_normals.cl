@@ -14,7 +14,6 @@
 // which is nearly always. Launches: prepare_normals, blur_normals along x, blur_normals along y.
 #include "lib/image/planes.clh"
 #include "lib/shading/tiles.clh"
-#include "shared/shade_passes.h"
 
 // Ids of PEL_WIDTH pixels from `first` on. Ids are 0 for pixels before x, which belong to another work-item,
 // and for pixels without a material.
@@ -33,7 +32,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void prepar
     __global uchar* restrict material, __global uchar* restrict normal, __global uchar* restrict position,
     __global uchar* restrict depth, __global float* restrict normals, __global float* restrict positions,
     __global float* restrict tags, uint plane) {
-    if (PEL_FORMAT_MATERIAL && list[0] == 0) return;
+    if (PEL_FORMAT_MATERIAL && list[PEL_TILE_COUNT(0)] == 0) return;
     const uint groups = get_num_groups(0), group = get_group_id(0);
     const uint end = (uint)((ulong)frame->tiles * (group + 1) / groups);
     for (uint i = (uint)((ulong)frame->tiles * group / groups); i < end; ++i) {

@@ -10,13 +10,12 @@
 // and pages.
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
-#include "shared/shade.h"
 
 #if PEL_WIDTH == 1
 
 // Writes a tile's number to the list of all tiles and to that of its variant.
 static inline void listTile(__global const PelShadeFrame* frame, __global uint* lists, uint list, uint tile) {
-    lists[PEL_TILE_LISTS + (size_t)list * frame->listTiles + atomic_inc(&lists[list])] = tile;
+    lists[PEL_TILE_LIST(frame, list) + atomic_inc(&lists[PEL_TILE_COUNT(list)])] = tile;
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_CLASSIFY_GROUP, 1, 1))) void classify_tiles(
@@ -124,7 +123,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_CLASSIFY_GROUP, 1, 1))) void cl
     }
     for (uint list = 0; list < PEL_TILE_LISTS; ++list) {
         if (!counts[list]) continue;
-        size_t to = PEL_TILE_LISTS + (size_t)list * frame->listTiles + atomic_add(&lists[list], counts[list]);
+        size_t to = PEL_TILE_LIST(frame, list) + atomic_add(&lists[PEL_TILE_COUNT(list)], counts[list]);
         for (uint i = 0; i < count; ++i)
             if (list ? classes[i] == list : classes[i] != 0) lists[to++] = start + i;
     }

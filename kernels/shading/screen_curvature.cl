@@ -6,6 +6,7 @@
 // pixels of a row. Variants: PEL_FORMAT_NORMAL, PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_IDS (0:
 // none), PEL_FORMAT_CURVATURE (lib/image/image.clh).
 
+#include "lib/diffusion/item.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 #include "lib/shading/position.clh"
@@ -95,12 +96,12 @@ inline ScreenPoint neighbour(const Pixel there, const Pixel here, maskw inside) 
     return point;
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_SCREEN_GROUP, 1, 1))) void screen_curvature(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void screen_curvature(
     __global const ScreenCurvatureFrame* restrict frame, __global uchar* restrict normal,
     __global uchar* restrict position, __global uchar* restrict ids, __global uchar* restrict curvature) {
-    const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
+    const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
     if (y >= frame->height) return;
-    const uint x = vectorStart(get_global_id(0) % across * PEL_WIDTH, frame->width);
+    const uint x = vectorStart(itemOfFolded() % across * PEL_WIDTH, frame->width);
     const Inputs in = {frame, normal, position, ids};
     const Pixel here = loadPixel(&in, x, y);
     const Span out = imageSpan(curvature, &frame->curvature, x, y);

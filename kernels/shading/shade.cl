@@ -13,8 +13,6 @@
 #include "shading/scene.clh"
 #include "shading/shade_eye.clh"
 #include "shading/shade_light.clh"
-#include "shading/shade_pixels.clh"
-#include "shared/shade.h"
 
 // Ambient light at the three normals.
 static inline Vec3w ambientOfPixels(const Scene* scene, float3 blend, const Pixels* p) {
@@ -168,8 +166,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
     Scene scene = SCENE_VALUE;
     Counts counts = {{0}};
     const bool listed = PEL_FORMAT_MATERIAL && which != PEL_EVERY_TILE;
-    const uint tiles = listed ? list[which] : frame->tiles;
-    const size_t listStart = PEL_TILE_LISTS + (size_t)which * frame->listTiles;
+    const uint tiles = listed ? list[PEL_TILE_COUNT(which)] : frame->tiles;
+    const size_t listStart = PEL_TILE_LIST(frame, which);
     // Each group takes a run of the list: neighbours in it share pages, and often cache lines, of the images.
     // A launch takes one part of `parts` of a long frame, so that the host can stop between them.
     const uint groups = get_num_groups(0) * parts, group = get_num_groups(0) * part + get_group_id(0);

@@ -55,7 +55,7 @@ static inline void storeBlock(__global float* to, uint plane, float8 least, floa
     to[3 * (size_t)plane] = slope.y;
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_BOUNDS_GROUP, 1, 1))) void shadow_bounds(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadow_bounds(
     __global const PelShadeFrame* restrict frame, __global const uint* restrict list,
     __global const PelWideShadow* restrict cascades, uint cascade, __global uchar* restrict mapBuffer,
     __global float* restrict bounds) {

@@ -7,12 +7,11 @@
 // that are NaN become infinitely far: no thickness. One work-item: PEL_WIDTH samples; a run of a row's nodes.
 // Nothing is written if there are lists of tiles and all are empty.
 #include "lib/shading/tap_cells.clh"
-#include "shared/shade.h"
 
 static inline bool anyTile(__global const PelShadeFrame* frame, __global const uint* list) {
     if (!list) return frame->tiles > 0;
     uint tiles = 0;
-    for (uint which = 0; which < PEL_TILE_LISTS; ++which) tiles |= list[which];
+    for (uint which = 0; which < PEL_TILE_LISTS; ++which) tiles |= list[PEL_TILE_COUNT(which)];
     return tiles > 0;
 }
 
@@ -30,7 +29,7 @@ static inline int tapOffset(uint t, uint i, uint j, int perRow) {
     return j & 1 ? -offset : offset;
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_CELLS_GROUP, 1, 1))) void tap_cells(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tap_cells(
     __global const PelShadeFrame* restrict frame, __global const PelShadeLight* restrict lights,
     __global const uint* restrict list, uint lightIndex, uint cascade, uint disk, __global float* buffer) {
     __global const PelTapCells* cells = cellsOf(&lights[lightIndex], cascade, disk);
@@ -65,7 +64,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_CELLS_GROUP, 1, 1))) void tap_c
 #endif
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_CELLS_GROUP, 1, 1))) void tap_samples(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tap_samples(
     __global const PelShadeFrame* restrict frame, __global const PelShadeLight* restrict lights,
     __global const uint* restrict list, uint lightIndex, uint cascade, uint disk,
     __global uchar* restrict mapBuffer, __global float* restrict buffer) {

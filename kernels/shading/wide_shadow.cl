@@ -2,21 +2,20 @@
 // material, filtered over the material's shadowFilterWidth (lib/shading/wide_filter.clh), or over about a
 // texel if that is 0 (lib/shading/sharp_shadow.clh).
 //
-// Inputs: positions or depth, geometric normals, ids, the shadow map. Output: R32F, 0 to 1; pixels out of the
-// light's reach get 1. Of a light with cascades the finest map that holds a pixel's filter is read; of a
-// cube, all faces under it (lib/shading/cube_filter.clh). One work-group: a run of tiles; one work-item:
-// PEL_WIDTH pixels, whose filters it runs one after another, PEL_WIDTH texels at a time. Variants: pixels:
-// PEL_PIXELS_..., all of them, or first every second one and then those between (lib/shading/between.clh).
-// PEL_NORMAL_SLOT: the slot of the geometric normals; PEL_SHADOW_CONTENT: the content of texels; PEL_BOUNDS:
-// bounds of the maps' blocks exist, and filters that they decide read no texel.
+// Inputs: positions or depth, geometric normals, ids, the shadow maps. Output: R32F, 0 to 1; pixels out of
+// the light's reach get 1. Of a light with cascades the finest map that holds a pixel's filter is read; of
+// a cube, all faces under it (lib/shading/cube_filter.clh). One work-group: a run of tiles of a light; one
+// work-item: PEL_WIDTH pixels, whose filters it runs one after another, PEL_WIDTH texels at a time.
+// Variants: pixels: PEL_PIXELS_..., all of them, or first every second one and then those between
+// (lib/shading/between.clh). PEL_NORMAL_SLOT: the slot of the geometric normals; PEL_SHADOW_CONTENT: the
+// content of texels; PEL_BOUNDS: bounds of the maps' blocks exist, and filters that they decide read no
+// texel; PEL_FILTERS_WIDE: some material has a filter width: without, half of this kernel is left out.
+#include "lib/image/light_buffers.clh"
 #include "lib/shading/between.clh"
 #include "lib/shading/cube_filter.clh"
 #include "lib/shading/light.clh"
 #include "lib/shading/shadow_bounds.clh"
 #include "lib/shading/sharp_shadow.clh"
-#include "lib/shading/tiles.clh"
-#include "lib/shading/wide_filter.clh"
-#include "shared/shade_passes.h"
 
 // The tangent plane is followed down to this cosine to the light: five times the sideways distance.
 #define PEL_FLATTEST_COSINE 0.2f
@@ -174,14 +173,18 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
     __global const PelShadeLight* restrict lights, __global const uint* restrict list,
     __global uint* counters, __global uchar* restrict material, __global uchar* restrict normal,
     __global uchar* restrict position, __global uchar* restrict depth,
-    __global const PelWideShadow* restrict wideShadow, uint lightIndex, __global uchar* restrict map0,
-    __global uchar* restrict map1, __global uchar* restrict map2, __global uchar* restrict map3,
-    __global const float* restrict bounds, __global uchar* restrict out, uint pixels) {
+    __global const PelWideShadow* restrict wideShadows, uint firstLight,
+    __global const float* restrict bounds, __global uchar* restrict out,
+    uint pixels PEL_LIGHT_BUFFER_ARGUMENTS) {
     const TileRun run = tileRun(frame, list);
+    __global const PelWideShadow* wideShadow = wideShadows + (firstLight + get_global_id(2)) * PEL_CASCADES;
+    __global const PelShadeLight* from = &lights[wideShadow->light];
     const WideContent content = {wideShadow->perExponent, wideShadow->minDeviation * wideShadow->minDeviation,
                                  wideShadow->bleeding};
     const uint maps = (PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) ? max(wideShadow->cascades, 1u) : 1;
+#if PEL_FILTERS_WIDE
     const BetweenImages images = {frame, material, position, depth};
+#endif
     const uint apart = pixels == PEL_PIXELS_SECOND ? 2 : 1,
                end = apart == 2 ? PEL_TILE_WIDTH : PEL_TILE_PIXELS;
     uint filtered = 0, texels = 0;  // pixels whose shadow was filtered, and whose filter read the map
@@ -203,32 +206,35 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
             const Span target = imageSpan(out, &wideShadow->out, first, y);
             floatw between = 1.0f;
             maskw known = 0;
+#if PEL_FILTERS_WIDE
             if (pixels == PEL_PIXELS_BETWEEN) {
                 // Computed pixels keep their value.
                 active &= ((column & 1) != 0) | (int)(y & 1 ? -1 : 0);
                 known = valueBetween(&images, (__global const float*)target.first, id, p, first, y,
                                      active & notw(takesSharp(materials, id, active)), &between);
             }
+#endif
 #if PEL_THIN
             // Of a sheet that is lit from its other side that side's plane is the same.
 #define PEL_SHEET_(k, s) (active s && materials[id s].through[0] > 0.0f ? 1.0f : 0.0f)
             const maskw sheet = PEL_LANES(PEL_SHEET_) > 0.0f;
 #undef PEL_SHEET_
-            const floatw facing = dot3(n, sampleLight(&lights[lightIndex], p).direction);
+            const floatw facing = dot3(n, sampleLight(from, p).direction);
             n = scale3(n, selectw((floatw)(1.0f), (floatw)(-1.0f), sheet & (facing < 0.0f)));
 #endif
             FilterShape shape = filterShape(wideShadow, materials, id, active);
             maskw left = active & notw(known);
             // Others interpolate between these, so they are the same with skipping and without it.
             if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING) || apart == 2)
-                left &= sampleLight(&lights[lightIndex], p).strength > 0.0f;
+                left &= sampleLight(from, p).strength > 0.0f;
             maskw sharp = left & (shape.width == 0.0f);
             float shown[PEL_WIDTH];
             storew(selectw((floatw)(1.0f), between, known), 0, shown);
             if (!(wideShadow->maxTexels > 0.0f)) left = sharp;  // only sharp shadows are made of this light
             if ((PEL_FEATURES & PEL_BIT_SHADOW_CUBE) && wideShadow->projection >= PEL_MAP_CUBE) {
                 CubeFilters f;
-                __global const uchar* map = firstTexel(map0, &wideShadow->map);
+                __global const uchar* map =
+                    firstTexel(PEL_LIGHT_BUFFER_OF(from->mapBuffer), &wideShadow->map);
                 __global const float* m = wideShadow->worldToShadow;
                 // In cubes the sharp shadow is the smallest disk, two texels in radius.
                 const Vec3w q = cubePosition(m, p);
@@ -247,10 +253,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                 for (uint cascade = 0; cascade < maps && anyw(left | sharp); ++cascade) {
                     Filters f;
                     __global const PelWideShadow* light = wideShadow + cascade;
-                    __global uchar* map = cascade == 0   ? map0
-                                          : cascade == 1 ? map1
-                                          : cascade == 2 ? map2
-                                                         : map3;
+                    __global uchar* map = PEL_LIGHT_BUFFER_OF(
+                        from->cascades ? from->cascade[cascade].mapBuffer : from->mapBuffer);
                     if (anyw(sharp)) {
                         const maskw before = sharp;
                         storew(sharpInMap(light, firstTexel(map, &light->map), p, n, content.perExponent,
@@ -260,6 +264,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                             filtered += countw(before & notw(sharp)), texels += countw(before & notw(sharp));
                         if (!anyw(left)) continue;
                     }
+#if PEL_FILTERS_WIDE
                     const maskw held = makeFilters(light, &shape, p, n, &f) & left;
                     if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(held);
                     left &= notw(held);
@@ -279,6 +284,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                         ++texels;
                         shown[k] = wideShadowOfPixel(PEL_FORMAT_SHADOW_MAP, map, &light->map, &one, &content);
                     }
+#endif
                 }
             }
 #define PEL_STORE_(k, s) \

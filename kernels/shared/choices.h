@@ -60,7 +60,8 @@
     X(GAUSSIANS, 1, "gaussians")       \
     X(BURLEY, 2, "burley")             \
     X(DIPOLE, 3, "dipole")             \
-    X(TABLE, 4, "table")
+    X(TABLE, 4, "table")           \
+    X(SKIN_LAYERS, 5, "skin-layers")
 // PelCurvatureEstimator
 #define PEL_EACH_ESTIMATOR(X)          \
     X(EDGE, 0, "edge")                 \

@@ -20,7 +20,13 @@
 #define PEL_PLANE_DIFFERENCE2 8  // largest second difference of irradiance between blocks one level finer
 #define PEL_PLANE_CURVATURE 8    // of a pixel, in its place: mean curvature, 1/length
 #define PEL_PLANE_SIZE 9         // length^2: the smaller of the squared steps to the next pixel; of a pixel
-#define PEL_PYRAMID_PLANES 10
+#define PEL_PLANE_RADIUS 10  // times the profile's radius: there with PEL_RADII, in programs where it varies
+#ifndef PEL_RADII
+#define PEL_RADII 0
+#endif
+#define PEL_PYRAMID_PLANES (10 + PEL_RADII)
+#define PEL_MIN_RADIUS 0.015625f  // smaller factors of the radius count as this one
+#define PEL_MAX_RADIUS 4.0f
 
 // Light that flows in to the blocks of a level from it and from all coarser ones: laid out as the pyramid,
 // from level 1 on.
@@ -46,9 +52,9 @@
 // spaced in the bits of a float, PEL_PROFILE_NODES to the octave. From the last node on R is 0 and the
 // share 1.
 //
-// After the nodes follow R and the mean over a block as sums of PEL_PROFILE_TERMS Gaussians, four floats a
-// term. Term i is exp2(-widest 2^i d^2), so each is the square of the one before, and a vector of distances
-// needs no look-up.
+// After the nodes follow R, the mean over a block, and that of Q (docs/mathematics.md, section 12, "Slabs")
+// as sums of PEL_PROFILE_TERMS Gaussians, four floats a term. Term i is exp2(-widest 2^i d^2), so each is the
+// square of the one before, and a vector of distances needs no look-up.
 #define PEL_PROFILE_TERMS 16
 #define PEL_PROFILE_NODES 16
 #define PEL_PROFILE_NODE_BITS 19  // 23 bits of mantissa, less those of a node
@@ -63,6 +69,7 @@ typedef struct PelProfileTable {
     float widest;           // 1/length^2: log2 of the widest Gaussian falls by so much
     float directed;         // factor of R: 1 + directed t, t the cosine between the inward normal and the way
     float perCurvature[3];  // length: even light gains so much by that, to first order
+    float perRadius2;       // of squared lengths: 1, or over the square of a receiver's factor of the radius
 } PelProfileTable;
 
 typedef struct PelPyramidLevel {
@@ -85,7 +92,7 @@ typedef struct PelDiffusionFrame {
     float tolerance;   // of irradiance
     float origin[3];   // length, world; of the pyramid's positions
     float inverseViewProjection[16];
-    PelShadeImage irradiance, position, ids, out, curvature;  // position: or depth
+    PelShadeImage irradiance, position, ids, out, curvature, radii;  // position: or depth
     PelPyramidLevel level[PEL_PYRAMID_LEVELS];
     PelUint32 tableOf[PEL_DIFFUSION_IDS];  // 1 + the table of an id; 0: the id does not scatter
 } PelDiffusionFrame;
@@ -100,7 +107,7 @@ typedef struct PelDiffusionFrame {
 #define PEL_DIFFUSION_COUNTERS 6
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(PelProfileTable) == 36 && sizeof(PelPyramidLevel) == 16);
+static_assert(sizeof(PelProfileTable) == 40 && sizeof(PelPyramidLevel) == 16);
 static_assert(sizeof(PelDiffusionFrame) ==
-              4 * (10 + 3 + 16 + PEL_DIFFUSION_IDS) + 5 * 32 + PEL_PYRAMID_LEVELS * 16);
+              4 * (10 + 3 + 16 + PEL_DIFFUSION_IDS) + 6 * 32 + PEL_PYRAMID_LEVELS * 16);
 #endif

@@ -47,7 +47,8 @@
     X(IRRADIANCE_BACK, 22, PASS, COLOR, 3, "irradiance_back", "back irradiance", 0) \
     X(WETNESS, 23, SHADE, SCALAR, 1, "wetness", "wetness", PEL_BIT_EYE) \
     X(MEAN_CURVATURE, 24, SHADE, SCALAR, 1, "mean_curvature", "mean curvature", \
-      PEL_BIT_IRRADIANCE | PEL_BIT_DIRECT_SCATTER)
+      PEL_BIT_IRRADIANCE | PEL_BIT_DIRECT_SCATTER) \
+    X(SKIN, 25, PASS, UV, 3, "skin", "skin", 0)
 // clang-format on
 
 // PEL_IMAGE_<NAME>, their count, and PEL_READ_<NAME>: the bits.

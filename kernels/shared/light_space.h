@@ -18,8 +18,9 @@
 // Planes of one cluster.
 #define PEL_LIGHT_PLANES(hidden) ((hidden) ? 5u : 6u)
 
-// A byte per cell of this many texels along a side: whether some of them have flux. Where none has, and
-// none had in the frame before, the pyramid up to the level of the cell holds zeros, and nothing is done.
+// A byte per cell of this many texels along a side: the last bits of the number of the last frame in which
+// some of them had flux, even and odd frames apart. Where none has, and none had in the frame before, the
+// pyramid up to the level of the cell holds zeros, and nothing is done.
 #define PEL_LIGHT_CELL 16
 
 #define PEL_SEEN_OTHER 255u  // mark of a texel: a camera-visible object that does not scatter
@@ -48,17 +49,18 @@ typedef struct PelLightMap {
     PelUint32 seen;      // where its texels begin in the buffer of what the camera sees
     PelUint32 cells;     // where its cells begin in the buffers of what has flux, row by row
     PelUint32 levels;
-    PelUint32 light;  // maps of one light follow one another
+    PelUint32 light;   // maps of one light follow one another
+    PelUint32 buffer;  // which argument of the kernels holds its image
     PelShadeImage map;
     PelPyramidLevel level[PEL_LIGHT_LEVELS];
 } PelLightMap;
 
 // Counters, after those of PelDiffusionFrame.
-#define PEL_COUNT_LIGHT_PIXELS 0  // that took texels of a map into account
-#define PEL_COUNT_LIGHT_TEXELS 1  // blocks of texels that were read
-#define PEL_COUNT_LIGHT_TILES 2
-#define PEL_LIGHT_COUNTERS 3
+#define PEL_COUNT_LIGHT_PIXELS (PEL_DIFFUSION_COUNTERS + 0)  // that took texels of a map into account
+#define PEL_COUNT_LIGHT_TEXELS (PEL_DIFFUSION_COUNTERS + 1)  // blocks of texels that were read
+#define PEL_COUNT_LIGHT_TILES (PEL_DIFFUSION_COUNTERS + 2)
+#define PEL_LIGHT_COUNTERS (PEL_DIFFUSION_COUNTERS + 3)
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(PelLightMap) == 4 * (32 + 1 + 3 + 3 + 3 + 3 + 3 + 8 + 7) + 32 + PEL_LIGHT_LEVELS * 16);
+static_assert(sizeof(PelLightMap) == 4 * (32 + 1 + 3 + 3 + 3 + 3 + 3 + 8 + 8) + 32 + PEL_LIGHT_LEVELS * 16);
 #endif

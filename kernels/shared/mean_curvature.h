@@ -3,7 +3,6 @@
 #pragma once
 #include "shared/shade.h"
 
-#define PEL_CURVATURE_GROUP 64  // work-items
 #define PEL_CURVATURE_IDS 256
 
 typedef struct PelMeanCurvature {

@@ -16,11 +16,14 @@
     X(0) X(1) X(2) X(3) X(4) X(5) X(6) X(7) X(8) X(9) X(10) X(11) X(12) X(13) X(14) X(15)
 #define PEL_EYES 64        // materials that are eyes, at most
 #define PEL_MATERIALS 256  // ids 0 (background) to 255
-// Lists of tiles in one buffer: PEL_TILE_LISTS counts, then the lists, each with room for
-// PelShadeFrame.listTiles. List 0 has every tile with a material; list 1 + i has the tiles of variant i of
-// the shading kernel, if there are several.
+// Lists of tiles in one buffer: PEL_COUNTERS counters of pixels, PEL_TILE_LISTS counts of tiles, then the
+// lists, each with room for PelShadeFrame.listTiles. List 0 has every tile with a material; list 1 + i has
+// the tiles of variant i of the shading kernel, if there are several.
 #define PEL_TILE_VARIANTS 4
 #define PEL_TILE_LISTS (1 + PEL_TILE_VARIANTS)
+#define PEL_TILE_COUNT(list) (PEL_COUNTERS + (list))
+#define PEL_TILE_LIST(frame, list) \
+    (PEL_COUNTERS + PEL_TILE_LISTS + (size_t)(list) * (frame)->listTiles)  // its first tile
 #define PEL_EVERY_TILE 0xffffffffu  // instead of a list's number: visit all tiles
 // Transmittance below 2^-16 counts as 0: taps can stop early, and it is a third of the promised accuracy.
 #define PEL_LEAST_TRANSMITTANCE_LOG2 16

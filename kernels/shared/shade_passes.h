@@ -42,6 +42,7 @@ typedef struct PelWideShadow {
     float softness;      // of the filter's width
     float coneSlope;     // length per length
     float maxTexels;     // across the filter
+    PelUint32 light;     // its number
     PelUint32 cascades;  // how many maps there are, from this on; 0: one that is no cascade
     PelUint32 bounds;    // where the bounds of the map's blocks begin (lib/shading/shadow_bounds.clh)
     PelShadeImage map;
@@ -58,6 +59,6 @@ typedef struct PelNormalMap {
 } PelNormalMap;
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(PelWideShadow) == 4 * (16 + 9 + 4 + 15) + 64);
+static_assert(sizeof(PelWideShadow) == 4 * (16 + 9 + 4 + 16) + 64);
 static_assert(sizeof(PelNormalMap) == PEL_MAP_LEVELS * 32 + 16);
 #endif

@@ -20,7 +20,7 @@ constexpr const char* names[types] = {"contexts", "queues",  "memory objects",
                                       "programs", "kernels", "events"};
 std::atomic<int64_t> live[types];
 std::atomic<int64_t> memoryBytes;
-std::atomic<uint64_t> buffersMade, bytesCopied, transfers, launches, bytesFilled, waits;
+std::atomic<uint64_t> buffersMade, bytesCopied, transfers, launches, bytesFilled, fills, waits;
 std::atomic<bool> warned;  // the compiler, about a kernel
 
 // Never destroyed: the library may launch until the very end.
@@ -163,7 +163,7 @@ namespace spy {
 Counts counts() {
     return {live[contexts], live[queues], live[memory], live[programs], live[kernels],
             live[events],   memoryBytes,  buffersMade,  bytesCopied,    transfers,
-            launches,       bytesFilled,  waits};
+            launches,       bytesFilled,  fills,        waits};
 }
 
 uint64_t launchesOf(const char* kernel) {
@@ -280,7 +280,7 @@ cl_int clEnqueueCopyBuffer(cl_command_queue queue, cl_mem from, cl_mem to, size_
 cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem buffer, const void* pattern, size_t patternBytes,
                            size_t offset, size_t bytes, cl_uint waits, const cl_event* list,
                            cl_event* event) {
-    ::bytesFilled += bytes;
+    ++::fills, ::bytesFilled += bytes;
     return withEvent(
         REAL(clEnqueueFillBuffer)(queue, buffer, pattern, patternBytes, offset, bytes, waits, list, event),
         event);

@@ -18,6 +18,7 @@ struct [[gnu::visibility("default")]] Counts {
     uint64_t transfers;    // how many of those
     uint64_t launches;     // clEnqueueNDRangeKernel that succeeded
     uint64_t bytesFilled;  // by clEnqueueFillBuffer
+    uint64_t fills;        // how many of those
     uint64_t waits;        // clFinish and clWaitForEvents
 
     int64_t left() const {

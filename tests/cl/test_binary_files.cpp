@@ -1,9 +1,6 @@
 // Files of compiled programs: whole or not there, and no more of them than there may be.
 #include <sys/stat.h>
 
-#include <chrono>
-#include <cstdlib>
-
 #include "cl/binary_files.h"
 #include "io/io_files.h"
 

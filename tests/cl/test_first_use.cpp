@@ -1,10 +1,8 @@
 // The first use of OpenCL in a process, by many threads at once. A program of its own, for nothing may come
 // before.
-#include <gtest/gtest.h>
+#include "test.h"
 
 #include <barrier>
-#include <pellucid/pellucid.hpp>
-#include <thread>
 
 namespace {
 

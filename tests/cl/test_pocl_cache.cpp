@@ -1,19 +1,11 @@
 // Where PoCL keeps compiled kernels: in a folder of this user's alone, and nothing in it that PoCL would die
 // of.
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/file.h>
 #include <sys/mount.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
-#include <unistd.h>
-
-#include <cstdlib>
-#include <fstream>
-#include <functional>
-#include <pellucid/pellucid.hpp>
-#include <set>
 
 #include "cl/machine.h"
 #include "cl/pocl_cache.h"

@@ -1,7 +1,4 @@
 // Programs kept on disk are for one driver with its settings: another setting compiles anew.
-#include <cstdlib>
-#include <pellucid/pellucid.hpp>
-
 #include "io/io_files.h"
 
 namespace {

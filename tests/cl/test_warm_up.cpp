@@ -4,14 +4,9 @@
 // This program defines clBuildProgram itself, which is linked before libOpenCL's, and counts the calls.
 #include <CL/cl.h>
 #include <dlfcn.h>
-#include <gtest/gtest.h>
-
-#include <atomic>
-#include <thread>
 
 #include "cl/cl_spy.h"
 #include "mesh/mesh_calls.h"
-#include "refusal.h"
 #include "shading/pass_scene.h"
 
 using namespace shade_test;
@@ -160,33 +155,43 @@ TEST(WarmUp, CanBeStoppedAndGoneOnWith) {
                             "than the one who tells";
 }
 
-// Here two devices stand in for two processes.
-TEST(WarmUp, ProcessesThatShareAFolderLaunchEachKernelOnce) {
-    char folder[] = "/tmp/pellucid-share-XXXXXX";
-    ASSERT_NE(::mkdtemp(folder), nullptr);
-    std::vector<float> pictures[2];
-    for (const std::string prefix : {"", "helper:"}) {
-        const Device own("");
-        const Tables tables = makeTables(own, 32, 32);
-        Scene small(own, tables, 16, 2);
-        const PelShader handle = small.shader.get();
-        PelWarmUp work = workOf({});
-        work.shaders = &handle, work.numShaders = 1;
-        const uint64_t before = spy::launchesOf("shade") + spy::launchesOf("wide_shadow");
-        ::setenv("PELLUCID_BUILD_SHARE", (prefix + folder).c_str(), 1);
-        pellucid::check(pelWarmUpPrograms(own.get(), &work, nullptr));
-        ::unsetenv("PELLUCID_BUILD_SHARE");
-        const uint64_t launched = spy::launchesOf("shade") + spy::launchesOf("wide_shadow") - before;
-        if (prefix.empty())
-            EXPECT_GE(launched, 2u);
-        else
-            EXPECT_EQ(launched, 0u) << "another process has begun them";
-        small.shader.commit().execute();
-        pictures[!prefix.empty()] = small.target.readAll<float>();
-    }
-    EXPECT_EQ(pictures[0], pictures[1]);
-    EXPECT_GT(*std::max_element(pictures[0].begin(), pictures[0].end()), 0.01f);
-    std::filesystem::remove_all(folder);
+TEST(WarmUp, AScattersExecutionFindsEverythingBuilt) {
+    const Device own(""), other("");
+    const auto skin = pellucid::Profile::skin();
+    const auto scattered = [&](const Device& on, bool warm, bool lines) {
+        pellucid::Scatter scatter(on);
+        scatter.setMaterial(1, skin);
+        if (lines) {
+            PelScatterControls controls = pelScatterControlsDefaults();
+            controls.scattering = PEL_SCATTERING_SEPARABLE;
+            scatter.setControls(1, controls);
+        }
+        constexpr uint32_t width = 40, height = 30;
+        std::vector<float> light, places;
+        for (uint32_t i = 0; i < width * height; ++i) {
+            light.insert(light.end(), 3, i % width < width / 2 ? 1.0f : 0.0f);
+            places.insert(places.end(), {float(i % width), float(i / width), 0});
+        }
+        const Buffer in(on, light), at(on, places), out(on, std::vector<float>(light.size(), -3));
+        const auto image = [](const Buffer& buffer) {
+            return imageDesc(buffer, PEL_FORMAT_RGB32F, width, height);
+        };
+        const PelScatterParams params = pelScatterParamsDefaults();
+        if (warm) {
+            EXPECT_GE(scatter.warmUp(on, params, image(in), image(at), nullptr, nullptr, image(out)), 1u);
+            for (float v : out.readAll<float>()) EXPECT_EQ(v, -3) << "nothing is written";
+            EXPECT_EQ(in.readAll<float>(), light);
+            EXPECT_EQ(scatter.warmUp(on, params, image(in), image(at), nullptr, nullptr, image(out)), 0u);
+            builds = 0;
+        }
+        scatter.execute(params, image(in), image(at), nullptr, nullptr, image(out));
+        if (warm) {
+            EXPECT_EQ(builds.load(), 0);
+        }
+        return out.readAll<float>();
+    };
+    for (const bool lines : {false, true})
+        EXPECT_EQ(scattered(own, true, lines), scattered(other, false, lines));
 }
 
 TEST(WarmUp, SaysWhatIsWrong) {
@@ -203,6 +208,19 @@ TEST(WarmUp, SaysWhatIsWrong) {
     refused("another PelDevice", 0, &foreignHandle, 1);
     refused("radiance image is needed", 0, &emptyHandle, 1);
     EXPECT_EQ(pelWarmUpPrograms(own.get(), nullptr, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+    PelScatterWork scatter = pelScatterWorkDefaults();
+    const auto scatterRefused = [&](const char* words) {
+        PelWarmUp work = workOf({});
+        work.scatters = scatter.scatter ? &scatter : nullptr;
+        work.numScatters = 1;
+        expectRefused(words, [&] { return pelWarmUpPrograms(own.get(), &work, nullptr); });
+    };
+    scatterRefused("PelWarmUp.scatters is NULL");
+    const pellucid::Scatter mine(own), theirs(other);
+    scatter.scatter = theirs.get();
+    scatterRefused("another PelDevice");
+    scatter.scatter = mine.get();
+    scatterRefused("`irradiance` is needed");
     const PelWarmUp nothing = workOf({});
     uint32_t built = 9;
     EXPECT_EQ(pelWarmUpPrograms(own.get(), &nothing, &built), PEL_SUCCESS);

@@ -2,10 +2,7 @@
 #pragma once
 #include <sys/wait.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "io/io_files.h"
 

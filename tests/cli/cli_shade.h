@@ -1,8 +1,5 @@
 // A small G-buffer and its scene file for tests of `pellucid shade`, and small meshes.
 #pragma once
-#include <algorithm>
-#include <cmath>
-
 #include "cli_run.h"
 #include "io/image/image_file.h"
 #include "io/scene/scene_file.h"

@@ -1,9 +1,6 @@
 // `pellucid bench`: a report with times, shares and errors, its page, and verdicts on two reports.
-#include <cmath>
-
 #include "cli_run.h"
 #include "measure/report.h"
-#include "tolerances.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -33,8 +30,9 @@ Json report(const Made& made = {}) {
 }  // namespace
 
 TEST_F(BenchCommand, MeasuresTimeShareAndError) {
-    const auto said =
-        reportOf("bench --quick --only table-sh --only shade-plain --only curvature-edge -o @out");
+    const auto said = reportOf(
+        "bench --quick --limit 600 --only table-sh --only shade-plain --only shade-no --only curvature-edge "
+        "-o @out");
     expectReport(said);
     EXPECT_EQ(said.at("report"), path("out") + "/bench.json");
     const auto report = nlohmann::json::parse(read(path("out/bench.json")));
@@ -47,31 +45,116 @@ TEST_F(BenchCommand, MeasuresTimeShareAndError) {
     for (const char* key : {"first_use", "warm_start"})
         EXPECT_GT(device.at(key).at("total_ms").get<double>(), 0.0);
     std::string names;
-    const std::string page = read(path("out/bench.html"));
     for (const auto& e : device.at("operations")) {
         const std::string name = e.at("name");
         names += name + " ";
-        EXPECT_TRUE(contains(page, "<td>" + name + "</td>"));
         ASSERT_FALSE(e.contains("failed")) << e;
         const auto number = [&e](const char* key) { return e.at(key).get<double>(); };
         EXPECT_GT(number("median_ms"), 0.0) << name;
         EXPECT_GE(number("samples"), 5) << name;
         if (e.at("group") == "device") continue;
-        // Right answers, and no faster than the device itself. Small memory may run in a cache, twice as fast
-        // and more; arithmetic is above 1 where something else took the processors while the peak was
-        // measured.
+        // Right answers, and no faster than the device itself, or not known.
         EXPECT_LT(number("error_max"), tolerance::shadeSum) << name;
         EXPECT_GE(number("error_max"), number("error_rms")) << name;
-        EXPECT_GT(number("bandwidth_share"), 0.0) << name;
-        EXPECT_LT(number("bandwidth_share"), 20.0) << name;
-        EXPECT_LT(e.value("arithmetic_share", 0.0), 20.0) << name;
+        ASSERT_TRUE(e.contains("bandwidth_share")) << name;
+        for (const char* key : {"bandwidth_share", "arithmetic_share"})
+            if (e.contains(key) && e[key].is_number()) {
+                EXPECT_GT(number(key), 0.0) << name;
+                EXPECT_LE(number(key), 1.0) << name;
+            }
     }
-    EXPECT_EQ(names, "copy arithmetic curvature-edge curvature-edge-smoothed table-shadow shade-plain ");
-    EXPECT_FALSE(contains(page, "frames a second")) << "none of the frames that it speaks of was measured";
-    for (const char* outside : {"http:", "https:", "<script", "<link", "<img"})
-        EXPECT_FALSE(contains(page, outside)) << outside;
+    EXPECT_EQ(
+        names,
+        "copy arithmetic curvature-edge curvature-edge-smoothed table-shadow shade-plain shade-no-skin ");
     // A report is the same as itself.
-    EXPECT_EQ(reportOf("bench compare @out/bench.json @out/bench.json").at("same"), 4);
+    EXPECT_EQ(reportOf("bench compare @out/bench.json @out/bench.json").at("same"), 5);
+}
+
+// The scene, its truth, the methods on it, and what follows of them.
+TEST_F(BenchCommand, MeasuresMethodsAgainstLight) {
+    done(
+        "bench --quick --limit 600 --only 'ball-4: auto' --only 'ball-4: light' --budget 1e6ms --error 1e-9 "
+        "-o @out");
+    const auto device = nlohmann::json::parse(read(path("out/bench.json"))).at("devices").at(0);
+    EXPECT_EQ(device.at("scenes").at(0).at("name"), "ball-4");
+    std::map<std::string, double> errors;
+    int budgets = 0;
+    for (const auto& e : device.at("operations")) {
+        if (!e.contains("scene")) continue;
+        ASSERT_FALSE(e.contains("failed")) << e;
+        double passes = 0;
+        for (const auto& pass : e.at("passes")) passes += pass.at("ms").get<double>();
+        EXPECT_NEAR(passes, e.at("median_ms"), 0.5 * e.at("median_ms").get<double>());
+        if (e.at("bandwidth_share").is_number()) EXPECT_LE(e.at("bandwidth_share").get<double>(), 1);
+        if (e.at("group") == "budgets") {
+            EXPECT_TRUE(e.at("expected_error").get<double>() > 0 && e.at("front_ratio").get<double>() >= 1);
+            ++budgets;
+            continue;
+        }
+        errors[e.at("method")] = e.at("error_rms");
+        EXPECT_GT(e.at("median_ms").get<double>(), 0);
+        EXPECT_GT(e.at("memory_bytes").get<double>(), 0);
+        EXPECT_GT(e.at("subsets").at("terminator").at("pixels").get<int>(), 20);
+    }
+    EXPECT_EQ(budgets, 2);
+    EXPECT_EQ(device.at("budgets").at("frames"), 2);
+    ASSERT_EQ(errors.size(), 3u) << "Lambert too, for the times beyond it";
+    EXPECT_LT(errors["auto"], 0.7 * errors["Lambert"]);
+    EXPECT_LT(errors["light"], 0.7 * errors["Lambert"]);
+    EXPECT_GT(errors["light"], 1e-4) << "not the truth itself";
+    const auto& answers = device.at("answers");
+    EXPECT_LE(answers.at(0).at("take").at("error").get<double>(),
+              std::min(errors["auto"], errors["light"]) + 1e-6);
+    EXPECT_FALSE(answers.at(1).contains("take")) << "nothing is so near";
+    const std::string page = read(path("out/bench.html"));
+    EXPECT_TRUE(contains(page, device.at("name").get<std::string>()));
+    EXPECT_FALSE(contains(page, "/*reports*/"));
+    EXPECT_FALSE(contains(page, "http://") || contains(page, "https://")) << "it needs nothing else";
+    // What was measured is what is expected of the same method: here its 90th percentile is the one scene.
+    done("bench --quick --limit 600 --only 'ball-4: auto, budget' -o @again",
+         "PELLUCID_TUNING=" + path("out/tuning.txt"));
+    const auto again = nlohmann::json::parse(read(path("again/bench.json"))).at("devices").at(0);
+    for (const auto& e : again.at("operations"))
+        if (e.at("group") == "budgets")
+            EXPECT_NEAR(e.at("expected_error"),
+                        errors[e.at("took") == "none" ? "Lambert" : e.at("took").get<std::string>()],
+                        e.at("took") == "auto" ? 0.05 * errors["auto"] : 1e-4);
+}
+
+TEST_F(BenchCommand, StabilityNeedsNothingButTheCommand) {
+    done("bench -o @out --only 'stability: normals' --stability-share 1e-3");
+    const auto found =
+        nlohmann::json::parse(read(path("out/bench.json"))).at("devices").at(0).at("stability");
+    ASSERT_EQ(found.at("operations").size(), 1u);
+    const auto& normals = found.at("operations").at(0);
+    EXPECT_GT(normals.at("points").get<int>(), 0);
+    EXPECT_GT(normals.at("worst").get<double>(), 0);
+    EXPECT_LE(normals.at("worst").get<double>(), normals.at("limit").get<double>());
+    EXPECT_TRUE(contains(read(path("out/bench.html")), normals.at("where").get<std::string>()));
+    refused("bench -o @out --stability-share 0", 2, "stability-share");
+}
+
+TEST(BenchReport, FrontAndAnswersFollowFromTheRows) {
+    const auto row = [](const char* method, double ms, double error) {
+        return Json{{"name", method},   {"group", "methods"}, {"scene", "s"},
+                    {"method", method}, {"setting", "x"},     {"items", 1e6},
+                    {"added_ms", ms},   {"error_rms", error}, {"rmse", {error, error, error}}};
+    };
+    Json device = {
+        {"scenes", {{{"name", "s"}, {"pixels", 1000}, {"height", 540}}}},
+        {"operations", {row("fast", 1, 0.3), row("slow", 5, 0.1), row("bad", 6, 0.2), row("free", -1, 0.5)}}};
+    pellucid::bench::summarize(device, {0.003, 0.03}, {0.2, 0.01});
+    std::map<std::string, bool> front;
+    for (const Json& e : device["summary"]) front[e["method"]] = e["pareto"];
+    EXPECT_EQ(front,
+              (std::map<std::string, bool>{{"fast", true}, {"slow", true}, {"bad", false}, {"free", true}}));
+    // 1 ns for each of 4000 pixels at 1080p.
+    EXPECT_DOUBLE_EQ(device["summary"][0]["ms"]["1080p"].get<double>(), 0.004);
+    EXPECT_EQ(device["summary"][0]["measured"]["1080p"], false);
+    EXPECT_EQ(device["answers"][0]["take"]["method"], "free");
+    EXPECT_EQ(device["answers"][1]["take"]["method"], "slow");
+    EXPECT_EQ(device["answers"][2]["take"]["method"], "slow");
+    EXPECT_FALSE(device["answers"][3].contains("take"));
 }
 
 // A sanitizer's library has to be the first of all.
@@ -102,7 +185,6 @@ TEST_F(BenchCommand, ADriverThatHangsOrCrashesCostsOneOperation) {
         }
         EXPECT_EQ(names, "copy arithmetic table-specular table-shadow ");
         EXPECT_TRUE(contains(said, row.why));
-        EXPECT_TRUE(contains(read(path("out/bench.html")), row.why));
     }
 }
 #endif
@@ -140,10 +222,33 @@ TEST_F(BenchCommand, VerdictsSurviveNoise) {
     write("new.json", report({.median = 12}).dump());
     EXPECT_EQ(cli("bench compare @broken.json @broken.json").exitCode, 3) << "it fails as before";
     for (const auto& [name, said] : {std::pair{"broken", "1 fail,"}, {"new", "1 slower"}}) {
-        const Result result = cli(std::string("bench compare @old.json @") + name + ".json");
-        EXPECT_EQ(result.exitCode, 1);
+        const std::string command = std::string("bench compare @old.json @") + name + ".json";
+        const Result result = cli(command);
+        EXPECT_EQ(result.exitCode, 0);
         EXPECT_TRUE(contains(result.out, said));
+        EXPECT_EQ(cli(command + " --fail-if-slower 10%").exitCode, 1);
+        EXPECT_EQ(cli(command + " --fail-if-less-accurate 50%").exitCode, name == std::string("broken"));
     }
+}
+
+TEST_F(BenchCommand, FailsOnlyWhereItIsAskedTo) {
+    write("old.json", report().dump());
+    write("slow.json", report({.median = 12}).dump());
+    write("bad.json", report({.error = 2e-6}).dump());
+    const struct {
+        const char* more;
+        int exitCode;
+    } rows[] = {
+        {"@slow.json --fail-if-slower 10%", 1},        {"@slow.json --fail-if-slower 30%", 0},
+        {"@bad.json --fail-if-slower 10%", 0},         {"@bad.json --fail-if-less-accurate 50%", 1},
+        {"@bad.json --fail-if-less-accurate 150%", 0}, {"@old.json @slow.json --fail-if-slower 10%", 1},
+        {"@slow.json @bad.json -o @all.html", 0}};
+    for (const auto& row : rows)
+        EXPECT_EQ(cli(std::string("bench compare @old.json ") + row.more).exitCode, row.exitCode) << row.more;
+    EXPECT_TRUE(contains(read(path("all.html")), "table-arc"));
+    refused("bench compare @old.json", 2, "two or more reports");
+    refused("bench compare @old.json @slow.json --fail-if-slower 10", 2, "a number and %");
+    refused("bench -o @out --budget 1s", 2, "a number and ms");
 }
 
 // Reports of another size, of another device, of several devices; folders in place of their bench.json.
@@ -188,19 +293,4 @@ TEST_F(BenchCommand, ComparesOnlyWhatIsComparable) {
     write("old/bench.json", base.dump());
     write("new/bench.json", other.dump());
     EXPECT_TRUE(contains(done("bench compare @old @new").out, "E, compared with another device: D"));
-}
-
-// The page of a report: which device, how many frames a second, at what error, before all else; and no
-// mark-up from names.
-TEST_F(BenchCommand, ThePageAnswersItsQuestionFirst) {
-    Json made = report({.median = 20, .error = 3e-6, .name = "shade-surface"});
-    made["devices"][0]["name"] = "<D&'\">";
-    made["devices"][0]["operations"][0]["what"] = "64x32, 100 % skin";
-    const std::string page = pellucid::bench::htmlPage(made);
-    const size_t first = page.find("frames a second");
-    ASSERT_NE(first, std::string::npos);
-    EXPECT_LT(first, page.find("first use"));
-    EXPECT_TRUE(contains(
-        page, "<td>&lt;D&amp;&#39;&quot;&gt;</td><td>–</td><td>50.0</td><td>–</td><td>3.00e-06</td>"));
-    EXPECT_TRUE(contains(page, "Frames of 64x32 pixels"));
 }

@@ -1,11 +1,6 @@
 // Compiled programs on disk: a second process compiles nothing and computes the same bits; whatever is wrong
 // with the files is no error. Each process is the `pellucid` command, with PELLUCID_CACHE=on, for PoCL keeps
 // programs itself.
-#include <unistd.h>
-
-#include <pellucid/pellucid.hpp>
-#include <thread>
-
 #include "cl/binary_files.h"
 #include "cli_run.h"
 

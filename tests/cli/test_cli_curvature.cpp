@@ -1,10 +1,7 @@
 // `pellucid curvature`: meshes, what is wrong with them, results.
-#include <pellucid/pellucid.hpp>
-
 #include "cli_shade.h"
 #include "io/mesh/mesh_file.h"
 #include "npy.h"
-#include "tolerances.h"
 
 using namespace pellucid;
 using shade_files::octahedron;

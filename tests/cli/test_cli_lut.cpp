@@ -1,12 +1,9 @@
 // `pellucid lut`: files of tables, presets, pictures; `pellucid profile`.
-#include <pellucid/pellucid.hpp>
-
 #include "cli_run.h"
 #include "io/image/color_map.h"
 #include "io/image/image_file.h"
 #include "io/lut/lut_file.h"
 #include "npy.h"
-#include "tolerances.h"
 
 using namespace pellucid;
 
@@ -157,4 +154,26 @@ TEST_F(CliLut, ProfilesAreListedShownDrawnAndFitted) {
     EXPECT_GT(std::filesystem::file_size(path("jade.png")), 1000u);
     done("profile fit marble --gaussians 3 -o @fit.toml");
     EXPECT_EQ(reportOf("profile show @fit.toml")["gaussians"], 3);
+}
+
+TEST_F(CliLut, SkinIsDescribedDrawnAndTakenFromAPicture) {
+    const auto skin = reportOf("profile skin --melanin 0.03 --blood 0.01 --plot @s.png -o @s.toml");
+    PelSkin own = pelSkinDefaults();
+    own.melanin = 0.03f;
+    own.blood = 0.01f;
+    const PelSkinInfo expected = skinInfo(own);
+    const auto albedo = skin.at("albedo").get<std::vector<float>>();
+    for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(albedo[c], expected.albedo[c]);
+    EXPECT_EQ(io::readImage(path("s.png")).width, 900);
+    EXPECT_EQ(reportOf("profile show @s.toml").at("kind"), "skin-layers");
+    io::Image image;
+    image.width = image.height = 1;
+    for (int c = 0; c < 3; ++c)
+        image.channels.push_back({std::string(1, "RGB"[c]), io::ChannelType::Float, {albedo[c]}});
+    io::writeExr(path("a.exr"), image);
+    EXPECT_LT(reportOf("profile pigments @a.exr -o @m.exr").at("delta_e_max").get<double>(),
+              tolerance::skinRoundTrip);
+    const io::Image maps = io::readImage(path("m.exr"));
+    EXPECT_NEAR(maps.channel("melanin").pixels[0], 0.03f, 1e-3f);
+    EXPECT_NEAR(maps.channel("blood").pixels[0], 0.01f, 1e-3f);
 }

@@ -2,7 +2,6 @@
 // either.
 #include "cli_shade.h"
 #include "io/image/color_map.h"
-#include "tolerances.h"
 
 using namespace pellucid;
 using namespace shade_files;
@@ -99,43 +98,6 @@ TEST_F(Shade, TablesFromFilesAreThoseThatAreAskedFor) {
             refused(shade_, 3, message);
         else
             done(shade_);
-    }
-}
-
-TEST_F(Shade, GBuffersOfARealHostGiveItsLambertPictures) {
-    const char* folder = std::getenv("PELLUCID_GBUFFER_DIR");
-    if (!folder) GTEST_SKIP() << "PELLUCID_GBUFFER_DIR names no folder with G-buffers of a real host";
-    // Blender's conventions: position in cm, z up; a sun of strength pi is irradiance / pi of 1; the Shadow
-    // pass of a Lambert material is the share of light that arrives.
-    io::SceneFile scene;
-    scene.channels[PEL_SLOT_NORMAL_SHADING] = {"NShading.R", "NShading.G", "NShading.B"};
-    scene.channels[PEL_SLOT_POSITION] = {"Position.X", "Position.Y", "Position.Z"};
-    scene.channels[PEL_SLOT_ALBEDO] = {"DiffCol.R", "DiffCol.G", "DiffCol.B"};
-    scene.channels[PEL_SLOT_MATERIAL] = {"SkinMask.X"};
-    scene.materials.resize(1);
-    scene.lights.resize(1);
-    const float toLight[3] = {0.7990018725f, -0.4494385421f, 0.3995009363f};  // of *_side.json
-    std::copy(toLight, toLight + 3, scene.lights[0].light.toLight);
-    scene.lights[0].wideShadow = "Shadow.R";
-    io::writeScene(path("host.toml"), scene);
-    for (const std::string name : {"sphere10", "head"}) {
-        const std::string base = std::string(folder) + "/" + name;
-        done("shade " + base + "_gbuf.exr --scene @host.toml -o @o.exr");
-        const io::Image shaded = io::readImage(path("o.exr")),
-                        truth = io::readImage(base + "_side_lambert.exr");
-        const std::vector<float>& mask = truth.channel("Combined.A").pixels;
-        for (const char* channel : {"R", "G", "B"}) {
-            const std::vector<float>&a = shaded.channel(channel).pixels,
-                  &b = truth.channel(std::string("Combined.") + channel).pixels;
-            double sum = 0, count = 0;
-            for (size_t i = 0; i < a.size(); ++i) {
-                if (mask[i] == 0) continue;
-                sum += (a[i] - b[i]) * (a[i] - b[i]);
-                ++count;
-            }
-            ASSERT_GT(count, 10000);
-            EXPECT_LT(std::sqrt(sum / count), tolerance::realHostLambert) << name << ' ' << channel;
-        }
     }
 }
 

@@ -1,10 +1,6 @@
 // `pellucid shade`: features of scene files other than plain light: tables, profiles and their units,
 // scattering, parts of the picture, cubes, eyes.
-#include <cstring>
-
 #include "cli_shade.h"
-#include "io/file_error.h"
-#include "tolerances.h"
 
 using namespace pellucid;
 using namespace shade_files;

@@ -1,9 +1,6 @@
 // Every type of handle with a way to make, use, count and hold one.
 #pragma once
-#include <functional>
-#include <pellucid/pellucid.hpp>
-#include <string>
-#include <vector>
+#include "test.h"
 
 namespace handles {
 

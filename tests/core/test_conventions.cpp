@@ -1,12 +1,8 @@
 // Matrices of each convention, by the interfaces' own definitions: what a shadow map and a depth buffer
 // hold is read back to the places that it came from.
-#include <gtest/gtest.h>
+#include "test.h"
 
-#include <array>
-#include <cmath>
-#include <cstring>
 #include <pellucid/pellucid_conventions.hpp>
-#include <random>
 
 #include "reference/vec.h"
 

@@ -1,9 +1,6 @@
 // The counters of a device against what the driver was really asked for: a counter that stands still would
 // pass any comparison with itself.
-#include <gtest/gtest.h>
-
-#include <cstring>
-#include <pellucid/pellucid.hpp>
+#include "test.h"
 
 #include "cl/cl_spy.h"
 

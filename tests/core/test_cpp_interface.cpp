@@ -1,11 +1,7 @@
 // What pellucid.hpp adds to the C interface: what it keeps alive, what it does not compile, and short
 // forms. That messages name the image they are about.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <type_traits>
-
 #include "shading/shader_ready.h"
+#include "test.h"
 
 using namespace pellucid;
 using shade_test::device;

@@ -1,15 +1,6 @@
 // Devices, buffers, errors, events: what every other object stands on.
-#define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
-#include <gtest/gtest.h>
-
-#include <pellucid/pellucid.hpp>
-
-#include <cstdlib>
-#include <cstring>
-#include <set>
-
-#include "refusal.h"
+#include "test.h"
 
 using namespace pellucid;
 
@@ -84,47 +75,42 @@ TEST(Handles, OlderCallersGetTheFieldsTheyKnow) {
     EXPECT_EQ(info.clockMhz, 12345u) << "written beyond the caller's structure";
 }
 
-// Sizes that no header has had would give fields of which a part is the caller's and a part a default.
+// Sizes that no header has had would give fields of which a part is the caller's and a part a default. A
+// later header's structures are longer; what lies behind this one's fields is left alone.
 TEST(Handles, StructuresAreWholeFields) {
     const Device device("");
     const Shader shader(device);
-    const auto accepted = [](auto call, uint32_t most) {
+    const auto accepted = [](auto defaults, const auto& call) {
+        struct Longer {
+            decltype(defaults) now;
+            char later[8];
+        };
         std::set<uint32_t> sizes;
-        for (uint32_t size = 0; size <= most; ++size) {
-            const PelError error = call(size);
-            if (error == PEL_SUCCESS)
+        for (uint32_t size = 0; size <= sizeof(Longer); ++size) {
+            Longer longer{defaults, {7, 7, 7, 7, 7, 7, 7, 7}};
+            longer.now.structSize = size;
+            if (call(&longer.now) == PEL_SUCCESS)
                 sizes.insert(size);
             else
                 EXPECT_NE(std::strstr(pelGetErrorMessage(), "structSize"), nullptr)
                     << size << ": " << pelGetErrorMessage();
+            for (char c : longer.later) EXPECT_EQ(c, 7) << size;
         }
         return sizes;
     };
-    const auto camera = [&](uint32_t size) {
-        PelCamera value = pelCameraDefaults();
-        value.structSize = size;
-        return pelShaderSetCamera(shader.get(), &value);
-    };
-    EXPECT_EQ(accepted(camera, sizeof(PelCamera)), (std::set<uint32_t>{16, 80}));
-    const auto ambient = [&](uint32_t size) {
-        PelAmbient value = pelAmbientDefaults();
-        value.structSize = size;
-        return pelShaderSetAmbient(shader.get(), &value);
-    };
-    EXPECT_EQ(accepted(ambient, sizeof(PelAmbient)), (std::set<uint32_t>{16, 124}));
-    struct Longer {
-        PelDeviceStats stats;
-        char later[16];
-    } longer{};
-    const auto stats = [&](uint32_t size) {
-        longer.stats = pelDeviceStatsDefaults();
-        longer.stats.structSize = size;
-        return pelDeviceGetStats(device.get(), &longer.stats);
-    };
-    EXPECT_EQ(accepted(stats, sizeof longer),
-              (std::set<uint32_t>{8, 16, 24, 32, 40, 48, 56, 60, 64, 68, 72, 76, 80}));
-    for (const uint32_t size : {1u << 17, UINT32_MAX, UINT32_MAX - 3})
-        EXPECT_EQ(camera(size), PEL_ERROR_INVALID_ARGUMENT) << size;
+    const auto camera = [&](const PelCamera* c) { return pelShaderSetCamera(shader.get(), c); };
+    EXPECT_EQ(accepted(pelCameraDefaults(), camera), (std::set<uint32_t>{16, 80, 84, 88}));
+    EXPECT_EQ(accepted(pelAmbientDefaults(),
+                       [&](const PelAmbient* a) { return pelShaderSetAmbient(shader.get(), a); }),
+              (std::set<uint32_t>{16, 124, 128, 132}));
+    EXPECT_EQ(accepted(pelDeviceStatsDefaults(),
+                       [&](PelDeviceStats* s) { return pelDeviceGetStats(device.get(), s); }),
+              (std::set<uint32_t>{8, 16, 24, 32, 40, 48, 56, 60, 64, 68, 72}));
+    PelCamera huge = pelCameraDefaults();
+    for (const uint32_t size : {1u << 17, UINT32_MAX, UINT32_MAX - 3}) {
+        huge.structSize = size;
+        EXPECT_EQ(camera(&huge), PEL_ERROR_INVALID_ARGUMENT) << size;
+    }
 }
 
 TEST(Buffers, ReadWriteMapAndRanges) {
@@ -238,4 +224,80 @@ TEST(Errors, ProgressCallbacksMayThrow) {
         {"enough of it"}, [&] { MeshTopology(device, desc); }, PEL_ERROR_UNKNOWN);
     device.setProgress(nullptr, nullptr);
     MeshTopology(device, desc);
+}
+
+TEST(Errors, TheLogHearsNamesErrorsAndWarnings) {
+    struct Heard {
+        std::vector<std::string> lines;
+        static void hear(void* user, PelLogLevel level, const char* object, const char* text) {
+            static_cast<Heard*>(user)->lines.push_back(std::to_string(level) + "|" + object + "|" + text);
+            pelBufferRelease(PelBuffer(user));  // wrong, and not heard
+        }
+    } heard;
+    const Device device("");
+    const Buffer buffer(device, 64);
+    Shader shader(device);
+    shader.setName("hero's shader");
+    pelSetLogCallback(&Heard::hear, &heard);
+    expectRefused({"hero's shader: "}, [&] { shader.commit(); });
+    ASSERT_EQ(heard.lines.size(), 1u);
+    EXPECT_EQ(heard.lines[0].rfind("0|hero's shader|", 0), 0u) << heard.lines[0];
+    EXPECT_EQ(heard.lines[0].find("hero's shader", 16), std::string::npos) << "once: " << heard.lines[0];
+    char byte;
+    expectRefused({"the read"}, [&] { buffer.read(&byte, 1, 64); });
+    EXPECT_EQ(heard.lines.at(1).rfind("0||the read", 0), 0u) << "the name was that of another call";
+    shader.setName("");
+    expectRefused({""}, [&] { shader.commit(); });
+    EXPECT_EQ(heard.lines.at(2).rfind("0||", 0), 0u) << heard.lines[2];
+    const std::vector<float> ones(3 * 16 * 16, 1);
+    for (const PelImageSlot slot : {PEL_SLOT_NORMAL_SHADING, PEL_SLOT_RADIANCE})
+        shader.set(slot, imageDesc(Buffer(device, ones), PEL_FORMAT_RGB32F, 16, 16));
+    PelMaterial material = pelMaterialDefaults();
+    material.borderColor[0] = 0.5f;  // needs a method that scatters irradiance
+    material.scattering = PEL_SCATTERING_PREINTEGRATED;
+    shader.setMaterial(1, material);
+    shader.setName("face");
+    shader.commit();
+    pelSetLogCallback(nullptr, nullptr);
+    ASSERT_GT(heard.lines.size(), 3u);
+    std::string warnings;
+    for (size_t i = 3; i < heard.lines.size(); ++i) {
+        ASSERT_EQ(heard.lines[i].rfind("1|face|", 0), 0u) << heard.lines[i];
+        warnings += (i > 3 ? "\n" : "") + heard.lines[i].substr(7);
+    }
+    EXPECT_EQ(warnings, shader.warnings());
+    expectRefused("could be named", [] { return pelSetName(nullptr, "nothing"); });
+}
+
+TEST(Device, MemoryComesFromTheHost) {
+    struct Host {
+        size_t bytes = 0;
+        bool full = false;
+        static void* allocate(void* user, void* context, size_t bytes) {
+            Host& host = *static_cast<Host*>(user);
+            if (host.full) return nullptr;
+            host.bytes += bytes;
+            cl_mem memory = clCreateBuffer(cl_context(context), CL_MEM_READ_WRITE, bytes, nullptr, nullptr);
+            const cl_uchar garbage = 0xab;
+            const auto queue = cl_command_queue(host.queue);
+            clEnqueueFillBuffer(queue, memory, &garbage, 1, 0, bytes, 0, nullptr, nullptr);
+            clFinish(queue);
+            return memory;
+        }
+        void* queue = nullptr;
+    } host;
+    PelDeviceDesc desc = pelDeviceDescDefaults();
+    desc.selector = "";
+    desc.allocate = &Host::allocate;
+    desc.allocateUser = &host;
+    const Device device(desc);
+    pellucid::check(pelDeviceGetCl(device.get(), nullptr, nullptr, &host.queue));
+    const Buffer zeros(device, 4096), ones(device, std::vector<float>(100, 1));
+    EXPECT_EQ(host.bytes, 4096u + 400u);
+    EXPECT_EQ(device.stats().bytesAllocated, host.bytes);
+    EXPECT_EQ(zeros.readAll<float>(), std::vector<float>(1024));
+    EXPECT_EQ(ones.readAll<float>(), std::vector<float>(100, 1));
+    host.full = true;
+    expectRefused(
+        {"PelDeviceDesc.allocate has no 64 bytes"}, [&] { Buffer(device, 64); }, PEL_ERROR_OUT_OF_MEMORY);
 }

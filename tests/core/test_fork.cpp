@@ -1,14 +1,7 @@
 // A fork of a process that uses OpenCL has the drivers' locks and none of their threads: each call says so
 // instead of waiting.
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <chrono>
-#include <csignal>
-#include <cstdlib>
-#include <cstring>
-#include <thread>
 
 #include "core/handle_kinds.h"
 

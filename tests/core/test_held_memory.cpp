@@ -1,11 +1,8 @@
 // What objects say of the memory that they hold is what OpenCL was asked for: it goes when they go.
-#include <gtest/gtest.h>
-
 #include "cl/cl_spy.h"
 #include "diffusion/lit_ball.h"
 #include "mesh/mesh_fixture.h"
 #include "mesh/reference_meshes.h"
-#include "tolerances.h"
 
 using namespace lit_ball;
 using pellucid::LiveMesh;
@@ -54,7 +51,26 @@ TEST(HeldMemory, OfAShaderByMethod) {
         shader.set(std::vector{lamp.light});
         shader.set(0, PEL_LIGHT_SHADOW_MAP,
                    pellucid::imageDesc(map, PEL_FORMAT_R32F, lamp.width, lamp.height));
+        // What a commit would take is known before it, without the memory, and is what it takes.
+        const std::vector<PelPassMemory> before = shader.memory();
+        const spy::Counts counts = spy::counts();
+        const std::vector<PelPassMemory> again = shader.memory();
+        EXPECT_EQ(spy::counts().memoryBytes, counts.memoryBytes) << "nothing is kept";
+        EXPECT_EQ(spy::counts().bytesCopied, counts.bytesCopied) << "nothing is sent";
         shader.commit().execute();
+        const std::vector<PelPassMemory> after = shader.memory();
+        ASSERT_EQ(before.size(), after.size());
+        ASSERT_EQ(before.size(), again.size());
+        uint64_t sum = 0;
+        for (size_t i = 0; i < after.size(); ++i) {
+            EXPECT_STREQ(before[i].name, after[i].name);
+            EXPECT_EQ(before[i].held, 0u) << before[i].name;
+            EXPECT_EQ(before[i].needed, after[i].held) << before[i].name << " of method " << scattering;
+            EXPECT_EQ(after[i].needed, after[i].held) << before[i].name << " of method " << scattering;
+            EXPECT_EQ(again[i].needed, before[i].needed);
+            sum += after[i].held;
+        }
+        EXPECT_EQ(sum, shader.stats().scratchBytes);
         const uint64_t said = shader.stats().scratchBytes, held = freed([&] { shader = Shader(); });
         if (scattering != PEL_SCATTERING_PREINTEGRATED) {
             expectSaid(said, held, "method " + std::to_string(scattering));

@@ -1,11 +1,5 @@
 // Where images lie: end to end in one buffer, on each other, and in two buffers over the same memory.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstring>
-#include <pellucid/pellucid.hpp>
-
-#include "refusal.h"
+#include "test.h"
 
 using namespace pellucid;
 

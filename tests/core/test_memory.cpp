@@ -3,19 +3,10 @@
 // raised again.
 #include <CL/cl.h>
 #include <dlfcn.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <cstring>
-#include <fstream>
-#include <functional>
-#include <pellucid/pellucid.hpp>
-#include <thread>
+#include "test.h"
 
 #include "cl/error.h"
 #include "cl/machine.h"

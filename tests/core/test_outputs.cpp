@@ -1,10 +1,5 @@
 // What a call writes into memory of its caller: nothing that was not asked for, and nothing at all if the
 // call is refused.
-#include <gtest/gtest.h>
-
-#include <cstring>
-#include <pellucid/pellucid.hpp>
-
 #include "mesh/mesh_calls.h"
 
 using namespace pellucid;

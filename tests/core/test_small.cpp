@@ -1,11 +1,8 @@
 // Nearly every kernel once, at sizes that are no multiple of anything, against the oracle: the quickest
 // look at another device or tool.
-#include <gtest/gtest.h>
-
 #include "lut/lut_cases.h"
 #include "mesh/mesh_fixture.h"
 #include "mesh/reference_meshes.h"
-#include "reference/curvature.h"
 #include "shading/pass_scene.h"
 
 using namespace pellucid;

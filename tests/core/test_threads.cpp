@@ -1,10 +1,5 @@
 // Objects that several threads use at a time give each of them what it would have got alone. The check for
 // data races (./run check tsan) also finds races here that do no harm by chance.
-#include <atomic>
-#include <functional>
-#include <set>
-#include <thread>
-
 #include "mesh/mesh_fixture.h"
 
 namespace {

@@ -1,10 +1,6 @@
 // Bodies for scenes of scattering: a ball, a relief, heads and parts of them.
 #pragma once
-#include <cmath>
-#include <cstdlib>
-#include <functional>
-#include <string>
-#include <vector>
+#include "tools.h"
 
 #include "io/mesh/mesh_parts.h"
 #include "sample/camera.h"
@@ -27,18 +23,37 @@ inline Body ball(double radius, int rings) {
     return {"ball", sample::makeSphere(radius, rings, 2 * rings), {}};
 }
 
-// A square of relief with walls and a floor, without which light from below would come through it: a monkey
-// saddle with a ridge and a pit in it, curved both ways at every scale down to 1 mm.
-inline Body relief(int cells) {
+// An ellipsoid of 20 x 14 x 1 mm, flat as seen from the front.
+inline Body leaf(int rings) {
+    Body body{"leaf", sample::makeSphere(1, rings, 2 * rings), {{0, 1, 0}, {0, 0, 1}}};
+    const double half[] = {10, 7, 0.5};
+    for (size_t v = 0; v < body.mesh.positions.size(); v += 3) {
+        float *p = &body.mesh.positions[v], *n = &body.mesh.normals[v];
+        for (int k = 0; k < 3; ++k) n[k] = p[k] / float(half[k]), p[k] *= float(half[k]);
+        const float length = std::hypot(n[0], n[1], n[2]);
+        for (int k = 0; k < 3; ++k) n[k] /= length;
+    }
+    return body;
+}
+
+// A monkey saddle with a ridge and a pit in it, curved both ways at every scale down to 1 mm.
+inline double saddle(double x, double y) {
+    const double u = x / 12, v = y / 12;
+    return 3 * (u * u * u - 3 * u * v * v) + 2.5 * std::exp(-(x - 4) * (x - 4) / 2.5) -
+           3 * std::exp(-((x + 5) * (x + 5) + (y - 3) * (y - 3)) / 5);
+}
+
+// Pores 0.3 mm deep and 1.2 mm apart on skin that is slightly bent.
+inline double pores(double x, double y) {
+    const double a = std::cos(x * 5.236), b = std::cos((0.5 * x + 0.866 * y) * 5.236);
+    return -0.02 * x * x - 0.3 * std::pow((2 + a + b) / 4, 4);
+}
+
+// A square of relief with walls and a floor, without which light from below would come through it.
+inline Body relief(int cells, double half = 15, double (*height)(double, double) = saddle) {
     Body body{"relief", {}, {{0, 1, 0}, {0, 0, 1}}};
     sample::Mesh& mesh = body.mesh;
-    const double half = 15;
     const float floor = -12;
-    const auto height = [](double x, double y) {
-        const double u = x / 12, v = y / 12;
-        return 3 * (u * u * u - 3 * u * v * v) + 2.5 * std::exp(-(x - 4) * (x - 4) / 2.5) -
-               3 * std::exp(-((x + 5) * (x + 5) + (y - 3) * (y - 3)) / 5);
-    };
     const auto add = [&](Vec3 p, Vec3 n) {
         for (double v : {p.x, p.y, p.z}) mesh.positions.push_back(float(v));
         for (double v : {n.x, n.y, n.z}) mesh.normals.push_back(float(v));
@@ -75,12 +90,14 @@ inline Body relief(int cells) {
     return body;
 }
 
+#ifdef PELLUCID_SOURCE_DIR
 // Where the files of heads are.
 inline std::string headFile(const std::string& name) {
     const char* folder = std::getenv("PELLUCID_HEADS_DIR");
     return (folder ? std::string(folder) : std::string(PELLUCID_SOURCE_DIR) + "/data/heads") + "/" + name +
            ".obj";
 }
+#endif
 
 // One of data/heads, subdivided: skin is material 1, all else only throws shadows (2).
 inline Body head(const std::string& path, const std::string& name, int levels) {
@@ -95,15 +112,31 @@ inline Body head(const std::string& path, const std::string& name, int levels) {
     return body;
 }
 
-// The part of a body round one of its vertices, `size` mm a side.
-inline Body closeUp(Body body, const std::string& name, const std::function<double(Vec3)>& foremost,
-                    double size) {
+// Two balls that touch, of materials 1 and 2.
+inline Body twoBalls(double radius, int rings) {
+    Body body{"two balls", sample::makeSphere(radius, rings, 2 * rings, {-radius, 0, 0}), {}};
+    body.mesh.materials.assign(body.mesh.triangles.size() / 3, 1);
+    sample::Mesh other = sample::makeSphere(radius, rings, 2 * rings, {radius, 0, 0});
+    other.materials.assign(other.triangles.size() / 3, 2);
+    body.mesh.append(other);
+    return body;
+}
+
+// The vertex with the largest value.
+inline Vec3 foremostOf(const Body& body, const std::function<double(Vec3)>& value) {
     Vec3 best{};
     for (size_t v = 0; 3 * v < body.mesh.positions.size(); ++v) {
         const float* p = &body.mesh.positions[3 * v];
         const Vec3 at{p[0], p[1], p[2]};
-        if (v == 0 || foremost(at) > foremost(best)) best = at;
+        if (v == 0 || value(at) > value(best)) best = at;
     }
+    return best;
+}
+
+// The part of a body round one of its vertices, `size` mm a side.
+inline Body closeUp(Body body, const std::string& name, const std::function<double(Vec3)>& foremost,
+                    double size) {
+    const Vec3 best = foremostOf(body, foremost);
     const Vec3 half = Vec3{1, 1, 1} * (size / 2);
     body.focus = sample::Bounds();
     body.focus.add(best - half);

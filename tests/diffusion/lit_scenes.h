@@ -1,9 +1,6 @@
 // Bodies under one hard light, with what light does on them: the scenes by which methods of scattering are
 // measured.
 #pragma once
-#include <memory>
-#include <numbers>
-
 #include "diffusion/lit_bodies.h"
 #include "diffusion/scatter_scene.h"
 #include "io/image/image_compare.h"
@@ -21,13 +18,17 @@ using pellucid::Profile;
 struct LitScene {
     double unit = 1;
     int width = 0, height = 0;
-    Vec3 toLight;
+    Vec3 toLight;  // of the first light
+    Vec3 eye;
+    sample::Lighting lighting;
+    double ambient = 0;
+    std::vector<scatter_scene::Lamp> lamps;
     sample::GBuffer gbuffer;
-    sample::ShadowMap map;
-    std::vector<float> positions, normals;  // interleaved
-    std::vector<float> irradiance;          // E with ray-traced visibility: RGB, all the same
-    std::vector<float> truth;               // S
-    std::vector<uint8_t> covered;           // 1: a pixel of material 1
+    std::vector<float> positions, normals;     // interleaved
+    std::vector<float> irradiance;             // E with ray-traced visibility: RGB, all the same
+    std::vector<float> truth;                  // S
+    std::vector<uint8_t> covered;              // 1: a pixel of material 1
+    std::vector<sample::SurfacePoint> places;  // of the covered pixels
     std::vector<uint8_t> subsets;
 };
 
@@ -36,10 +37,31 @@ struct SceneRequest {
     double lightAzimuth = 80, lightElevation = 20;  // degrees
     double unit = 1;                                // mm per unit
     int size = 128, mapSize = 1024;
+    int width = 0;  // of the picture; 0: a square of `size`
     double fill = 0.94;
     double profileScale = 1;
-    double aside = 0;  // pixels by which the camera stands to the right
+    // Beside the directional light; in units of positions.
+    std::vector<sample::SurfaceLight> more = {};
+    double ambient = 0;
 };
+
+// What a light and its map are to the library.
+inline scatter_scene::Lamp lampOf(const sample::SurfaceLight& light, const sample::ShadowMap& map) {
+    scatter_scene::Lamp lamp;
+    const bool directional = light.type == sample::SurfaceLight::Type::Directional;
+    const Vec3 place = directional ? light.toLight : light.position;
+    const double at[] = {place.x, place.y, place.z};
+    lamp.light.type = directional ? PEL_LIGHT_DIRECTIONAL : PEL_LIGHT_POINT;
+    std::copy_n(at, 3, directional ? lamp.light.toLight : lamp.light.position);
+    std::ranges::copy(light.color, lamp.light.color);
+    std::ranges::copy(map.worldToUvz.toFloats(), lamp.light.worldToShadow);
+    lamp.light.shadowProjection = directional ? PEL_SHADOW_PARALLEL : PEL_SHADOW_PERSPECTIVE;
+    lamp.light.shadowDepthRange = float(map.depthRange);
+    lamp.light.shadowDepthA = float(map.depthA), lamp.light.shadowDepthB = float(map.depthB);
+    lamp.maps = {map.depth};
+    lamp.width = lamp.height = uint32_t(map.size);
+    return lamp;
+}
 
 // Curvature of the mesh with default settings, in 1/unit.
 inline std::vector<float> curvatureOf(const Device& device, const sample::Mesh& mesh) {
@@ -76,15 +98,21 @@ class Stage {
     LitScene look(const SceneRequest& request, const Profile& profile) const {
         LitScene s;
         s.unit = unit_;
-        s.width = s.height = request.size;
+        s.height = request.size;
+        s.width = request.width > 0 ? request.width : request.size;
         s.toLight = headDirection(body_.pose, request.lightAzimuth, request.lightElevation);
         sample::GBufferOptions plain;
         plain.detail.enabled = false;
         plain.diffusionRadius = profile.info().radius * request.profileScale / unit_;
-        s.gbuffer = renderGBuffer(*scene_, cameraOf(request), s.width, s.height, plain);
-        s.map = renderShadowMap(*scene_, sample::DirectionalLight{s.toLight}, request.mapSize, 1 / unit_);
+        const sample::Camera camera = cameraOf(request);
+        s.eye = camera.eye;
+        s.gbuffer = renderGBuffer(*scene_, camera, s.width, s.height, plain);
+        s.lighting.lights = request.more;
+        s.lighting.lights.insert(s.lighting.lights.begin(), {.toLight = s.toLight});
+        s.ambient = request.ambient;
+        if (s.ambient > 0) s.lighting.ambient = [a = s.ambient](Vec3) { return std::array{a, a, a}; };
+        s.lamps = lampsOf(s.lighting, request.mapSize);
         const size_t pixels = size_t(s.width) * s.height;
-        std::vector<sample::SurfacePoint> places;
         std::vector<size_t> where;
         s.covered.resize(pixels);
         std::vector<float> toLight(3 * pixels), visible(pixels);
@@ -100,10 +128,10 @@ class Stage {
             if (!s.covered[i]) continue;
             const float* p = &s.positions[3 * i];
             const sample::Hit hit = scene_->nearest({p[0], p[1], p[2]});
-            places.push_back({hit.triangle, {hit.weights[0], hit.weights[1], hit.weights[2]}});
+            s.places.push_back({hit.triangle, {hit.weights[0], hit.weights[1], hit.weights[2]}});
             where.push_back(i);
         }
-        const std::vector<float> E = irradianceAt(*scene_, lightingOf(s), places);
+        const std::vector<float> E = irradianceAt(*scene_, s.lighting, s.places);
         for (size_t k = 0; k < where.size(); ++k) {
             std::copy_n(&E[3 * k], 3, &s.irradiance[3 * where[k]]);
             visible[where[k]] = E[3 * k] > 0;
@@ -123,8 +151,8 @@ class Stage {
         // Half a pixel will do where a pixel is wider than the profile.
         options.finest = narrowest / 2;
         options.coarsest = std::max(widest, 2 * options.finest);
-        options.material = hasMaterials_ ? 1 : 0;
-        const sample::LitMesh lit = lightMesh(*scene_, lightingOf(s), options);
+        options.material = material();
+        const sample::LitMesh lit = lightMesh(*scene_, s.lighting, options);
         std::vector<float> points;
         for (size_t i = 0; i < s.covered.size(); ++i)
             if (s.covered[i]) points.insert(points.end(), &s.positions[3 * i], &s.positions[3 * i] + 3);
@@ -138,30 +166,37 @@ class Stage {
             if (s.covered[i]) std::copy_n(&S[3 * k++], 3, &s.truth[3 * i]);
     }
 
+    // The lights of a scene with maps of `mapSize` texels a side.
+    std::vector<scatter_scene::Lamp> lampsOf(const sample::Lighting& lighting, int mapSize) const {
+        std::vector<scatter_scene::Lamp> lamps;
+        for (const sample::SurfaceLight& light : lighting.lights)
+            lamps.push_back(lampOf(light, mapOf(light, mapSize)));
+        return lamps;
+    }
+
+    const sample::Scene& scene() const { return *scene_; }
+    uint32_t material() const { return hasMaterials_ ? 1 : 0; }
+
   private:
     sample::Camera cameraOf(const SceneRequest& request) const {
         sample::Framing framing;
         framing.azimuth = request.azimuth;
         framing.elevation = request.elevation;
         framing.fill = request.fill;
-        sample::Camera camera = frameHead(shown_, body_.pose, framing, 1);
+        const double aspect = request.width > 0 ? double(request.width) / request.size : 1;
+        sample::Camera camera = frameHead(shown_, body_.pose, framing, aspect);
         for (int i = 0; i < 8; ++i) {  // near and far plane enclose all of it
             const double depth = dot(scene_->bounds().corner(i) - camera.eye, camera.forward());
             camera.nearPlane = std::max(std::min(camera.nearPlane, depth), 1e-3 * camera.farPlane);
             camera.farPlane = std::max(camera.farPlane, 1.01 * depth);
         }
-        const double pixel = 2 * std::tan(camera.verticalFov * std::numbers::pi / 360) *
-                             length(camera.target - camera.eye) / request.size;
-        const Vec3 aside = normalize(cross(camera.forward(), camera.up)) * (pixel * request.aside);
-        camera.eye = camera.eye + aside;
-        camera.target = camera.target + aside;
         return camera;
     }
-    static sample::Lighting lightingOf(const LitScene& s) {
-        sample::Lighting lighting;
-        lighting.lights.push_back({});
-        lighting.lights[0].toLight = s.toLight;
-        return lighting;
+    sample::ShadowMap mapOf(const sample::SurfaceLight& light, int size) const {
+        if (light.type == sample::SurfaceLight::Type::Directional)
+            return renderShadowMap(*scene_, sample::DirectionalLight{light.toLight}, size, 1 / unit_);
+        const Vec3 way = shown_.centre() - light.position;
+        return renderShadowMap(*scene_, sample::SpotLight{light.position, normalize(way), 60}, size);
     }
 
     Body body_;  // without its mesh
@@ -185,9 +220,13 @@ inline LitScene inUnit(LitScene s, double unit) {
     s.unit = unit;
     for (float& v : s.positions) v = float(v / by);
     for (float& v : s.gbuffer.curvature.data) v = float(v * by);
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) s.map.worldToUvz.m[size_t(4 * row + column)] *= by;
-    s.map.depthRange /= by;
+    s.eye = s.eye * (1 / by);
+    for (PelLight* light = nullptr; scatter_scene::Lamp & lamp : s.lamps) {
+        light = &lamp.light;
+        for (int k = 0; k < 12; ++k)
+            if (k % 4 < 3) light->worldToShadow[k] *= float(by);
+        light->shadowDepthRange /= float(by);
+    }
     return s;
 }
 
@@ -197,9 +236,14 @@ struct ShadeRequest {
     uint32_t tableSize = 0;  // 0: the tables that the profile brings
     float targetError = pelShaderOptionsDefaults().targetError;
     bool traced = false;     // irradiance with ray-traced shadows is given
+    float gain = 0;          // PelMaterial.curvatureGain; 0: as the surface integral, which has no volume
     bool curvature = true;   // the mesh's is given
     bool faceworks = false;  // tables and filter as FaceWorks makes them, of the profile; with a tableSize
-    int repeats = 7;         // of what is timed
+    uint32_t materials = 1;  // ids that have the material, from 1
+    bool count = true;       // PelShaderOptions.countPixels
+    bool everyPixel = false;
+    float timeBudget = 0;
+    std::vector<float> texture = {};  // a scattered one, square; the body has texture coordinates
 };
 
 inline scatter_scene::Picture pictureOf(const LitScene& s) {
@@ -209,32 +253,35 @@ inline scatter_scene::Picture pictureOf(const LitScene& s) {
     return p;
 }
 
-inline scatter_scene::Lamp lampOf(const LitScene& s) {
-    scatter_scene::Lamp lamp;
-    const double direction[] = {s.toLight.x, s.toLight.y, s.toLight.z};
-    std::copy_n(direction, 3, lamp.light.toLight);
-    std::ranges::copy(s.map.worldToUvz.toFloats(), lamp.light.worldToShadow);
-    lamp.light.shadowDepthRange = float(s.map.depthRange);
-    lamp.maps = {s.map.depth};
-    lamp.width = lamp.height = uint32_t(s.map.size);
-    return lamp;
-}
+// What a shader made of a scene; `shader` makes the same frame again.
+struct Shot {
+    std::vector<float> light;
+    PelShaderStats stats;
+    pellucid::Shader shader;
+    pellucid::Buffer out;
+};
 
-// By the shader for an albedo of 1, all else at its default, shadows from the map. No gain of curved bodies:
-// the surface integral has no volume. `seconds`, if not NULL: the median time of `repeats` frames.
-inline std::vector<float> shade(const Device& device, const LitScene& s, const Profile& profile,
-                                double profileScale, double* seconds, const ShadeRequest& request) {
+// By the shader for an albedo of 1, all else at its default, shadows from the map.
+inline Shot shoot(const Device& device, const LitScene& s, const Profile& profile, double profileScale,
+                  const ShadeRequest& request) {
     const uint32_t tableSize = request.tableSize;
     const auto radius = float(profile.info().radius * profileScale / s.unit);
     scatter_scene::Frame f(pictureOf(s), request.scattering);
     f.profile = profile;
+    f.materials = request.materials;
     f.giveIrradiance = request.traced;
     f.images[PEL_SLOT_NORMAL_SHADING] = f.images[PEL_SLOT_NORMAL_GEOMETRIC] = s.normals;
     if (request.curvature) f.images[PEL_SLOT_CURVATURE] = s.gbuffer.curvature.data;
     f.options.millimetresPerUnit = float(s.unit);
     f.options.targetError = request.targetError;
-    f.lamps = {lampOf(s)};
-    f.lamps[0].light.shadowFilterTexels = 64;
+    f.options.timeBudget = request.timeBudget;
+    f.texture = request.texture;
+    for (size_t i = 0; !f.texture.empty() && i < s.covered.size(); ++i)
+        for (int c = 0; c < 2; ++c) f.images[PEL_SLOT_UV].push_back(s.gbuffer.uv.plane(c)[i]);
+    f.options.countPixels = request.count, f.options.everyPixel = request.everyPixel;
+    f.lamps = s.lamps;
+    for (scatter_scene::Lamp& lamp : f.lamps) lamp.light.shadowFilterTexels = 64;
+    f.material.curvatureGain = request.gain;
     f.material.scatterTaps = request.scatterTaps;
     if (profileScale != 1) f.material.diffusionRadius = radius;
     if (tableSize) {
@@ -253,18 +300,17 @@ inline std::vector<float> shade(const Device& device, const LitScene& s, const P
         f.shadowLut = pellucid::Lut(device, shadowDesc);
     }
     scatter_scene::ShownImages shown(device, uint32_t(s.width), uint32_t(s.height));
-    std::vector<float> picture = f.shade(shown).light;
-    if (seconds) {
-        std::vector<double> times;
-        for (int i = 0; i < request.repeats; ++i) {
-            shown.shader.execute();
-            times.push_back(shown.shader.stats().deviceMilliseconds * 1e-3);
-        }
-        const auto middle = times.begin() + request.repeats / 2;
-        std::nth_element(times.begin(), middle, times.end());
-        *seconds = *middle;
-    }
-    return picture;
+    shown.shader.set(scatter_scene::standingAt({s.eye.x, s.eye.y, s.eye.z}));
+    PelAmbient ambient = pelAmbientDefaults();
+    std::fill_n(ambient.constant, 3, float(s.ambient));
+    shown.shader.set(ambient);
+    scatter_scene::Shown made = f.shade(shown);
+    return {std::move(made.light), made.stats, shown.shader, shown.out};
+}
+
+inline std::vector<float> shade(const Device& device, const LitScene& s, const Profile& profile,
+                                double profileScale, const ShadeRequest& request) {
+    return shoot(device, s, profile, profileScale, request).light;
 }
 
 }  // namespace lit_scenes

@@ -1,11 +1,9 @@
 // Pictures with the shadow map of their light and the surface integral over them: computed by brute force
 // elsewhere (a head), or in closed form (a ball).
 #pragma once
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "diffusion/scatter_scene.h"
-#include "half_bits.h"
 #include "io/image/image_file.h"
 
 namespace reference_scenes {
@@ -136,7 +134,6 @@ inline Shown shade(const Device& device, const ReferenceScene& r, PelScattering 
     p.positions = r.positions, p.irradiance = r.irradiance, p.ids = r.ids;
     scatter_scene::Frame f(p, scattering);
     f.options.millimetresPerUnit = 10;
-    f.options.countPixels = 1;
     f.images[PEL_SLOT_NORMAL_SHADING] = r.normals;
     if (r.curvature > 0) f.images[PEL_SLOT_CURVATURE].assign(r.ids.size(), r.curvature);
     f.giveIrradiance = given;
@@ -145,12 +142,8 @@ inline Shown shade(const Device& device, const ReferenceScene& r, PelScattering 
     f.material.scatterTaps = taps;
     if (r.profileScale != 1)
         f.material.diffusionRadius = float(f.profile.info().radius) * r.profileScale / 10;
-    // Of clip = (x, z, y + camera - 1, y + camera): only where the camera stands matters.
-    PelCamera camera = pelCameraDefaults();
-    std::fill_n(camera.inverseViewProjection, 16, 0.0f);
+    PelCamera camera = scatter_scene::standingAt({0, -r.camera, 0});
     camera.position[1] = -r.camera;
-    camera.inverseViewProjection[0] = camera.inverseViewProjection[9] = camera.inverseViewProjection[14] = 1;
-    camera.inverseViewProjection[6] = -r.camera;
     shown.shader.set(camera);
     f.lamps = {{r.light, {}, r.mapSide, r.mapSide}};
     std::fill_n(f.lamps[0].light.color, 3, 1.0f);

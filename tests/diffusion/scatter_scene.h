@@ -1,18 +1,9 @@
 // What the tests of scattering share: pictures, and what a PelScatter, a shader or the oracle makes of them.
 #pragma once
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <functional>
-#include <limits>
-#include <map>
-#include <pellucid/pellucid.hpp>
-#include <random>
+#include "tools.h"
 
 #include "reference/diffusion_screen.h"
 #include "reference/lut.h"
-#include "test_size.h"
 
 namespace scatter_scene {
 
@@ -245,6 +236,15 @@ inline PelMaterial whiteMaterial(const Profile& profile, PelScattering scatterin
     return material;
 }
 
+// Of which only the place matters.
+inline PelCamera standingAt(Vec3 place) {
+    PelCamera camera = pelCameraDefaults();
+    std::fill_n(camera.inverseViewProjection, 16, 0.0f);
+    camera.inverseViewProjection[14] = 1;
+    for (int k = 0; k < 3; ++k) camera.inverseViewProjection[4 * k + 2] = float(place[k]);
+    return camera;
+}
+
 struct Lamp {
     PelLight light = pelLightDefaults();
     std::vector<std::vector<float>> maps;  // of one image or of cascades
@@ -270,9 +270,11 @@ struct Frame {
     bool giveIrradiance = true;
     std::vector<float> texture;  // a scattered one, square
 
-    // `radius`: of a ball, for its normals; 0: they are along z.
+    // `radius`: of a ball, for its normals; 0: they are along z. Pixels are counted, so that tests that need
+    // the counts and those that do not compile the same programs.
     Frame(Picture p, PelScattering scattering, double radius = 0)
         : picture(std::move(p)), material(whiteMaterial(Profile(), scattering)) {
+        options.countPixels = 1;
         std::vector<float>& normals = images[PEL_SLOT_NORMAL_SHADING];
         normals = picture.positions;
         for (size_t i = 0; i < normals.size(); ++i)

@@ -1,16 +1,8 @@
 // The gain of curved bodies (docs/mathematics.md, section 12): the mean curvature that is measured on the
 // screen, and pictures against random walks.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-
 #include "diffusion/reference_scenes.h"
-#include "diffusion/scatter_scene.h"
 #include "npy.h"
-#include "reference/diffusion_screen.h"
-#include "test_size.h"
-#include "tolerances.h"
+#include "test.h"
 
 using namespace reference_scenes;
 using reference::Vec3;
@@ -36,50 +28,39 @@ const Surface surfaces[] = {
     {"paraboloid", [](double x, double y) { return -0.02 * x * x - 0.01 * y * y; }, 0.03},
 };
 
-struct Gains {
-    std::vector<float> light;
-    std::string warnings;
-};
-
 // Under even light, which scattering leaves as it is.
-Gains gainsOf(const Surface& surface, uint32_t side, double size, PelScattering method, float strength,
+Shown gainsOf(const Surface& surface, uint32_t side, double size, PelScattering method, float strength,
               uint64_t budget = 0, bool cut = false) {
-    std::vector<float> positions, normals;
-    std::vector<uint8_t> ids;
+    scatter_scene::Picture p(side, side);
+    std::vector<float> normals;
     for (uint32_t row = 0; row < side; ++row)
         for (uint32_t column = 0; column < side; ++column) {
             const double x = (column + 0.5 - 0.5 * side) * size, y = (0.5 * side - row - 0.5) * size,
                          h = 1e-4;
-            const double dx = (surface.height(x + h, y) - surface.height(x - h, y)) / (2 * h),
-                         dy = (surface.height(x, y + h) - surface.height(x, y - h)) / (2 * h),
-                         length = std::sqrt(1 + dx * dx + dy * dy);
-            for (double v : {x, y, surface.height(x, y)}) positions.push_back(float(v));
-            for (double v : {-dx / length, -dy / length, 1 / length}) normals.push_back(float(v));
-            ids.push_back(cut && column < side / 3 ? 0 : 1);
+            const Vec3 n =
+                normalized(Vec3{(surface.height(x - h, y) - surface.height(x + h, y)) / (2 * h),
+                                (surface.height(x, y - h) - surface.height(x, y + h)) / (2 * h), 1});
+            for (int k = 0; k < 3; ++k) normals.push_back(float(n[k]));
+            p.set(p.at(column, row), {x, y, surface.height(x, y)}, {}, cut && column < side / 3 ? 0 : 1);
         }
-    scatter_scene::ShownImages shown(Device(""), side, side);
-    PelShaderOptions options = pelShaderOptionsDefaults();
-    options.scratchBudget = budget;
-    shown.shader.set(options);
-    shown.set(PEL_SLOT_POSITION, positions);
-    shown.set(PEL_SLOT_NORMAL_SHADING, normals);
-    shown.set(PEL_SLOT_CURVATURE, std::vector<float>(ids.size(), 0));
-    shown.set(PEL_SLOT_MATERIAL, ids);
-    PelAmbient ambient = pelAmbientDefaults();
-    std::fill_n(ambient.constant, 3, 1.0f);
-    PelLight sun = pelLightDefaults();
-    sun.toLight[0] = sun.toLight[1] = 0, sun.toLight[2] = 1;
-    if (method == PEL_SCATTERING_PREINTEGRATED)  // its gain is one of direct light
-        shown.shader.set(std::vector<PelLight>{sun});
-    else
+    scatter_scene::Frame f(p, method);
+    f.images[PEL_SLOT_NORMAL_SHADING] = normals;
+    f.images[PEL_SLOT_CURVATURE].assign(p.pixels(), 0);
+    f.options.scratchBudget = budget;
+    f.giveIrradiance = false;
+    f.profile = profile();
+    f.material.specular = 0;
+    f.material.curvatureGain = strength;
+    scatter_scene::ShownImages shown(Device(""), 1, 1);
+    if (method == PEL_SCATTERING_PREINTEGRATED) {  // its gain is one of direct light
+        f.lamps.resize(1);
+        f.lamps[0].light.toLight[0] = f.lamps[0].light.toLight[1] = 0, f.lamps[0].light.toLight[2] = 1;
+    } else {
+        PelAmbient ambient = pelAmbientDefaults();
+        std::fill_n(ambient.constant, 3, 1.0f);
         shown.shader.set(ambient);
-    const Profile skin = profile();
-    PelMaterial material = scatter_scene::whiteMaterial(skin, method);
-    material.specular = 0;
-    material.curvatureGain = strength;
-    shown.shader.setMaterial(1, material);
-    std::vector<float> light = shown.execute();
-    return {std::move(light), shown.shader.warnings()};
+    }
+    return f.shade(shown);
 }
 
 double gainAt(double curvature, int channel, double strength = 1) {
@@ -150,10 +131,10 @@ TEST(CurvatureGain, FollowsItsStrengthAndIsNothingOnPlanes) {
 
 // Beside an edge of the material, and in bands of rows.
 TEST(CurvatureGain, NeedsNeitherAllNeighboursNorTheWholeFrame) {
-    const Gains whole = gainsOf(surfaces[1], 48, 0.3, PEL_SCATTERING_PREINTEGRATED, 1, 0, true),
+    const Shown whole = gainsOf(surfaces[1], 48, 0.3, PEL_SCATTERING_PREINTEGRATED, 1, 0, true),
                 bands = gainsOf(surfaces[1], 48, 0.3, PEL_SCATTERING_PREINTEGRATED, 1, 48 * 12 * 4, true);
     EXPECT_EQ(whole.light, bands.light);
-    const Gains none = gainsOf(surfaces[1], 48, 0.3, PEL_SCATTERING_PREINTEGRATED, 0, 0, true);
+    const Shown none = gainsOf(surfaces[1], 48, 0.3, PEL_SCATTERING_PREINTEGRATED, 0, 0, true);
     for (size_t x = 16; x < 48; ++x) {
         const size_t i = 3 * (24 * 48 + x);
         EXPECT_NEAR(whole.light[i] / none.light[i], gainAt(0.05, 0), 2 * tolerance::gain) << x;
@@ -168,38 +149,26 @@ TEST(CurvatureGain, LightTakesItsWayThroughTheBody) {
     const auto exact = reference::burleyProfile({meanFreePath[0], meanFreePath[1], meanFreePath[2]},
                                                 {albedo, albedo, albedo});
     for (double slope : {1.0, -1.0}) {
-        std::vector<float> positions, normals, irradiance;
-        reference::ScatterPicture picture;
-        picture.width = picture.height = int(side);
-        picture.camera = Vec3{0, 0, 60};
-        picture.ids.assign(side * side, 1);
+        scatter_scene::Picture p(side, side);
+        std::vector<float> normals;
         for (uint32_t row = 0; row < side; ++row)
             for (uint32_t column = 0; column < side; ++column) {
                 const double x = (column + 0.5 - 0.5 * side) * size, y = (0.5 * side - row - 0.5) * size,
                              lean = (x < 0 ? 1 : -1) * slope / std::sqrt(2.0), e = x < 0 ? 1 : 0;
-                picture.positions.push_back({x, y, slope * std::abs(x)});
-                picture.irradiance.push_back({e, e, e});
-                for (double v : {x, y, slope * std::abs(x)}) positions.push_back(float(v));
+                p.set(p.at(column, row), {x, y, slope * std::abs(x)}, {e, e, e});
                 for (double v : {lean, 0.0, std::sqrt(0.5)}) normals.push_back(float(v));
-                irradiance.insert(irradiance.end(), 3, float(e));
             }
+        reference::ScatterPicture picture = p.exact();
+        picture.camera = Vec3{0, 0, 60};
         for (int gain : {0, 1}) {
-            scatter_scene::ShownImages shown(Device(""), side, side);
-            shown.set(PEL_SLOT_POSITION, positions);
-            shown.set(PEL_SLOT_NORMAL_SHADING, normals);
-            shown.set(PEL_SLOT_IRRADIANCE, irradiance);
-            PelCamera camera = pelCameraDefaults();
-            std::fill_n(camera.inverseViewProjection, 16, 0.0f);  // at (0, 0, 60)
-            camera.inverseViewProjection[0] = camera.inverseViewProjection[5] =
-                camera.inverseViewProjection[14] = 1;
-            camera.inverseViewProjection[10] = 60;
-            shown.shader.set(camera);
-            const Profile skin = profile();
-            PelMaterial material = scatter_scene::whiteMaterial(skin, PEL_SCATTERING_SCREEN);
-            material.specular = 0;
-            material.curvatureGain = float(gain);
-            shown.shader.setMaterial(1, material);
-            const std::vector<float> light = shown.execute();
+            scatter_scene::Frame f(p, PEL_SCATTERING_SCREEN);
+            f.images[PEL_SLOT_NORMAL_SHADING] = normals;
+            f.profile = profile();
+            f.material.specular = 0;
+            f.material.curvatureGain = float(gain);
+            scatter_scene::ShownImages shown(Device(""), 1, 1);
+            shown.shader.set(scatter_scene::standingAt({0, 0, 60}));
+            const std::vector<float> light = f.shade(shown).light;
             picture.directed = 0;
             const auto even = reference::scatterOnScreen(picture, *exact);
             picture.directed = 0.92 * gain;

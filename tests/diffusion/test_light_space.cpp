@@ -1,13 +1,10 @@
 // Light scattered from shadow maps: the kernels' pyramids against the sum over every texel and every pixel,
 // for every form of map and several lights at a time; light that comes through a ball and a thin strip,
 // against the surface integral; and what must hold for any input.
-#include <gtest/gtest.h>
-
-#include <numbers>
-
 #include "diffusion/lit_ball.h"
 #include "reference/diffusion_light.h"
-#include "tolerances.h"
+#include "reference/random_walk.h"
+#include "test.h"
 
 using namespace lit_ball;
 
@@ -52,6 +49,19 @@ std::vector<LitBall> lightsFrom(std::initializer_list<Vec3> directions, uint32_t
     std::vector<LitBall> lights;
     for (Vec3 d : directions) lights.push_back(makeBall(Form::parallel, normalized(d), mapSide));
     return lights;
+}
+
+// Along +z, over `extent` mm and from 20 mm below the plane z = 0.
+LitBall lampFromBehind(double extent) {
+    LitBall lamp;
+    lamp.width = lamp.height = sized(256u, 128u);
+    lamp.light.toLight[0] = lamp.light.toLight[1] = 0, lamp.light.toLight[2] = -1;
+    lamp.light.shadowDepthRange = 20;
+    setRow(lamp.light.worldToShadow, 0, {1 / extent, 0, 0}, 0.5);
+    setRow(lamp.light.worldToShadow, 1, {0, -1 / extent, 0}, 0.5);
+    setRow(lamp.light.worldToShadow, 2, {0, 0, 0.05}, 1);
+    setRow(lamp.light.worldToShadow, 3, {}, 1);
+    return lamp;
 }
 
 std::string nameOf(Form form, Vec3 d) {
@@ -121,21 +131,6 @@ TEST(LightSpace, IsTheSumOverAllTexelsOfAllLights) {
     }
 }
 
-// One light in two halves is one light, also behind one that is switched off.
-TEST(LightSpace, TwoHalvesOfALightAreTheWhole) {
-    const uint32_t side = sized(48u, 16u);
-    const std::vector<LitBall> whole = lightsFrom({{0.7, 0.2, -0.5}}, sized(128u, 48u));
-    std::vector<LitBall> halves(3, whole[0]);
-    for (int k = 0; k < 3; ++k) std::fill_n(halves[size_t(k)].light.color, 3, k ? 0.5f : 0.0f);
-    for (PelScattering method : {byLight, byAuto}) {
-        Frame f = frameOf(whole, side, method, 0.4f);
-        f.options.targetError = 0;
-        const std::vector<float> one = f.shade().light;
-        f.lamps.assign(halves.begin(), halves.end());
-        EXPECT_LE(difference(f.picture, f.shade().light, one).most, tolerance::lightHalves) << int(method);
-    }
-}
-
 // Light adds up: what two lights scatter is what each of them scatters alone.
 TEST(LightSpace, TwoLightsAreTheSumOfEachAlone) {
     const uint32_t side = sized(64u, 20u);
@@ -194,14 +189,7 @@ TEST(LightSpace, LightComesThroughAStripInEveryTile) {
     constexpr double pixel = 0.25, halfWidth = 1, thickness = 0.8, extent = 16;  // mm
     const uint32_t side = sized(64u, 32u);
     const auto exact = reference::skinProfile();
-    LitBall lamp;  // along +z, its map shows the strip's back
-    lamp.width = lamp.height = sized(256u, 128u);
-    lamp.light.toLight[0] = lamp.light.toLight[1] = 0, lamp.light.toLight[2] = -1;
-    lamp.light.shadowDepthRange = 20;
-    setRow(lamp.light.worldToShadow, 0, {1 / extent, 0, 0}, 0.5);
-    setRow(lamp.light.worldToShadow, 1, {0, -1 / extent, 0}, 0.5);
-    setRow(lamp.light.worldToShadow, 2, {0, 0, 0.05}, 1);
-    setRow(lamp.light.worldToShadow, 3, {}, 1);
+    LitBall lamp = lampFromBehind(extent);  // its map shows the strip's back
     lamp.maps = {texelsOf(lamp.width, [&](double s, double, int) {
         return std::abs(s * extent / 2) < halfWidth ? 1 - 0.05 * thickness : 1;
     })};
@@ -234,6 +222,34 @@ TEST(LightSpace, LightComesThroughAStripInEveryTile) {
                 EXPECT_NEAR(lit.light[3 * i + size_t(c)], truth[c],
                             tolerance::throughSheet * truth[0] + tolerance::neverWorse)
                     << "pixel " << i % side << " " << i / side << ", channel " << c << ", shift " << shift;
+        }
+    }
+}
+
+// A slab that is lit from behind: where the medium is known, as much comes through as a random walk has.
+TEST(LightSpace, SlabsLetThroughWhatRandomWalksDo) {
+    constexpr double d = 0.3, path = 1.085 * d, extent = 24;  // mm
+    const uint32_t side = sized(48u, 24u);
+    const float paths[] = {1.1f * d, 1.1f * d, 1.1f * d}, white[] = {0.8f, 0.8f, 0.8f};
+    LitBall lamp = lampFromBehind(extent);
+    for (double thickness : {0.3, 1.0, 2.5, 4.0}) {
+        const double truth =
+            reference::walkSlab({path, 0.99055}, thickness, 1, 1, sized(100000, 1000), 7).transmitted / 0.8;
+        lamp.maps = {texelsOf(lamp.width, [&](double, double, int) { return 1 - 0.05 * thickness; })};
+        for (PelScattering method : {byAuto, byLight}) {
+            Frame f(plane(side, side, 0.1, [](double, double) { return Vec3{}; }), method);
+            for (size_t i = 0; i < f.picture.positions.size(); ++i)
+                if (i % 3 < 2) f.picture.positions[i] -= 0.05f * float(side);
+            f.profile = Profile::burley(paths, white);
+            f.material.curvatureGain = 1;
+            f.options.targetError = 0;
+            f.lamps = {lamp};
+            ShownImages shown(scatter_scene::device(), 1, 1);
+            shown.shader.set(standingAt({0, 0, 60}));
+            const std::vector<float> light = f.shade(shown).light;
+            EXPECT_NEAR(light[3 * (side / 2 * side + side / 2)], truth,
+                        testsAreSmall() ? 0.1 : tolerance::throughSlab + tolerance::throughSlabPart * truth)
+                << thickness << " mm, method " << int(method);
         }
     }
 }

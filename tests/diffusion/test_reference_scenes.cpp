@@ -1,9 +1,7 @@
 // Methods against the surface integral of reference scenes (docs/mathematics.md, section 9).
-#include <gtest/gtest.h>
-
 #include "diffusion/lit_scenes.h"
 #include "diffusion/reference_scenes.h"
-#include "tolerances.h"
+#include "test.h"
 
 using namespace reference_scenes;
 
@@ -24,7 +22,7 @@ struct Case {
     Errors most;
 };
 
-Errors valuesOf(const tolerance::Tolerance (&of)[3]) {
+Errors valuesOf(const double (&of)[3]) {
     return {of[0], of[1], of[2]};
 }
 
@@ -95,45 +93,4 @@ TEST(ReferenceScenes, Ball) {
     compare("ball", ball(gbuffers),
             {{"auto and map", byAuto, 0, true, true, valuesOf(tolerance::lightBall)},
              {"light", byLight, 0, true, true, valuesOf(tolerance::lightBallOfLight)}});
-}
-
-// What comes through an ear that is lit from behind, against the library's own surface integral.
-TEST(ReferenceScenes, EarFromBehind) {
-    namespace lit = lit_scenes;
-    const Device device("");
-    const lit::Body whole = lit::head(lit::headFile("head_male"), "male", sized(2, 0));
-    const lit::Body ear = lit::closeUp(
-        whole, "ear", [](lit::Vec3 p) { return p.x; }, 80);
-    lit::SceneRequest request;
-    request.azimuth = 70;
-    request.lightAzimuth = 200, request.lightElevation = 10;
-    request.size = sized(192, 16);
-    request.mapSize = sized(2048, 64);
-    const lit::LitScene s = lit::make(device, ear, request, profile());
-    std::vector<uint8_t> unlit(s.covered.size());
-    for (size_t i = 0; i < unlit.size(); ++i)
-        unlit[i] = s.covered[i] && (s.subsets[i] & lit::io::SUBSET_UNLIT);
-    const auto rms = [&](const std::vector<float>& picture) {
-        Errors e = lit::io::compareImages(picture, s.truth, unlit).rmse;
-        for (double& v : e) v *= 1e4 * albedo;
-        return e;
-    };
-    print("Lambert", rms(s.irradiance));
-    Errors byTraced{};
-    for (const auto& [name, scattering, traced] : {std::tuple{"auto and map", byAuto, true},
-                                                   {"light", byLight, true},
-                                                   {"auto, irradiance of the map", byAuto, false}}) {
-        lit::ShadeRequest way;
-        way.scattering = scattering;
-        way.traced = traced;
-        const Errors e = rms(lit::shade(device, s, profile(), 1, nullptr, way));
-        print(name, e);
-        if (testsAreSmall()) continue;
-        if (traced && scattering == byAuto) byTraced = e;
-        for (size_t c = 0; c < 3; ++c)
-            EXPECT_LT(e[c], !traced                 ? 1.25 * byTraced[c] + 2
-                            : scattering == byLight ? double(tolerance::lightEarOfLight[c])
-                                                    : double(tolerance::lightEar[c]))
-                << name;
-    }
 }

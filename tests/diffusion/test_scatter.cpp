@@ -1,10 +1,8 @@
 // A PelScatter: blocks of pixels, taps on a disk and the separable filter against the sums that they stand
 // for, and what must hold for any picture.
-#include <gtest/gtest.h>
-
 #include "diffusion/scatter_scene.h"
 #include "reference/diffusion_taps.h"
-#include "tolerances.h"
+#include "test.h"
 
 using namespace scatter_scene;
 
@@ -119,24 +117,6 @@ TEST(Scatter, ManyTapsOrFramesAreTheWholeProfile) {
     EXPECT_LT(difference(p, mean, whole).rms, 0.5 * one);
 }
 
-TEST(Scatter, ABallIsNearerToItsClosedFormThanLambert) {
-    const uint32_t side = sized(256u, 32u);
-    const Picture p = ball(side, 10, 20.5 / side, sideLight());
-    const float meanFreePath[] = {0.321f, 0.12f, 0.06f}, albedo[] = {0.8f, 0.8f, 0.8f};
-    const auto light = lightOnBall(*reference::burleyProfile({0.321f, 0.12f, 0.06f}, {0.8f, 0.8f, 0.8f}));
-    const std::vector<float> result = run(p, Profile::burley(meanFreePath, albedo)).scattered;
-    for (int channel = 0; channel < 3; ++channel) {
-        const auto rmse = [&](const std::vector<float>& picture) {
-            return std::sqrt(3) * difference(p, picture, [&](size_t i, int c) {
-                                      return c == channel ? light(dot(p.place(i) / 10, sideLight()))[c]
-                                                          : picture[3 * i + size_t(c)];
-                                  }).rms;
-        };
-        EXPECT_LT(rmse(result), tolerance::scatterBall);
-        EXPECT_LT(rmse(result), rmse(p.irradiance));
-    }
-}
-
 TEST(Scatter, UniformLightStaysAsItIs) {
     Picture p = scene();
     for (float& e : p.irradiance) e = 0.7f;
@@ -150,18 +130,6 @@ TEST(Scatter, UniformLightStaysAsItIs) {
                 << int(method) << ", " << taps << ", " << scale;
         }
     }
-}
-
-TEST(Scatter, NoLightIsLostOnAPlane) {
-    const double size = 0.25, middle = 16;
-    const Picture p = plane(128, 128, size, [&](double x, double y) {
-        return std::hypot(x - middle, y - middle) < 3 ? Vec3{1, 1, 1} : Vec3{0, 0, 0};
-    });
-    const Result result = run(p, narrow());
-    double before = 0, after = 0;
-    for (size_t i = 0; i < p.irradiance.size(); ++i) before += p.irradiance[i], after += result.scattered[i];
-    EXPECT_NEAR(after, before, tolerance::scatterEnergy * before);
-    EXPECT_GT(result.scattered[3 * p.at(uint32_t(middle / size) + 13, uint32_t(middle / size))], 0.1f);
 }
 
 // Its light comes from blocks of every level, the coarsest too. The sum over a picture of an edge has a
@@ -232,70 +200,6 @@ TEST(Scatter, WeightAndRadiusPerPixel) {
         EXPECT_EQ(small.stats.taps, 0u);
         EXPECT_EQ(small.stats.tilesTapped, 0u);
         EXPECT_EQ(small.scattered, p.irradiance);
-    }
-}
-
-// A pixel of NaN or Inf keeps it, and its neighbours miss its light.
-TEST(Scatter, NoNumberSpreadsNoFurtherThanItself) {
-    for (const auto& [method, taps] : ways) {
-        Picture p = scene();
-        const Result clean = scatterBy(p, 1, controlsOf(method, taps));
-        const size_t bad = p.at(48, 60), worse = p.at(60, 60);
-        p.irradiance[3 * bad] = notANumber;
-        p.positions[3 * worse + 1] = infinity;
-        const Result result = scatterBy(p, 1, controlsOf(method, taps));
-        EXPECT_EQ(result.stats.pixelsInvalid, 2u);
-        EXPECT_TRUE(std::isnan(result.scattered[3 * bad]));
-        for (size_t i = 0; i < p.irradiance.size(); ++i) {
-            const bool kept = i / 3 == bad || i / 3 == worse;
-            if (i == 3 * bad) continue;
-            ASSERT_TRUE(std::isfinite(result.scattered[i])) << i;
-            if (taps || method == separable) continue;  // of few taps one that is missing counts much
-            ASSERT_NEAR(result.scattered[i], kept ? p.irradiance[i] : clean.scattered[i],
-                        tolerance::scatterOneMissing)
-                << int(method) << " " << i;
-        }
-    }
-}
-
-TEST(Scatter, SizesAndRadiiAtTheirEnds) {
-    const auto light = [](double x, double) { return x < 3 ? Vec3{1, 0.5, 0.25} : Vec3{}; };
-    for (const auto& [method, taps] : ways)
-        for (const auto& [width, height] :
-             {std::pair{1u, 1u}, {1u, 40u}, {40u, 1u}, {3u, 2u}, {17u, 33u}, {130u, 20u}})
-            for (float scale : {1e-6f, 1e-3f, 1.0f, 1e3f, 1e6f}) {
-                Picture p = plane(width, height, 0.2, light);
-                p.params.everywhere = 1;
-                const Result result = scatterBy(p, scale, controlsOf(method, taps));
-                for (float v : result.scattered)
-                    ASSERT_TRUE(v >= 0 && v <= 1.00001f) << width << " x " << height << ", " << scale;
-                // Far narrower than a pixel: nothing changes.
-                if (scale < 1e-4f) {
-                    EXPECT_LE(difference(p, result.scattered, p.irradiance).most, 1e-4);
-                }
-            }
-}
-
-// Lines scatter along themselves, and a pixel alone keeps its light.
-TEST(Scatter, LinesAndSinglePixels) {
-    const auto light = [](double x, double y) { return x + y < 6 ? Vec3{1, 1, 1} : Vec3{}; };
-    const Profile profile = Profile::gaussians({{1, {1, 0.6f, 0.3f}}});
-    for (const auto& [method, taps] : ways) {
-        std::vector<float> lines[2];
-        for (int k = 0; k < 2 && taps != 8; ++k) {  // so few may all lie beside a line
-            Picture p = k ? plane(1, 64, 0.2, light) : plane(64, 1, 0.2, light);
-            p.params.everywhere = 1;
-            lines[k] = run(p, alike(profile, 1, controlsOf(method, taps))).scattered;
-            const size_t edge = 3 * 29;
-            EXPECT_GT(lines[k][edge + 3], 0.02f) << int(method) << " " << k;
-            EXPECT_LT(lines[k][edge - 3], 0.98f) << int(method) << " " << k;
-        }
-        const bool turned = method == screen && taps;  // a disk, from pixel to pixel
-        for (size_t i = 0; !turned && i < lines[0].size(); ++i)
-            EXPECT_NEAR(lines[0][i], lines[1][i], 1e-5) << int(method) << ", " << i;
-        Picture single(20, 20);
-        single.set(single.at(7, 9), {1, 2, 3}, {0.5, 0.25, 0.125});
-        EXPECT_EQ(scatterBy(single, 1, controlsOf(method, taps)).scattered, single.irradiance);
     }
 }
 

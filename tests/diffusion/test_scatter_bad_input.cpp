@@ -1,10 +1,7 @@
 // Bad and extreme input, through the shader, for every method: a finite result that is documented, or an
 // error that says what is wrong. And what the controls of scattering accept.
-#include <gtest/gtest.h>
-
 #include "diffusion/lit_ball.h"
-#include "refusal.h"
-#include "tolerances.h"
+#include "test.h"
 
 using namespace lit_ball;
 using pellucid::Shader;
@@ -217,24 +214,8 @@ TEST(ScatterBadInput, MapsWithoutTheObject) {
     }
 }
 
-TEST(ScatterControls, OfMaterialsAreChecked) {
-    const auto set = [](auto field, auto value) {
-        PelMaterial material = pelMaterialDefaults();
-        if constexpr (std::is_array_v<std::remove_reference_t<decltype(material.*field)>>)
-            (material.*field)[2] = value;
-        else
-            material.*field = value;
-        return [material] { Shader(device()).setMaterial(1, material); };
-    };
-    for (uint32_t taps : {8u, 256u}) set(&PelMaterial::scatterTaps, taps)();
-    expectRefused("scatterTaps is 7", set(&PelMaterial::scatterTaps, 7u));
-    expectRefused("scatterTaps is 257", set(&PelMaterial::scatterTaps, 257u));
-    for (float bad : {-0.1f, 1.5f, notANumber, infinity}) {
-        expectRefused("albedoBefore", set(&PelMaterial::albedoBefore, bad));
-        expectRefused("borderColor", set(&PelMaterial::borderColor, bad));
-        if (bad != 1.5f) expectRefused("thinThickness", set(&PelMaterial::thinThickness, bad));
-    }
-    // Of frames: what the method cannot do.
+// Ranges of fields: test_field_ranges.
+TEST(ScatterControls, WhatAMethodCannotDoIsRefused) {
     Frame f(plane(8, 8, 1, [](double, double) { return Vec3{}; }), PEL_SCATTERING_SCREEN);
     f.material.borderColor[0] = 1;
     expectRefused(

@@ -1,9 +1,7 @@
 // What lies before and after the methods of scattering: albedo before and after, light from behind thin
 // sheets, weights, and adding.
-#include <gtest/gtest.h>
-
 #include "diffusion/scatter_scene.h"
-#include "tolerances.h"
+#include "test.h"
 
 using namespace scatter_scene;
 
@@ -136,45 +134,33 @@ TEST(ScatterBlend, AloneAddsAndMultiplies) {
 // What blocks of pixels cannot do is done by a disk of taps, alone too, and the shader says so.
 TEST(ScatterBlend, BlocksBecomeADiskWhereTheyHaveTo) {
     const Picture p = stripes(true);
-    std::vector<float> radii;
-    for (size_t i = 0; i < p.pixels(); ++i) radii.insert(radii.end(), {1, float(i % 96) / 96});
-    const auto alone = [&](uint32_t taps, bool border, bool withRadii) {
+    const auto alone = [&](uint32_t taps, bool border) {
         const PelScatterControls c = controlsOf(screen, taps, border ? 0.7f : 0);
-        Extra extra;
-        if (withRadii) extra.weights = radii;
-        return run(p, {{1, Profile::skin(), 1, c}, {2, Profile::skin(), 1, c}}, extra).scattered;
+        return run(p, {{1, Profile::skin(), 1, c}, {2, Profile::skin(), 1, c}}).scattered;
     };
-    const auto shaded = [&](PelScattering method, uint32_t taps, bool border, bool withRadii) {
+    const auto shaded = [&](PelScattering method, uint32_t taps, bool border) {
         Frame f(p, method);
-        f.options.countPixels = 1;
         f.materials = 2;
         f.material.scatterTaps = taps;
         if (border) std::fill_n(f.material.borderColor, 3, 0.7f);
-        if (withRadii) f.images[PEL_SLOT_SCATTER_WEIGHT] = radii;
         return f.shade();
     };
-    const Shown usual = shaded(byAuto, 0, false, false);
-    for (const auto& [border, withRadii] : {std::pair{true, false}, {false, true}, {true, true}}) {
-        EXPECT_EQ(alone(0, border, withRadii), alone(64, border, withRadii));
-        EXPECT_NE(alone(0, border, withRadii), alone(0, false, false));
-        const Shown automatic = shaded(byAuto, 0, border, withRadii),
-                    disk = shaded(screen, 64, border, withRadii);
-        EXPECT_EQ(automatic.light, disk.light);
-        EXPECT_NE(automatic.light, usual.light);
-        EXPECT_NE(
-            automatic.warnings.find(border ? "64 taps on a disk, for it has a borderColor"
-                                           : "64 taps on a disk, for the scatter weight image has radii"),
-            std::string::npos)
-            << automatic.warnings;
-        EXPECT_EQ(disk.warnings, "");
-        const PelShaderStats& stats = automatic.stats;
-        EXPECT_EQ(stats.scatterTaps, disk.stats.scatterTaps);
-        EXPECT_GT(stats.pixelsByChoice[screen], 0u);
-        EXPECT_EQ(stats.pixelsByChoice[screen], stats.pixelsScattered);
-        EXPECT_EQ(stats.pixelsByChoice[PEL_SCATTERING_NONE], stats.pixelsKept);
-    }
+    const Shown usual = shaded(byAuto, 0, false), automatic = shaded(byAuto, 0, true),
+                disk = shaded(screen, 64, true);
+    EXPECT_EQ(alone(0, true), alone(64, true));
+    EXPECT_NE(alone(0, true), alone(0, false));
+    EXPECT_EQ(automatic.light, disk.light);
+    EXPECT_NE(automatic.light, usual.light);
+    EXPECT_NE(automatic.warnings.find("64 taps on a disk, for it has a borderColor"), std::string::npos)
+        << automatic.warnings;
+    EXPECT_EQ(disk.warnings, "");
+    const PelShaderStats& stats = automatic.stats;
+    EXPECT_EQ(stats.scatterTaps, disk.stats.scatterTaps);
+    EXPECT_GT(stats.pixelsByChoice[screen], 0u);
+    EXPECT_EQ(stats.pixelsByChoice[screen], stats.pixelsScattered);
+    EXPECT_EQ(stats.pixelsByChoice[PEL_SCATTERING_NONE], stats.pixelsKept);
     // scatterTaps alone is not auto's.
-    EXPECT_EQ(shaded(byAuto, 16, false, false).light, usual.light);
+    EXPECT_EQ(shaded(byAuto, 16, false).light, usual.light);
 }
 
 TEST(ScatterBlend, SaysWhatHasNoEffect) {

@@ -1,19 +1,17 @@
 // What scattering leaves out costs nothing: by the counters, and by what OpenCL was asked for.
-#include <gtest/gtest.h>
-
 #include "cl/cl_spy.h"
+#include "device_lanes.h"
 #include "diffusion/lit_ball.h"
 #include "diffusion/lit_scenes.h"
-#include "tolerances.h"
 
 using namespace lit_ball;
 
 namespace {
 
 constexpr const char* scatterKernels[] = {"surface_points", "reduce_surface", "classify_scatter",
-                                          "scatter_level",  "scatter_screen", "gather_points",
-                                          "scatter_disk",   "filter_rows",    "light_texels",
-                                          "light_hidden",   "scatter_light"};
+                                          "scatter_level",  "scatter_bands",  "scatter_screen",
+                                          "gather_points",  "scatter_disk",   "filter_rows",
+                                          "light_texels",   "light_hidden",   "scatter_light"};
 template <class Count>
 uint64_t ofScatterKernels(const Count& count) {
     uint64_t sum = 0;
@@ -30,7 +28,6 @@ Frame stripes(uint32_t side, uint32_t columns, PelScattering method, uint32_t ta
     Frame f(plane(side, side, 0.3, light), method);
     for (size_t i = 0; i < f.picture.pixels(); ++i)
         if (i % side >= columns) f.picture.ids[i] = 0;
-    f.options.countPixels = 1;
     f.material.scatterTaps = taps;
     return f;
 }
@@ -60,7 +57,7 @@ TEST(ScatterCost, MuchOfAFrontLitHeadTakesNoTap) {
         f.images[PEL_SLOT_NORMAL_SHADING] = s.normals;
         f.giveIrradiance = false;
         f.profile = profile;
-        f.lamps = {scenes::lampOf(s)};
+        f.lamps = s.lamps;
         const PelShaderStats stats = f.shade().stats;
         const double all = double(stats.pixelsScattered + stats.pixelsKept),
                      kept = double(stats.pixelsKept) / all;
@@ -105,7 +102,6 @@ TEST(ScatterCost, WithoutLightNothingIsDone) {
     for (Frame f : {stripes(side, side, PEL_SCATTERING_AUTO), stripes(side, side, PEL_SCATTERING_SCREEN),
                     frameOf({nothing}, 32, PEL_SCATTERING_AUTO)}) {
         std::ranges::fill(f.picture.irradiance, 0.0f);
-        f.options.countPixels = 1;
         const Shown dark = f.shade();
         EXPECT_EQ(dark.stats.pixelsScattered, 0u);
         EXPECT_EQ(dark.stats.scatterTaps, 0u);
@@ -121,6 +117,47 @@ TEST(ScatterCost, WithoutLightNothingIsDone) {
     unlit.shade();
     EXPECT_GT(before, 0u);
     EXPECT_EQ(ofScatterKernels(spy::launchesOf), before);
+}
+
+// What OpenCL is asked for, of skin and an eye under two lights with shadow maps: in a frame like the one
+// before, and in a commit and a frame after the lights have changed.
+TEST(ScatterCost, AFrameAfterAnotherTakesFewCommands) {
+    const Device oneLane = lanes::deviceOf(1);
+    const uint32_t side = sized(128u, 64u);
+    Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{0.3, 0.2, 1}), 64),
+                       makeBall(Form::parallel, normalized(Vec3{0.9, 0.2, -0.3}), 64)},
+                      side, PEL_SCATTERING_AUTO);
+    f.giveIrradiance = false;
+    f.materials = 2;
+    f.material.curvatureGain = 1;
+    for (size_t i = 0; i < f.picture.pixels() / 2; ++i) f.picture.ids[i] *= 2;
+    ShownImages images(oneLane, 1, 1);
+    f.shade(images);
+    images.shader.setEye(2, pelEyeDefaults());
+    images.execute();
+    const auto expectFew = [&](const std::string& what, uint64_t launches, uint64_t fills, auto prepare) {
+        const spy::Counts before = spy::counts();
+        const uint64_t programs = spy::programsWith("__kernel");
+        prepare();
+        images.shader.execute();
+        const spy::Counts after = spy::counts();
+        EXPECT_GT(after.launches, before.launches) << what;
+        EXPECT_LE(after.launches - before.launches, launches) << what;
+        EXPECT_LE(after.fills - before.fills, fills) << what;
+        EXPECT_LE(after.waits - before.waits, 1u) << what;
+        EXPECT_EQ(after.buffersMade, before.buffersMade) << what;
+        EXPECT_EQ(spy::programsWith("__kernel"), programs) << what;
+        return after.transfers - before.transfers;
+    };
+    EXPECT_EQ(expectFew("the same", 21, 2, [] {}), 0u);
+    EXPECT_LE(expectFew("other lights", 21, 2,
+                        [&] {
+                            std::vector<PelLight> lights{f.lamps[0].light, f.lamps[1].light};
+                            lights[0].color[0] = 0.5f;
+                            lights[1].toLight[1] = -lights[1].toLight[1];
+                            images.shader.set(lights).commit();
+                        }),
+              3u);
 }
 
 // Tables need no program, launch or memory of the methods that gather.

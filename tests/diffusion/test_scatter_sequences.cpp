@@ -1,10 +1,7 @@
 // Objects keep memory, tables and levels from one picture to the next. Each picture of a sequence must
 // equal, to the bit, what a new object makes of it.
-#include <gtest/gtest.h>
-
 #include "device_lanes.h"
 #include "diffusion/lit_ball.h"
-#include "tolerances.h"
 
 using namespace lit_ball;
 using pellucid::TextureScatter;

@@ -1,14 +1,9 @@
 // pelSurfaceIntegral against brute force, against the closed form on a sphere, and with input that no mesh
 // should hold.
-#include <gtest/gtest.h>
-
-#include <numbers>
-
 #include "diffusion/scatter_scene.h"
 #include "reference/surface_integral.h"
-#include "refusal.h"
 #include "sample/mesh.h"
-#include "tolerances.h"
+#include "test.h"
 
 namespace {
 
@@ -177,18 +172,6 @@ TEST(SurfaceIntegral, UnitRadiusCutAndPlaceOfTheLight) {
         std::copy(cut, cut + 3, desc.cut);
         expectBruteForce(desc, mesh, points, *reference::scaledProfile(truth, 0.2), {0.25f, 0.12f, 0},
                          tolerance::surfaceFar + tolerance::surfaceNear, "cut");
-    }
-}
-
-// Size and position of the mesh change only the unit.
-TEST(SurfaceIntegral, AnyUnit) {
-    const Mesh mesh = sheet(5, 1.0f);
-    const std::vector<float> points = pointsOn(mesh, 40), base = integrate(mesh.desc(), points);
-    for (float k : {1e-6f, 1e-3f, 1e3f, 1e6f}) {
-        const auto [scaled, moved] = inUnit(mesh, points, 1 / k);
-        const std::vector<float> found = integrate(scaled.desc(1 / k), moved);
-        for (size_t i = 0; i < found.size(); ++i)
-            EXPECT_NEAR(found[i], base[i], tolerance::surfaceNear) << "times " << k;
     }
 }
 

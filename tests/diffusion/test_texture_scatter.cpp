@@ -1,10 +1,8 @@
 // Scattering in texture space, against sums over the surface.
-#include <gtest/gtest.h>
-
 #include "diffusion/scatter_scene.h"
 #include "reference/shade_passes.h"
 #include "sample/mesh.h"
-#include "tolerances.h"
+#include "test.h"
 
 using namespace scatter_scene;
 using pellucid::TextureScatter;

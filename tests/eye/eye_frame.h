@@ -1,9 +1,6 @@
 // A frame with an eye: a wall of material 1 in which a ball of material 2 sits, seen along -z.
 #pragma once
-#include <pellucid/pellucid.hpp>
-
-#include <cmath>
-#include <functional>
+#include "test.h"
 
 namespace eye_test {
 

@@ -2,10 +2,7 @@
 #pragma once
 #include "reference/eye.h"
 
-#include <pellucid/pellucid.hpp>
-
-#include <cmath>
-#include <vector>
+#include "tools.h"
 
 namespace eye_test {
 

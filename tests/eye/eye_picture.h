@@ -1,14 +1,7 @@
 // A picture of one eye: the G-buffer of its exact surface, shaded by the library and by the tracer.
 #pragma once
 #include "eye/eye_lut_error.h"
-#include "reference/eye.h"
 #include "reference/shade.h"
-
-#include <pellucid/pellucid.hpp>
-
-#include <cmath>
-#include <map>
-#include <vector>
 
 namespace eye_test {
 

@@ -1,11 +1,6 @@
 // Tables of caustics: against photons in double precision, and what must hold exactly.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-
 #include "eye/eye_lut_error.h"
-#include "tolerances.h"
+#include "test.h"
 
 using namespace pellucid;
 using namespace eye_test;
@@ -47,29 +42,6 @@ TEST(EyeLut, MatchesPhotons) {
     }
 }
 
-// Light that is not refracted: the cosine of its angle, wherever the cornea lets it through.
-TEST(EyeLut, AnIndexOfOneLeavesLightWhereItIs) {
-    PelEye eye = pelEyeDefaults();
-    eye.corneaIndex = eye.aqueousIndex = 1;
-    const PelEyeLutDesc desc = descOf(eye);
-    const std::vector<float> texels = tableOf(desc);
-    const double largest = largestAngle(referenceOf(eye));
-    size_t lit = 0;
-    for (uint32_t z = 0; z < 12; ++z)
-        for (uint32_t j = 0; j < desc.height; ++j)
-            for (uint32_t i = 0; i < desc.width; ++i) {
-                // Along the ray to the limbus' plane.
-                const double angle = largest * z / 31, x = ((i + 0.5) / 32 - 1) * 6, y = (j + 0.5) / 64 * 6;
-                const double below = referenceOf(eye).limbusZ() - referenceOf(eye).irisZ();
-                if (std::hypot(x + below * std::tan(angle), y) > 5.6) continue;
-                ++lit;
-                ASSERT_NEAR(texels[3 * ((size_t(z) * 64 + j) * 64 + i)], std::cos(angle),
-                            tolerance::eyeLutPlain)
-                    << i << ", " << j << ", " << z;
-            }
-    EXPECT_GT(lit, 30000u);
-}
-
 TEST(EyeLut, HasNoScaleAndTheSameBits) {
     PelEyeLutDesc desc = descOf(pelEyeDefaults());
     const std::vector<float> texels = tableOf(desc);
@@ -78,29 +50,6 @@ TEST(EyeLut, HasNoScaleAndTheSameBits) {
                           &desc.irisRadius, &desc.irisConcavity})
         *length *= 4;
     EXPECT_EQ(tableOf(desc), texels);
-}
-
-// The mean over the iris is the flux that arrives, over its area.
-TEST(EyeLut, MeanIsTheFlux) {
-    const PelEye eye = pelEyeDefaults();
-    const PelEyeLutDesc desc = descOf(eye);
-    const std::vector<float> texels = tableOf(desc);
-    const reference::Eye truth = referenceOf(eye);
-    for (const uint32_t z : {0u, 6u, 13u, 19u, 25u}) {
-        double sum = 0, area = 0;
-        for (uint32_t j = 0; j < desc.height; ++j)
-            for (uint32_t i = 0; i < desc.width; ++i) {
-                // The share of the texel that lies on the iris.
-                int on = 0;
-                for (int v = 0; v < 8; ++v)
-                    for (int u = 0; u < 8; ++u)
-                        on += std::hypot((i + (u + 0.5) / 8) / 32 - 1, (j + (v + 0.5) / 8) / 64) < 1;
-                sum += texels[3 * ((size_t(z) * 64 + j) * 64 + i)] * on / 64.0;
-                area += on / 64.0;
-            }
-        const double flux = fluxOnIris(truth, largestAngle(truth) * z / 31, 1200);
-        EXPECT_NEAR(sum / area, flux / (std::acos(-1.0) * 36), tolerance::eyeLutMean);
-    }
 }
 
 // Texels that hold a large part of all light: their sums must not overflow.

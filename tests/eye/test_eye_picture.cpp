@@ -1,10 +1,6 @@
 // The whole picture of an eye against the tracer in double precision.
-#include <gtest/gtest.h>
-
-#include <cstdio>
-
 #include "eye/eye_picture.h"
-#include "tolerances.h"
+#include "test.h"
 
 using namespace pellucid;
 using namespace eye_test;

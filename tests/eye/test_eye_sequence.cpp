@@ -1,9 +1,4 @@
 // One shader through a sequence of eyes and frames: each picture equals that of a new shader to the bit.
-#include <gtest/gtest.h>
-
-#include <memory>
-#include <optional>
-
 #include "eye/eye_frame.h"
 
 using namespace pellucid;

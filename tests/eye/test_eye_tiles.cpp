@@ -1,8 +1,6 @@
-// Eyes cost nothing where there are none, and bad input around them is an error by name or a finite picture.
-#include <gtest/gtest.h>
-
+// Eyes cost nothing where there are none, and bad input of them and around them is an error by name or a
+// finite picture.
 #include "eye/eye_frame.h"
-#include "refusal.h"
 
 using namespace pellucid;
 using eye_test::EyeFrame;
@@ -14,6 +12,13 @@ void expectFinite(const std::vector<float>& picture) {
     for (const float v : picture) wrong += !std::isfinite(v);
     EXPECT_EQ(wrong, 0u);
 }
+
+class EyeSettings : public ::testing::Test {
+  protected:
+    Device device{""};
+    Shader shader{device};
+    EyeSettings() { shader.setMaterial(1, pelMaterialDefaults()); }
+};
 
 }  // namespace
 
@@ -160,43 +165,85 @@ TEST(EyeTiles, NanInImagesOfEyesStaysInItsPixels) {
                 });
 }
 
-// Light of the lids does not reach the eye, nor the other way: by every method that gathers on the screen.
-// Within the sclera it does scatter.
-TEST(EyeTiles, NothingBleedsBetweenEyeAndLid) {
-    EyeFrame frame;
-    const size_t pixels = frame.pixels();
-    const Profile profile = Profile::skin();
-    const auto shade = [&](PelScattering method, float onWall, float onEye) {
-        std::vector<float> light(3 * pixels);
-        for (size_t k = 0; k < pixels; ++k)
-            for (size_t c = 0; c < 3; ++c)
-                light[3 * k + c] = frame.isEye(k) ? (k % frame.width / 4 % 2 ? onEye : 0) : onWall;
-        const Buffer irradiance(frame.device, light);
-        return frame.shade([&](Shader& s) {
-            PelMaterial m = pelMaterialDefaults();
-            m.profile = profile.get();
-            m.scattering = method;
-            s.setMaterial(1, m).setMaterial(2, m).setEye(2, pelEyeDefaults());
-            s.set(PEL_SLOT_IRRADIANCE, frame.image(irradiance));
-        });
+// --- PelEye and PelEyeLutDesc: errors by name for what does not fit together ---
+
+TEST_F(EyeSettings, WrongFieldsAreNamed) {
+    const float nan = std::nanf(""), inf = INFINITY;
+    const std::pair<const char*, std::function<void(PelEye&)>> wrong[] = {
+        {"gaze", [](PelEye& e) { e.gaze[2] = 0; }},
+        {"gaze", [=](PelEye& e) { e.gaze[1] = nan; }},
+        {"up", [](PelEye& e) { e.up[1] = 0; }},
+        {"up", [](PelEye& e) { e.up[1] = 0, e.up[2] = -3; }},  // along gaze
+        {"center", [=](PelEye& e) { e.center[0] = inf; }},
+        {"scleraRadius", [](PelEye& e) { e.scleraRadius = 0; }},
+        {"corneaRadius", [](PelEye& e) { e.corneaRadius = 0; }},
+        {"corneaConic", [=](PelEye& e) { e.corneaConic = nan; }},
+        {"limbusRadius", [](PelEye& e) { e.limbusRadius = 0; }},
+        {"limbusRadius", [](PelEye& e) { e.limbusRadius = 12; }},
+        {"limbusRadius", [](PelEye& e) { e.corneaRadius = 6, e.corneaConic = 0; }},  // a half ball
+        {"limbusWidth", [](PelEye& e) { e.limbusWidth = -1; }},
+        {"limbusDarkening", [](PelEye& e) { e.limbusDarkening = 2; }},
+        {"chamberDepth", [](PelEye& e) { e.chamberDepth = 1; }},
+        {"chamberDepth", [](PelEye& e) { e.chamberDepth = 30; }},
+        {"corneaIndex", [](PelEye& e) { e.corneaIndex = 0.5f; }},
+        {"aqueousIndex", [=](PelEye& e) { e.aqueousIndex = nan; }},
+        {"irisRadius", [](PelEye& e) { e.irisRadius = 7; }},
+        {"irisConcavity", [](PelEye& e) { e.irisConcavity = -1; }},
+        {"pupilRadius", [](PelEye& e) { e.pupilRadius = 6; }},
+        {"pupilRadius", [](PelEye& e) { e.pupilRadius = -1; }},
+        {"texturePupil", [](PelEye& e) { e.texturePupil = 1; }},
+        {"irisColor", [](PelEye& e) { e.irisColor[1] = -0.5f; }},
+        {"tearRoughness", [](PelEye& e) { e.tearRoughness = 0; }},
+        {"wetLineRoughness", [=](PelEye& e) { e.wetLineRoughness = nan; }},
+        {"tearIndex", [](PelEye& e) { e.tearIndex = 0; }},
     };
-    for (const PelScattering method :
-         {PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_SCREEN, PEL_SCATTERING_AUTO}) {
-        SCOPED_TRACE(method);
-        const std::vector<float> dark = shade(method, 0, 1), bright = shade(method, 9, 1),
-                                 off = shade(method, 9, 0);
-        const std::vector<float> sharp = shade(PEL_SCATTERING_NONE, 0, 1);
-        size_t scattered = 0;
-        float bled = 0, wall = 0;  // largest change
-        for (size_t i = 0; i < dark.size(); ++i) {
-            const bool eye = frame.isEye(i / 3);
-            if (eye) bled = std::max(bled, std::abs(dark[i] - bright[i]));
-            scattered += eye && std::abs(dark[i] - sharp[i]) > 0.02f;
-            if (!eye) wall = std::max(wall, std::abs(bright[i] - off[i]));
-        }
-        // Sums over neighbours round by what others there are.
-        EXPECT_LE(bled, 1e-5f);
-        EXPECT_LE(wall, 9e-5f);
-        EXPECT_GT(scattered, 5000u);
+    shader.setEye(1, pelEyeDefaults());
+    for (const auto& [field, change] : wrong) {
+        PelEye eye = pelEyeDefaults();
+        change(eye);
+        expectRefused({"PelEye.", field}, [&] { shader.setEye(1, eye); });
+    }
+}
+
+TEST_F(EyeSettings, AMaterialComesFirst) {
+    expectRefused("pelShaderSetMaterial", [&] { shader.setEye(2, pelEyeDefaults()); });
+    Buffer texels(device, 16 * 16 * 12);
+    const auto texture = imageDesc(texels, PEL_FORMAT_RGB32F, 16, 16);
+    expectRefused("pelShaderSetEye", [&] { shader.setIrisTexture(1, texture); });
+    shader.setEye(1, pelEyeDefaults());
+    shader.setIrisTexture(1, texture).clearIrisTexture(1);
+    expectRefused("square", [&] { shader.setIrisTexture(1, imageDesc(texels, PEL_FORMAT_RGB32F, 16, 8)); });
+    shader.clearEye(1);
+    expectRefused("pelShaderSetEye", [&] { shader.setIrisTexture(1, texture); });
+    expectRefused("six", [&] { shader.setReflectionCube(imageDesc(texels, PEL_FORMAT_RGB32F, 4, 16)); });
+}
+
+TEST_F(EyeSettings, SixtyFourAreTheMost) {
+    for (uint32_t id = 1; id <= 65; ++id) shader.setMaterial(id, pelMaterialDefaults());
+    for (uint32_t id = 1; id <= 64; ++id) shader.setEye(id, pelEyeDefaults());
+    shader.setEye(7, pelEyeDefaults());  // once more
+    expectRefused("64", [&] { shader.setEye(65, pelEyeDefaults()); });
+    shader.clearEye(7).setEye(65, pelEyeDefaults());
+}
+
+TEST_F(EyeSettings, OtherTablesAreRefused) {
+    PelSpecularLutDesc desc = pelSpecularLutDescDefaults();
+    desc.width = desc.height = 4;
+    const Lut other(device, desc);
+    expectRefused("pelEyeLutCreate", [&] { shader.setEye(1, pelEyeDefaults(), other); });
+}
+
+TEST_F(EyeSettings, WrongFieldsOfTablesAreNamed) {
+    const std::pair<const char*, std::function<void(PelEyeLutDesc&)>> wrong[] = {
+        {"width", [](PelEyeLutDesc& d) { d.width = 1; }},
+        {"depth", [](PelEyeLutDesc& d) { d.depth = 257; }},
+        {"corneaRadius", [](PelEyeLutDesc& d) { d.corneaRadius = -1; }},
+        {"irisRadius", [](PelEyeLutDesc& d) { d.irisRadius = 8; }},
+        {"millimetresPerUnit", [](PelEyeLutDesc& d) { d.millimetresPerUnit = 0; }},
+    };
+    for (const auto& [field, change] : wrong) {
+        PelEyeLutDesc desc = pelEyeLutDescDefaults();
+        change(desc);
+        expectRefused({"PelEyeLutDesc.", field}, [&] { Lut(device, desc); });
     }
 }

@@ -1,7 +1,6 @@
 #include <nlohmann/json.hpp>
 
 #include "fuzz/readers.h"
-#include "gltf/gltf_file.h"
 #include "gltf/gltf_import.h"
 #include "gltf/tests/gltf_bytes.h"
 #include "io/lut/profile_file.h"

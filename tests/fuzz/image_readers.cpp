@@ -13,23 +13,6 @@ using namespace pellucid;
 
 namespace {
 
-// What OpenImageIO writes of a small picture, in one of its ways.
-std::string picture(const Folder& folder, const std::string& extension, int channels, const std::string& how,
-                    int tile = 0, OIIO::TypeDesc type = OIIO::TypeDesc::UINT8) {
-    const std::string file = folder / ("p." + extension);
-    OIIO::ImageSpec spec(19, 13, channels, type);
-    if (!how.empty()) spec.attribute("compression", how);
-    if (tile) spec.tile_width = spec.tile_height = tile;
-    spec.attribute("DateTime", "");
-    std::vector<float> pixels(size_t(19 * 13) * size_t(channels));
-    for (size_t i = 0; i < pixels.size(); ++i) pixels[i] = float(i * 37 % 101) / 101;
-    auto out = OIIO::ImageOutput::create(file);
-    if (!out || !out->open(file, spec) || !out->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) ||
-        !out->close())
-        throw std::runtime_error("no seed " + extension + " " + how + ": " + OIIO::geterror());
-    return bytesOf(file);
-}
-
 std::string parts(const Folder& folder) {
     const std::string file = folder / "parts.exr";
     std::vector<OIIO::ImageSpec> specs(2, OIIO::ImageSpec(9, 7, 3, OIIO::TypeDesc::HALF));
@@ -79,20 +62,31 @@ std::string smallLut(const Folder& folder, const Lut& lut) {
 
 }  // namespace
 
-std::string picture(const Folder& folder, const std::string& extension, int channels) {
-    return picture(folder, extension, channels, "");
+std::string picture(const Folder& folder, const std::string& extension, int channels, const std::string& how,
+                    int tile, const char* type) {
+    const std::string file = folder / ("p." + extension);
+    OIIO::ImageSpec spec(19, 13, channels, OIIO::TypeDesc(type));
+    if (!how.empty()) spec.attribute("compression", how);
+    if (tile) spec.tile_width = spec.tile_height = tile;
+    spec.attribute("DateTime", "");
+    std::vector<float> pixels(size_t(19 * 13) * size_t(channels));
+    for (size_t i = 0; i < pixels.size(); ++i) pixels[i] = float(i * 37 % 101) / 101;
+    auto out = OIIO::ImageOutput::create(file);
+    if (!out || !out->open(file, spec) || !out->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) ||
+        !out->close())
+        throw std::runtime_error("no seed " + extension + " " + how + ": " + OIIO::geterror());
+    return bytesOf(file);
 }
 
 void addImages(std::vector<Reader>& all, const Folder& folder) {
-    std::vector<std::string> exrs = {parts(folder),
-                                     picture(folder, "exr", 4, "zip", 8, OIIO::TypeDesc::HALF)};
+    std::vector<std::string> exrs = {parts(folder), picture(folder, "exr", 4, "zip", 8, "half")};
     for (const char* how : {"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"}) {
-        exrs.push_back(picture(folder, "exr", 3, how, 0, OIIO::TypeDesc::HALF));
-        exrs.push_back(picture(folder, "exr", 1, how, 0, OIIO::TypeDesc::FLOAT));
+        exrs.push_back(picture(folder, "exr", 3, how, 0, "half"));
+        exrs.push_back(picture(folder, "exr", 1, how, 0, "float"));
     }
     all.push_back(image("exr", exrs));
     all.push_back(image("png", {picture(folder, "png", 1), picture(folder, "png", 3),
-                                picture(folder, "png", 4, "", 0, OIIO::TypeDesc::UINT16)}));
+                                picture(folder, "png", 4, "", 0, "uint16")}));
     all.push_back(image("jpg", {picture(folder, "jpg", 1), picture(folder, "jpg", 3)}));
     all.push_back(image(
         "tga", {picture(folder, "tga", 1), picture(folder, "tga", 3, "rle"), picture(folder, "tga", 4)}));

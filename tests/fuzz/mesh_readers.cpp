@@ -5,7 +5,6 @@
 
 #include "fuzz/readers.h"
 #include "io/file_error.h"
-#include "io/mesh/mesh_file.h"
 #include "io/mesh/mesh_parts.h"
 
 namespace fuzz {

@@ -1,9 +1,6 @@
 #include "fuzz/readers.h"
 
-#include <nlohmann/json.hpp>
-
 #include "batch/batch_manifest.h"
-#include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/lut/profile_file.h"
 #include "io/scene/scene_file.h"

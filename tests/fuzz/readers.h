@@ -9,24 +9,15 @@
 #include <iterator>
 #include <nlohmann/json_fwd.hpp>
 #include <pellucid/pellucid.hpp>
+#include <random>
 #include <sstream>
 
 namespace fuzz {
 
-// Numbers by a counter [Steele, Lea, Flood 2014, SplitMix]: any of a sequence without those before it.
-class Random {
-  public:
-    explicit Random(uint64_t seed) : state_(seed) {}
-    uint64_t next() {
-        uint64_t z = state_ += 0x9e3779b97f4a7c15u;
-        z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-        return z ^ z >> 31;
-    }
+struct Random : std::mt19937_64 {
+    using mersenne_twister_engine::mersenne_twister_engine;
+    uint64_t next() { return (*this)(); }
     size_t below(size_t limit) { return limit ? size_t(next() % limit) : 0; }
-
-  private:
-    uint64_t state_;
 };
 
 // One of `files`, changed in one to eight places: bits, bytes and whole numbers that are often special,
@@ -85,8 +76,9 @@ inline std::vector<std::string> wordsOf(const std::string& text) {
     return {std::istream_iterator<std::string>(words), {}};
 }
 
-// A small 8-bit picture, written by OpenImageIO.
-std::string picture(const Folder& folder, const std::string& extension, int channels);
+// A small picture, as OpenImageIO writes it: by the compression `how`, in tiles of that side.
+std::string picture(const Folder& folder, const std::string& extension, int channels,
+                    const std::string& how = "", int tile = 0, const char* type = "uint8");
 
 void addMeshes(std::vector<Reader>& all, const Folder& folder);
 void addImages(std::vector<Reader>& all, const Folder& folder);

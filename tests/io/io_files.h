@@ -1,12 +1,7 @@
 // Files for the tests of host/io and of the command line.
 #pragma once
-#include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
+#include "test.h"
 
 // A folder of its own for each test, removed afterwards.
 class FolderTest : public ::testing::Test {

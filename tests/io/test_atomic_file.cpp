@@ -8,14 +8,9 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-#include <atomic>
-#include <cerrno>
-#include <cstring>
 #include <regex>
-#include <thread>
 
 #include "io/atomic_file.h"
-#include "io/file_error.h"
 #include "io/input_file.h"
 #include "io_files.h"
 
@@ -46,7 +41,9 @@ int failing(std::atomic<int>& with) {
 extern "C" int fsync(int fd) {
     const bool folder = isFolder(fd);
     ++(folder ? folderSyncs : fileSyncs);
-    if (folder) EXPECT_GT(renames.load(), 0) << "the folder is flushed before the name is in it";
+    if (folder) {
+        EXPECT_GT(renames.load(), 0) << "the folder is flushed before the name is in it";
+    }
     if (folder ? failFolderSync : failFileSync) return failing(folder ? failFolderSync : failFileSync);
     return next<int(int)>("fsync")(fd);
 }

@@ -1,18 +1,11 @@
 // BC6H: what the format can hold comes back exactly, everything else within what its numbers allow. Readers
 // that are not ours: OpenImageIO here, Python's in tests/foreign.
-#include "io/lut/bc6h.h"
-
 #include <OpenImageIO/imageio.h>
-#include <gtest/gtest.h>
-
-#include <random>
-#include <set>
 
 #include "io/image/texture_file.h"
 #include "io/lut/bc6h_block.h"
 #include "io/lut/lut_file.h"
 #include "io_files.h"
-#include "tolerances.h"
 
 using namespace pellucid;
 using io::TexelError;
@@ -35,24 +28,25 @@ TexelError errorOf(uint32_t width, uint32_t height, const Halves& texels) {
 
 }  // namespace
 
-TEST(Bc6h, EveryModeAndPartitionIsReadAsItIsWritten) {
+TEST(Bc6h, EveryModeIsReadAsItIsWritten) {
     std::mt19937 random(1);
     std::set<int> modes;
     size_t written = 0;
     for (int i = 0; i < 20000; ++i) {
         io::bc6h::Bytes bytes;
         for (uint8_t& b : bytes) b = uint8_t(random());
+        bytes[0] |= 3;  // as in all modes with one line
         const auto block = io::bc6h::unpack(bytes);
         if (!block) {
             EXPECT_EQ(bytes[0] & 0x13, 0x13) << "only these codes are reserved";
             continue;
         }
         modes.insert(block->mode);
-        if (!io::bc6h::fitsMode(io::bc6h::mode(block->mode), block->ends)) continue;  // wrapped round
+        if (!io::bc6h::fitsMode(io::bc6h::modes[block->mode], block->ends)) continue;  // wrapped round
         ++written;
         EXPECT_EQ(io::bc6h::pack(*block), bytes) << "mode " << block->mode;
     }
-    EXPECT_EQ(modes.size(), 14u);
+    EXPECT_EQ(modes.size(), 4u);
     EXPECT_GT(written, 5000u);
 }
 
@@ -63,15 +57,15 @@ TEST(Bc6h, AConstantIsExact) {
     }
 }
 
-TEST(Bc6h, TwoColoursAreExactInEachPartition) {
-    for (int p = 0; p < io::bc6h::partitionCount; ++p) {
+TEST(Bc6h, TwoColoursAreExactInAnyPattern) {
+    for (int pattern = 1; pattern < 0xffff; pattern += 2047) {
         Halves texels;
-        for (int i = 0; i < 16; ++i)  // values that 6 bits hold
+        for (int i = 0; i < 16; ++i)  // values that 10 bits hold
             for (int c = 0; c < 3; ++c) {
-                const int q = io::bc6h::inSecond(p, i) ? 20 + 3 * c : 40 - 7 * c;
-                texels.push_back(io::bc6h::halfOf(io::bc6h::unquantised(q, 6)));
+                const int q = pattern >> i & 1 ? 320 + 48 * c : 640 - 112 * c;
+                texels.push_back(io::bc6h::halfOf(io::bc6h::unquantised(q, 10)));
             }
-        EXPECT_EQ(io::decodeBc6h(4, 4, io::encodeBc6h(4, 4, texels)), texels) << "partition " << p;
+        EXPECT_EQ(io::decodeBc6h(4, 4, io::encodeBc6h(4, 4, texels)), texels) << "pattern " << pattern;
     }
 }
 
@@ -82,40 +76,6 @@ TEST(Bc6h, TablesKeepTheirValues) {
         EXPECT_LE(small.max, tolerance::bc6hMax);
         EXPECT_LE(small.rms, tolerance::bc6hRms);
         EXPECT_LT(large.rms, 0.8 * small.rms) << "smoother blocks are better held";
-    }
-}
-
-// Each block, on its own, is at least as near as one line through its two extreme texels, quantised as the
-// coarsest one-line mode would.
-TEST(Bc6h, NoBlockIsWorseThanTheObviousOne) {
-    const uint32_t side = 64;
-    const Halves texels = table(side, side),
-                 found = io::decodeBc6h(side, side, io::encodeBc6h(side, side, texels));
-    const auto square = [](uint16_t a, uint16_t b) {
-        return std::pow(double(io::bc6h::linearValue(a)) - io::bc6h::linearValue(b), 2);
-    };
-    const auto end = [](uint16_t half) { return io::bc6h::unquantised(int(half * 64 / 31) >> 6, 10); };
-    for (uint32_t block = 0; block < side * side / 16; ++block) {
-        std::vector<size_t> at;  // the first halves of its texels
-        for (uint32_t i = 0; i < 16; ++i)
-            at.push_back(3 * (size_t(block / 16 * 4 + i / 4) * side + block % 16 * 4 + i % 4));
-        const auto less = [&](size_t a, size_t b) { return texels[a] < texels[b]; };
-        const size_t low = *std::ranges::min_element(at, less), high = *std::ranges::max_element(at, less);
-        double ours = 0, obvious = 0;
-        for (const size_t texel : at) {
-            double best = 1e9;
-            for (const int weight : io::bc6h::weights(1)) {
-                double sum = 0;
-                for (size_t c = 0; c < 3; ++c)
-                    sum += square(io::bc6h::halfOf(io::bc6h::interpolated(end(texels[low + c]),
-                                                                          end(texels[high + c]), weight)),
-                                  texels[texel + c]);
-                best = std::min(best, sum);
-            }
-            obvious += best;
-            for (size_t c = 0; c < 3; ++c) ours += square(found[texel + c], texels[texel + c]);
-        }
-        EXPECT_LE(ours, obvious * (1 + 1e-6)) << block;
     }
 }
 
@@ -175,24 +135,22 @@ TEST_F(Bc6hFile, OpenImageIoReadsTheSame) {
     expectSame(found, expected);
 }
 
-// Blocks that our encoder would never write: random bits in each of the 14 modes, and in the reserved ones,
+// Blocks that our encoder would never write: random bits in each of its four modes, and in the reserved ones,
 // which are black.
 TEST_F(Bc6hFile, OpenImageIoReadsRandomBlocksOfEveryMode) {
-    constexpr int across = 32, down = 18 * 4;  // a row of blocks for each code, four times
-    constexpr uint8_t codes[] = {0x00, 0x01, 0x02, 0x06, 0x0A, 0x0E, 0x12, 0x16, 0x1A,
-                                 0x1E, 0x03, 0x07, 0x0B, 0x0F, 0x13, 0x17, 0x1B, 0x1F};
+    constexpr int across = 32, down = 8 * 4;  // a row of blocks for each code, four times
+    constexpr uint8_t codes[] = {0x03, 0x07, 0x0B, 0x0F, 0x13, 0x17, 0x1B, 0x1F};
     std::mt19937 random(7);
     std::vector<uint8_t> blocks(size_t(across) * down * 16);
     std::set<int> modes;
     for (size_t b = 0; b < blocks.size() / 16; ++b) {
         io::bc6h::Bytes bytes;
         for (uint8_t& byte : bytes) byte = uint8_t(random());
-        const uint8_t code = codes[b / across % std::size(codes)], bits = code < 2 ? 2 : 5;
-        bytes[0] = uint8_t((bytes[0] & ~((1 << bits) - 1)) | code);
+        bytes[0] = uint8_t((bytes[0] & ~31) | codes[b / across % std::size(codes)]);
         if (const auto block = io::bc6h::unpack(bytes)) modes.insert(block->mode);
         std::copy(bytes.begin(), bytes.end(), blocks.begin() + std::ptrdiff_t(16 * b));
     }
-    EXPECT_EQ(modes.size(), 14u);
+    EXPECT_EQ(modes.size(), 4u);
     io::writeDds(path("r.dds"), {io::Texture::Format::Bc6hUnsigned, 4 * across, 4 * down, blocks});
     const std::vector<float> found = foreignTexels(path("r.dds"), 4 * across, 4 * down);
     if (found.empty()) GTEST_SKIP() << "this OpenImageIO reads no BC6H: " << OIIO::geterror();

@@ -1,14 +1,9 @@
 // The library and the scene file accept and refuse the same values of each field (pellucid_fields.h), at both
 // ends of its range and beyond.
-#include <cmath>
-#include <limits>
-#include <type_traits>
-
 #include "fields/field_ranges.h"
 #include "io/file_error.h"
 #include "io/scene/scene_file.h"
 #include "io_files.h"
-#include "pellucid/pellucid.hpp"
 
 using namespace pellucid;
 

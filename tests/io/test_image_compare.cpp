@@ -1,16 +1,8 @@
 // Numbers of `pellucid compare`: colour differences against published pairs, errors against sums by hand,
 // sub-sets on a made picture.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <random>
-
-#include "io/file_error.h"
 #include "io/image/image_compare.h"
 #include "io/image/image_file.h"
 #include "io_files.h"
-#include "tolerances.h"
 
 namespace io = pellucid::io;
 

@@ -3,12 +3,6 @@
 // with RLE and with ZIP by the C library, all others by the C++ one.
 #include <OpenImageIO/imageio.h>
 
-#include <bit>
-#include <cmath>
-#include <cstring>
-#include <limits>
-
-#include "io/file_error.h"
 #include "io/image/image_file.h"
 #include "io_files.h"
 

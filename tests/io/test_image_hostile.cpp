@@ -3,10 +3,6 @@
 #include <OpenImageIO/imageio.h>
 #include <sys/resource.h>
 
-#include <algorithm>
-#include <bit>
-
-#include "io/file_error.h"
 #include "io/image/image_file.h"
 #include "io/image/image_format.h"
 #include "io/lut/lut_file.h"

@@ -1,7 +1,4 @@
 // host/io: meshes with parts, their subdivision and the cut of a neck; the heads that come with the project.
-#include <algorithm>
-#include <cmath>
-
 #include "io/file_error.h"
 #include "io/mesh/mesh_parts.h"
 #include "io_files.h"

@@ -1,8 +1,4 @@
 // host/io: tone mapping, the colour map, and contact sheets.
-#include <algorithm>
-#include <cmath>
-
-#include "io/image/color_map.h"
 #include "io/image/image_compare.h"
 #include "io/image/image_file.h"
 #include "io/image/picture.h"

@@ -1,8 +1,6 @@
-// Builds without OpenImageIO read and write PNG by libpng: the same pixels, channels and refusals as with it.
+// PNG files by libpng: the same pixels, channels and refusals as by OpenImageIO.
 #include <OpenImageIO/imageio.h>
-#include <gtest/gtest.h>
 
-#include "io/file_error.h"
 #include "io/image/picture_library.h"
 #include "io/io_files.h"
 

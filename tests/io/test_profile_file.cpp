@@ -1,12 +1,8 @@
 // Profile files, the library of materials, and fits of Gaussians.
-#include <algorithm>
-#include <cmath>
-
 #include "io/file_error.h"
 #include "io/lut/profile_file.h"
 #include "io_files.h"
 #include "profile_fit/profile_fit.h"
-#include "tolerances.h"
 
 using namespace pellucid;
 
@@ -75,6 +71,7 @@ TEST(ProfileFile, MistakesHaveTheirLine) {
         {head + "kind = \"burley\"\nmean_free_path = [1, 2, -3]\nalbedo = [0, 0, 0]\n",
          "p.toml:5: ", "more than 0"},
         {head + "kind = \"skin\"\ncolour = 3\n", "p.toml:5: ", "colour"},
+        {head + "kind = \"skin\"\nmelanin = 0.6\n", "p.toml:5: ", "melanin"},
         {head + "kind = \"gaussians\"\n[[gaussian]]\nvariance = 1\nweight = [1, 1, 0]\n",
          "p.toml:1: ", "blue"},
         {"name=\"x\"\nsource=\"s\"\nkind=\"dipole\"\n", "p.toml:1: ", "unit"},
@@ -140,4 +137,15 @@ TEST(ProfileFit, SixGaussiansGiveSkinBack) {
             EXPECT_NEAR(fit.gaussians[g].weight[c], weight[g][c], tolerance::fittedAgain) << g;
     }
     EXPECT_LT(*std::max_element(fit.error, fit.error + 3), tolerance::floatWeights);
+}
+
+TEST(ProfileFile, SkinThatSaysWhatItIsMadeOfIsComputed) {
+    const std::string skin = "name = \"cheek\"\nsource = \"here\"\nkind = \"skin\"\n";
+    EXPECT_EQ(io::parseProfile("p.toml", skin).profile.info().kind, PEL_PROFILE_SKIN);
+    PelSkin own = pelSkinDefaults();
+    own.melanin = 0.2f;
+    own.oxygenation = 0.5f;
+    const io::ProfileFile file = io::parseProfile("p.toml", skin + "melanin = 0.2\noxygenation = 0.5\n");
+    EXPECT_EQ(file.kind, "skin-layers");
+    EXPECT_EQ(file.profile.info().radius, Profile::skinLayers(own).info().radius);
 }

@@ -1,10 +1,6 @@
 // host/io/scene/scene_file.h: the example of the documentation, round trip, and one message for each kind of
 // mistake.
-#include <algorithm>
-#include <cstring>
-
 #include "fields/field_ranges.h"
-#include "io/file_error.h"
 #include "io/image/image_file.h"
 #include "io/scene/scene_file.h"
 #include "io_files.h"

@@ -1,8 +1,4 @@
 // DDS and KTX2: every header field at its place, texels as they were.
-#include <gtest/gtest.h>
-
-#include <cstring>
-
 #include "io/lut/lut_file.h"
 #include "io_files.h"
 

@@ -1,17 +1,9 @@
 // Descriptions of look-up tables, and their comparison with the oracle's numbers, for tests.
 #pragma once
-#include <gtest/gtest.h>
-
-#include <pellucid/pellucid.hpp>
-
-#include <cmath>
-#include <random>
-#include <utility>
-#include <vector>
+#include "test.h"
 
 #include "npy.h"
 #include "reference/lut.h"
-#include "tolerances.h"
 
 namespace fixture {
 

@@ -1,7 +1,5 @@
 // PelLut through the public interface: descriptions, sizes, texels from outside, errors.
 #include "lut_cases.h"
-#include "refusal.h"
-#include "test_size.h"
 
 using namespace pellucid;
 
@@ -147,18 +145,4 @@ TEST(LutApi, TexelsFromOutsideComeBackBitForBit) {
     wrong = info;
     wrong.shadow.widthMin = -1;
     EXPECT_THROW(Lut(device(), wrong, texels), Error);
-}
-
-TEST(LutApi, SubmittedWorkFinishesWithItsEvent) {
-    const PelCurvatureLutDesc desc = sizedTable(pelCurvatureLutDescFaceWorks());
-    const auto expected = Lut(device(), desc).read<float>(PEL_LUT_FLOAT);
-    PelEvent made = nullptr, read = nullptr;
-    const PelSubmit make{nullptr, 0, &made};
-    const Lut lut(device(), desc, &make);
-    std::vector<float> texels(expected.size());
-    const PelSubmit then{&made, 1, &read};
-    check(pelLutRead(lut.get(), PEL_LUT_FLOAT, texels.data(), texels.size() * sizeof(float), &then));
-    Event(read).wait();
-    EXPECT_EQ(texels, expected);
-    pelEventRelease(made);
 }

@@ -1,7 +1,5 @@
 // Encodings of curvature and shadow tables against the oracle's exact steps, and FaceWorks' tables.
-#include "half_bits.h"
 #include "lut_cases.h"
-#include "test_size.h"
 
 using namespace pellucid;
 

@@ -1,9 +1,6 @@
 // Profiles against the oracle's, the numbers of the library's materials, which stand here a second time, and
 // errors of descriptions.
-#include <set>
-
 #include "lut_cases.h"
-#include "refusal.h"
 
 using namespace pellucid;
 

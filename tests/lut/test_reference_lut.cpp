@@ -1,91 +1,17 @@
-// The oracle's look-up tables by Boost.Math's quadrature of the definitions, their limits, and FaceWorks'
-// encodings in 8 bits. test_lut_encodings compares the library with tables that were integrated elsewhere.
-#include <gtest/gtest.h>
-
-#include <boost/math/quadrature/gauss_kronrod.hpp>
-#include <random>
+// What the oracle's tables are made of: the published ring, FaceWorks' encodings in 8 bits, Beckmann's
+// distribution, energy and widths of profiles, published numbers. test_lut_encodings compares the library
+// with tables that were integrated elsewhere.
+#include "test.h"
 
 #include "reference/lut.h"
 #include "reference/quadrature.h"
-#include "tolerances.h"
 
 using namespace reference;
 namespace {
 
-constexpr Form allForms[] = {Form::arc, Form::ring, Form::halfRing, Form::sphere, Form::pennerRing};
 const double someU[] = {-1, -0.9, -0.5, -0.1, -1e-3, 0, 1e-3, 0.1, 0.3, 0.7, 0.99, 1};
 
-const std::pair<const char*, ProfilePtr> profiles[] = {
-    {"skin", skinProfile()},
-    {"dipole", dipoleProfile({0.032, 0.17, 0.48}, {0.74, 0.88, 1.01}, 1.3)},
-    {"table",
-     tableProfile({0, 0.5, 1, 2, 4}, {{9, 8, 7}, {4, 3, 2}, {1, .5, .2}, {.2, .05, .01}, {0, 0, 0}})},
-    {"burley", burleyProfile({3.67, 1.37, 0.68}, {0.9, 0.6, 0.4})}};
-
 using Rule = boost::math::quadrature::gauss_kronrod<double, 61>;
-
-// The definitions as written, each smooth stretch by Boost's 61-point rule, no folding and no substitution.
-double boostCurvature(Form form, const Profile& profile, int channel, double u, double r) {
-    const double theta = std::acos(u);
-    const double end = form == Form::arc        ? std::min(pi * r, profileCut(profile)) / r
-                       : form == Form::halfRing ? pi / 2
-                                                : pi;
-    std::vector<double> borders{0};
-    for (double l : profile.lengths()) {
-        const double angle = form == Form::arc ? l / r : l < 2 * r ? 2 * std::asin(l / (2 * r)) : pi;
-        borders.push_back(angle);
-        borders.push_back(-angle);
-    }
-    for (int n = -3; n <= 3; ++n)
-        for (double sign : {-1, 1}) borders.push_back(sign * theta + pi / 2 + n * pi);
-    auto over = [&](double begin, auto f) {
-        const auto points = panelPoints(begin, end, borders);
-        double sum = 0;
-        for (size_t i = 0; i + 1 < points.size(); ++i)
-            sum += Rule::integrate(f, points[i], points[i + 1], 8, 1e-12);
-        return sum;
-    };
-    if (form == Form::arc)
-        return over(-end, [&](double x) {
-            return std::max(0.0, std::cos(theta - x)) * profile.lineSpread(r * x)[channel] * r;
-        });
-    auto chord = [&](double x) {
-        const double d = 2 * r * std::abs(std::sin(x / 2));
-        return (form == Form::pennerRing ? profile.lineSpread(d) : profile.radial(d))[channel];
-    };
-    if (form != Form::sphere)
-        return over(-end, [&](double x) { return std::max(0.0, std::cos(theta + x)) * chord(x); }) /
-               over(-end, chord);
-    auto mean = [&](double psi) {
-        const double a = u * std::cos(psi), b = std::sin(theta) * std::sin(psi);
-        if (std::abs(a) >= b) return std::max(a, 0.0);
-        return (a * std::acos(-a / b) + std::sqrt(b * b - a * a)) / pi;
-    };
-    return over(0, [&](double psi) { return mean(psi) * chord(psi) * std::sin(psi); }) /
-           over(0, [&](double psi) { return chord(psi) * std::sin(psi); });
-}
-
-TEST(ReferenceLut, EveryFormAndProfileEqualsBoostQuadrature) {
-    std::mt19937 random(7);
-    for (const auto& [name, profile] : profiles)
-        for (Form form : allForms) {
-            const bool ringLike = form == Form::ring || form == Form::halfRing;
-            if (profile->singularAtZero() && ringLike) continue;  // no integral to compare with
-            const bool nested = form == Form::arc && name != std::string("skin");
-            for (int i = 0; i < (nested ? 1 : 12); ++i) {
-                const double u = std::uniform_real_distribution<>(-1, 1)(random);
-                const double r = std::pow(10, std::uniform_real_distribution<>(-0.3, 2.5)(random));
-                const Rgb d = curvatureD(form, *profile, u, r);
-                // Boost integrates the singular profile's logarithm without a substitution, so its tolerance
-                // is larger.
-                const double bound =
-                    profile->singularAtZero() ? tolerance::oracleSingular : tolerance::oracleQuadrature;
-                for (int c = 0; c < (nested ? 1 : 3); ++c)
-                    EXPECT_NEAR(d[c], boostCurvature(form, *profile, c, u, r), bound)
-                        << name << " form " << int(form) << " u " << u << " r " << r;
-            }
-        }
-}
 
 // The published listing: distances on the ring weighed by sums of one-dimensional Gaussians, 1/sqrt(2 pi v)
 // exp(-d^2/2v), added up at even angles [Penner, SIGGRAPH 2011]; trapezoids over a circle converge faster
@@ -110,58 +36,6 @@ TEST(ReferenceLut, PennerRingIsThePublishedOne) {
             }
             EXPECT_NEAR(curvatureD(Form::pennerRing, *skin, u, r).x, sum / weights, tolerance::oracleListing)
                 << "u " << u << " r " << r;
-        }
-}
-
-TEST(ReferenceLut, HoldsFromATwentiethToTenThousandSigma) {
-    const auto skin = skinProfile();
-    const double sigma = 2.722;
-    for (Form form : allForms)
-        for (double u : someU) {
-            // Flat: nothing scatters across a terminator that is far away. Next to it D - max0(u) is of order
-            // sigma/r.
-            const double scale = 1e4;
-            const Rgb flat = curvatureD(form, *skin, u, scale * sigma);
-            const Rgb kept = form == Form::arc ? curvatureD(form, *skin, 1, 1e9) : Rgb{1, 1, 1};
-            for (int c = 0; c < 3; ++c)
-                EXPECT_NEAR(flat[c], max0(u) * kept[c], tolerance::flatLimit)
-                    << "u " << u << " form " << int(form);
-            const Rgb tiny = curvatureD(form, *skin, u, 0.05 * sigma);
-            for (int c = 0; c < 3; ++c) {
-                EXPECT_GE(tiny[c], 0);
-                EXPECT_LE(tiny[c], 1);
-            }
-        }
-    const ProfilePtr one = gaussiansProfile({{1, {1, 1, 1}}});
-    // A sphere much smaller than the profile is lit evenly, as is the ring: 1/4 and 1/pi.
-    EXPECT_NEAR(curvatureD(Form::sphere, *one, 0.7, 1e-4).x, 0.25, tolerance::smallRadiusLimit);
-    EXPECT_NEAR(curvatureD(Form::ring, *one, 0.7, 1e-4).x, 1 / pi, tolerance::smallRadiusLimit);
-}
-
-TEST(ReferenceShadowLut, EveryProfileEqualsBoostQuadrature) {
-    std::mt19937 random(11);
-    for (const auto& [name, profile] : profiles)
-        for (int i = 0; i < 2; ++i) {
-            const double w = std::uniform_real_distribution<>(0, 1)(random);
-            const double q = std::uniform_real_distribution<>(0.01, 0.12)(random) / profile->radius();
-            const double k = std::uniform_real_distribution<>(1, 12)(random), p = shadowPosition(w);
-            const double cut = profileCut(*profile);
-            auto integrand = [&](double s) {
-                const double t = std::clamp((p + s * q) * k + (1 - k) / 2, 0.0, 1.0);
-                return t * t * (3 - 2 * t) * profile->lineSpread(s).y;
-            };
-            std::vector<double> borders{-cut, 0, cut, (0.5 - 0.5 / k - p) / q, (0.5 + 0.5 / k - p) / q};
-            for (double l : profile->lengths()) {
-                borders.push_back(l);
-                borders.push_back(-l);
-            }
-            std::sort(borders.begin(), borders.end());
-            double sum = 0;
-            for (size_t j = 0; j + 1 < borders.size(); ++j)
-                if (borders[j] >= -cut && borders[j + 1] <= cut && borders[j + 1] > borders[j])
-                    sum += Rule::integrate(integrand, borders[j], borders[j + 1], 8, 1e-12);
-            EXPECT_NEAR(shadowT(*profile, w, q, k).y, sum,
-                        profile->singularAtZero() ? tolerance::oracleSingular : tolerance::oracleQuadrature);
         }
 }
 
@@ -201,6 +75,88 @@ TEST(ReferenceBeckmann, IsNormalisedOverTheHemisphereAndHasItsLimits) {
     EXPECT_NEAR(beckmannEncoded(0.9, 0.3),
                 0.5 * std::pow(std::exp(-(1 / 0.81 - 1) / 0.09) / (0.09 * 0.6561), 0.1),
                 tolerance::oracleExact);
+}
+
+// --- profiles ---
+
+ProfilePtr testDipole() {
+    // Skin1 of Jensen et al. 2001, table 1, per mm.
+    return dipoleProfile({0.032, 0.17, 0.48}, {0.74, 0.88, 1.01}, 1.3);
+}
+ProfilePtr testTable() {
+    return tableProfile({0.1, 0.5, 1, 2, 4},
+                        {{9, 8, 7}, {4, 3, 2}, {1, 0.5, 0.2}, {0.2, 0.05, 0.01}, {0, 0, 0}});
+}
+std::vector<std::pair<const char*, ProfilePtr>> allProfiles() {
+    return {{"skin", skinProfile()},
+            {"gaussians", gaussiansProfile({{0.3, {2, 1, 0.5}}, {4, {1, 1, 3}}})},
+            {"burley", burleyProfile({3.67, 1.37, 0.68}, {0.9, 0.6, 0.4})},
+            {"dipole", testDipole()},
+            {"table", testTable()}};
+}
+
+TEST(ReferenceQuadrature, HandlesKinksAndSingularEnds) {
+    EXPECT_NEAR(integrate<double>([](double x) { return std::abs(x - 0.3); }, {0, 1}), 0.29,
+                tolerance::oracleQuadrature);
+    EXPECT_NEAR(integrate<double>([](double x) { return -std::log(x); }, {0, 1}), 1,
+                tolerance::oracleQuadrature);
+    EXPECT_THROW(integrate<double>([](double x) { return 1 / (x - 0.5); }, {0, 1}), std::runtime_error);
+}
+
+TEST(ReferenceProfile, RadialIntegratesToOneOverThePlane) {
+    for (const auto& [name, profile] : allProfiles()) {
+        const Rgb energy = enclosedEnergy(*profile, profile->lengths().back());
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(energy[c], 1, tolerance::oracleEnergy) << name;
+    }
+}
+
+TEST(ReferenceProfile, LineSpreadIntegratesToOneAndHasTheRmsWidthOfRadial) {
+    for (const auto& [name, profile] : allProfiles()) {
+        const Rgb width = rmsWidth(*profile);
+        for (int c = 0; c < 3; ++c) {
+            // s = x³ tames the logarithm of the singular profile at the centre.
+            auto moment = [&](int power) {
+                auto borders = profile->lengths();
+                for (double& b : borders) b = std::cbrt(b);
+                return 2 * integrate<double>(
+                               [&](double x) {
+                                   return std::pow(x, 3 * power) * profile->lineSpread(x * x * x)[c] * 3 * x *
+                                          x;
+                               },
+                               panelPoints(0, borders.back(), borders), 0, 1e-12);
+            };
+            EXPECT_NEAR(moment(0), 1, tolerance::oracleEnergy) << name;
+            EXPECT_NEAR(std::sqrt(moment(2)) / width[c], 1, tolerance::oracleEnergy) << name;
+        }
+    }
+}
+
+TEST(ReferenceProfile, BurleyScaleHasItsPublishedValues) {
+    // Worked from the printed equations at A = 0.8 and 0.33, where a power vanishes.
+    EXPECT_NEAR(burleyScale(BurleyFit::searchlight, 0.8), 1.05, tolerance::oracleExact);
+    EXPECT_NEAR(burleyScale(BurleyFit::diffuseTransmission, 0.8), 1.1, tolerance::oracleExact);
+    EXPECT_NEAR(burleyScale(BurleyFit::diffuseMeanFreePath, 0.33), 3.5, tolerance::oracleExact);
+    EXPECT_NEAR(burleyScale(BurleyFit::searchlight, 0.3), 1.55 + 7 * 0.125, tolerance::oracleExact);
+    EXPECT_NEAR(burleyScale(BurleyFit::diffuseMeanFreePath, 0.83), 3.5 + 100 * 0.0625,
+                tolerance::oracleExact);
+}
+
+TEST(ReferenceProfile, DipoleHasTheTotalDiffuseReflectanceOfJensen) {
+    // R_d = a'/2 (1 + exp(-4/3 A sqrt(3(1-a')))) exp(-sqrt(3(1-a'))): the unnormalised integral, so that
+    // radial times it is the printed profile at any distance.
+    const double absorption = 0.17, scattering = 0.88, eta = 1.3;
+    const double fresnel = -1.440 / (eta * eta) + 0.710 / eta + 0.668 + 0.0636 * eta;
+    const double mismatch = (1 + fresnel) / (1 - fresnel), extinction = absorption + scattering;
+    const double reducedAlbedo = scattering / extinction, root = std::sqrt(3 * (1 - reducedAlbedo));
+    const double total = 0.5 * reducedAlbedo * (1 + std::exp(-4.0 / 3 * mismatch * root)) * std::exp(-root);
+    const double zr = 1 / extinction, zv = zr * (1 + 4.0 / 3 * mismatch);
+    const double transport = std::sqrt(3 * absorption * extinction), d = 1.3;
+    auto pole = [&](double z) {
+        const double s = std::sqrt(z * z + d * d);
+        return z * (transport * s + 1) * std::exp(-transport * s) / (s * s * s);
+    };
+    const double printed = reducedAlbedo / (4 * pi) * (pole(zr) + pole(zv));
+    EXPECT_NEAR(testDipole()->radial(d).y * total / printed, 1, tolerance::oracleExact);
 }
 
 }  // namespace

@@ -1,18 +1,10 @@
 // kernels/lib/shading/specular_table.clh as a renderer includes it: against the oracle, and against the same
 // texels in double precision.
-#define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
-#include <gtest/gtest.h>
-
-#include <pellucid/pellucid.hpp>
-
-#include <cmath>
-#include <limits>
-#include <random>
+#include "test.h"
 
 #include "reference/lut.h"
 #include "reference/shade.h"
-#include "tolerances.h"
 
 using reference::Vec3;
 
@@ -24,7 +16,10 @@ constexpr uint32_t width = 300, height = 200;
 // n, l, v, m per evaluation: ten floats each.
 std::vector<float> evaluate(const pellucid::Device& device, const std::vector<float>& table,
                             const std::vector<float>& inputs, int lanes) {
-    const char* source = R"(#include "lib/shading/specular_table.clh"
+    // Clang warns of vectors wider than the registers.
+    const char* source =
+        "#pragma clang diagnostic ignored \"-Wpsabi\"\n"
+        R"(#include "lib/shading/specular_table.clh"
 #define V(i) vec3(loadw(at, in + (i) * n), loadw(at, in + (i + 1) * n), loadw(at, in + (i + 2) * n))
 __kernel void evaluate(__global const float* in, __global const float* table, uint width, uint height,
                        __global float* out) {

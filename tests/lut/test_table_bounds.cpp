@@ -1,15 +1,7 @@
 // Every description of a table within the ranges of its fields is integrated in bounded time, or refused.
-#include <gtest/gtest.h>
-
-#include <pellucid/pellucid.hpp>
-
-#include <cmath>
-#include <ctime>
-#include <type_traits>
+#include "test.h"
 
 #include "fields/field_ranges.h"
-#include "refusal.h"
-#include "test_size.h"
 
 using namespace pellucid;
 

@@ -1,13 +1,9 @@
 // What a table costs beside its arithmetic: buffers, launches, transfers, waits, and pages that the system
 // maps anew.
-#include <gtest/gtest.h>
 #include <sys/resource.h>
-
-#include <functional>
-#include <pellucid/pellucid.hpp>
+#include "test.h"
 
 #include "cl/cl_spy.h"
-#include "test_size.h"
 
 using namespace pellucid;
 
@@ -105,10 +101,14 @@ TEST(TableCost, PagesAreUsedAgain) {
     if (device.info().type != PEL_DEVICE_CPU || !device.info().sharedMemory || testsAreSmall())
         GTEST_SKIP() << "the library allocates tables itself on CPUs only";
     for (const Kind& kind : kinds()) {
-        for (int i = 0; i < 3; ++i) kind.make(device, nullptr);
         constexpr int tables = 8;
-        const int64_t before = pageFaults();
-        for (int i = 0; i < tables; ++i) kind.make(device, nullptr);
-        EXPECT_LT(pageFaults() - before, int64_t(tables * kind.maxBytes / 4096 / 4)) << kind.name;
+        // What other threads free late, pages of tables before among it, settles within a few rounds.
+        int64_t least = INT64_MAX;
+        for (int round = 0; round < 4; ++round) {
+            const int64_t before = pageFaults();
+            for (int i = 0; i < tables; ++i) kind.make(device, nullptr);
+            least = std::min(least, pageFaults() - before);
+        }
+        EXPECT_LT(least, int64_t(tables * kind.maxBytes / 4096 / 4)) << kind.name;
     }
 }

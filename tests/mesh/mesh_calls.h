@@ -1,7 +1,5 @@
 // Descriptions of meshes and parameters of curvature, for tests and benchmarks.
 #pragma once
-#include <pellucid/pellucid.h>
-
 #include "mesh_shapes.h"
 
 namespace fixture {

@@ -1,14 +1,7 @@
 // The meshes of the reference data, and one-line calls of the mesh operations, for tests.
 #pragma once
-#include <gtest/gtest.h>
-
-#include <pellucid/pellucid.hpp>
-
-#include <cmath>
-
 #include "mesh_calls.h"
 #include "npy.h"
-#include "test_size.h"
 
 namespace fixture {
 

@@ -1,10 +1,6 @@
 // Meshes for tests and benchmarks.
 #pragma once
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <random>
-#include <vector>
+#include "test.h"
 
 namespace fixture {
 

@@ -1,7 +1,6 @@
 // The oracle's meshes as the library's.
 #pragma once
 #include "mesh_shapes.h"
-#include "reference/curvature.h"
 #include "reference/surfaces.h"
 
 namespace fixture {

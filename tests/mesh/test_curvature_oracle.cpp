@@ -2,7 +2,6 @@
 // surfaces and kinds of meshes, and against FaceWorks' values of real ones.
 #include "mesh_fixture.h"
 #include "reference_meshes.h"
-#include "tolerances.h"
 
 using namespace fixture;
 

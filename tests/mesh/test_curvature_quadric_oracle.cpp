@@ -2,14 +2,8 @@
 // closed and open meshes, any connectivity, normals that are replaced. test_curvature_accuracy compares with
 // surfaces instead, and does not notice a weight that is somewhat off.
 #include "mesh_fixture.h"
-#include "reference/curvature.h"
 #include "reference/scattered.h"
 #include "reference_meshes.h"
-#include "tolerances.h"
-
-#include <algorithm>
-#include <map>
-#include <set>
 
 using namespace fixture;
 

@@ -1,13 +1,8 @@
 // Smoothing to a radius against the oracle's flow, and against what the heat equation says: the heat kernel
 // of the plane, harmonics of the sphere, the conservation of the sum of values.
-#include <numbers>
-#include <numeric>
-
 #include "mesh_fixture.h"
 #include "reference/scattered.h"
 #include "reference_meshes.h"
-#include "refusal.h"
-#include "tolerances.h"
 
 using namespace fixture;
 
@@ -153,36 +148,6 @@ TEST(CurvatureHeat, APointSpreadsAsTheHeatKernelOfThePlane) {
             }
 }
 
-TEST(CurvatureHeat, IrregularLatticesSpreadAsFarAsRegularOnes) {
-    // Vertices moved within the plane by up to `jitter` of an edge; the variance that a point has gained,
-    // along both axes.
-    for (float jitter : {0.2f, 0.3f, 0.4f})
-        for (auto weights : bothWeights) {
-            const uint32_t half = 32;
-            const float radius = 7;
-            Mesh mesh = lattice(half, true);
-            std::mt19937 random(5);
-            std::uniform_real_distribution<float> move(-jitter, jitter);
-            for (size_t i = 0; i < mesh.positions.size(); ++i)
-                if (i % 3 < 2) mesh.positions[i] += move(random);
-            mesh.normals[3 * size_t(half * (2 * half + 1) + half)] = 0.01f;
-            const std::vector<double> areas = areasOf(mesh);
-            const auto variance = [&](float r, size_t axis) {
-                const std::vector<float> values = valuesOf(mesh, smoothed(r, weights));
-                double all = 0, mean = 0, square = 0;
-                for (size_t v = 0; v < values.size(); ++v) {
-                    const double m = areas[v] * values[v], x = mesh.positions[3 * v + axis];
-                    all += m, mean += m * x, square += m * x * x;
-                }
-                return square / all - std::pow(mean / all, 2);
-            };
-            for (size_t axis : {0, 1})
-                EXPECT_NEAR(std::sqrt(variance(radius, axis) - variance(0, axis)) / radius, 1,
-                            tolerance::heatSpread)
-                    << jitter << " " << int(weights);
-        }
-}
-
 TEST(CurvatureHeat, AreaWeightsKeepMass) {
     // Of values that are anything, on triangles that are anything.
     const auto flat = reference::delaunay(reference::uniformPoints(4000, 7));
@@ -196,30 +161,4 @@ TEST(CurvatureHeat, AreaWeightsKeepMass) {
     };
     for (float radius : {0.02f, 0.1f, 0.4f})
         EXPECT_NEAR(total(radius) / total(0), 1, tolerance::heatMass) << radius;
-}
-
-TEST(CurvatureHeat, HarmonicsOfASphereDecay) {
-    // Normals turned by amounts that are a harmonic about the axis would not be one of their sizes; so the
-    // sphere's own radius waves: its mean curvature is 1 plus a multiple of P8, of which exp(-l (l + 1) r^2 /
-    // 2) is left.
-    const double wave = 1e-3, radius = 0.3, left = std::exp(-8 * 9 * radius * radius / 2);
-    for (int splits : {4, 5})
-        for (auto weights : bothWeights) {
-            reference::AnalyticMesh sphere = reference::icosphere(1, 1, 1, splits);
-            std::vector<double> harmonic;
-            for (auto& p : sphere.mesh.positions) {
-                harmonic.push_back(std::legendre(8, std::clamp(p.z, -1.0, 1.0)));
-                p = (1 + wave * harmonic.back()) * p;
-            }
-            const Mesh mesh = pairOf(sphere.mesh).mesh;
-            const auto amplitude = [&](double r) {
-                const auto values = valuesOf(mesh, meanParams(PEL_CURVATURE_QUADRIC, float(r), weights));
-                double sum = 0, squares = 0;
-                for (size_t v = 0; v < values.size(); ++v)
-                    sum += (values[v] - 1) * harmonic[v], squares += harmonic[v] * harmonic[v];
-                return sum / squares;
-            };
-            EXPECT_NEAR(amplitude(radius) / amplitude(0) / left, 1, tolerance::heatHarmonic)
-                << int(weights) << ", " << splits;
-        }
 }

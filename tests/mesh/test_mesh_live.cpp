@@ -1,11 +1,6 @@
 // Normals made on the device; a topology saved and loaded; meshes in any order.
-#include <algorithm>
-#include <numeric>
-#include <random>
-
 #include "mesh_fixture.h"
 #include "reference_meshes.h"
-#include "tolerances.h"
 
 using namespace fixture;
 using namespace pellucid;

@@ -1,6 +1,5 @@
 // Triangles that disagree about the side they face: counted, and turned where that is asked for.
 #include "mesh_fixture.h"
-#include "refusal.h"
 
 using namespace fixture;
 using namespace pellucid;

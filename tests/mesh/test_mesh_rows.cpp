@@ -3,9 +3,6 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <cstring>
-#include <stdexcept>
-
 #include "mesh_fixture.h"
 
 using namespace fixture;

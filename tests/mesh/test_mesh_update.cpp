@@ -1,9 +1,9 @@
 // Live meshes: an update of a part gives the bits of measuring everything anew, and counters show that it did
 // not.
 #include "cl/cl_spy.h"
+#include "held_queue.h"
 #include "mesh_fixture.h"
 #include "reference_meshes.h"
-#include "refusal.h"
 
 using namespace fixture;
 using namespace pellucid;
@@ -57,15 +57,21 @@ TEST(LiveMesh, APartGivesTheBitsOfTheWhole) {
         bool given;  // normals
         uint32_t passes;
         float radius;
-        bool welded;  // and in an order without sense: slots are not the vertices
+        bool welded;          // and in an order without sense: slots are not the vertices
+        uint32_t stages = 0;  // few reach as far as their weights
     };
     for (const Case& c : {Case{PEL_CURVATURE_EDGE, PEL_QUANTITY_ABSOLUTE, 1, true, 3, 0, false},
                           Case{PEL_CURVATURE_EDGE, PEL_QUANTITY_ABSOLUTE, 1, false, 0, 0, true},
                           Case{PEL_CURVATURE_TENSOR, PEL_QUANTITY_FRAME, 8, true, 1, 0, true},
                           Case{PEL_CURVATURE_QUADRIC, PEL_QUANTITY_ABSOLUTE, 1, true, 2, 0, false},
-                          Case{PEL_CURVATURE_QUADRIC, PEL_QUANTITY_ABSOLUTE, 1, false, 1, 0.2f, false}}) {
+                          Case{PEL_CURVATURE_QUADRIC, PEL_QUANTITY_ABSOLUTE, 1, false, 1, 0.2f, false},
+                          Case{PEL_CURVATURE_EDGE, PEL_QUANTITY_ABSOLUTE, 1, true, 0, 0.1f, false, 1},
+                          Case{PEL_CURVATURE_EDGE, PEL_QUANTITY_ABSOLUTE, 1, true, 0, 0.1f, false, 2},
+                          Case{PEL_CURVATURE_EDGE, PEL_QUANTITY_ABSOLUTE, 1, false, 0, 0.1f, false, 1},
+                          Case{PEL_CURVATURE_EDGE, PEL_QUANTITY_ABSOLUTE, 1, false, 0, 0.1f, false, 2}}) {
         PelCurvatureParams params = paramsOf(c.estimator, c.passes, c.quantity);
         params.smoothingRadius = c.radius;
+        params.smoothingStages = c.stages;
         params.smoothingCrease = c.radius > 0 ? 0.5f : 0;
         params.smoothingWeights = c.given ? PEL_SMOOTHING_COTANGENT : PEL_SMOOTHING_AREA;
         Pose pose(c.welded ? shuffleVertices(mesh, 4).mesh : mesh, c.given, c.floats);
@@ -83,34 +89,9 @@ TEST(LiveMesh, APartGivesTheBitsOfTheWhole) {
             }
             pose.update(live, &changed);
             EXPECT_EQ(pose.values(), pose.anew(topology, params))
-                << c.estimator << c.given << c.passes << c.welded << " step " << step;
+                << c.estimator << c.given << c.passes << c.welded << c.stages << " step " << step;
         }
     }
-}
-
-TEST(LiveMesh, FewStagesReachAsFarAsTheirWeights) {
-    const Mesh mesh = irregularTorus(200, 100);
-    std::mt19937 random(8);
-    for (auto weights : {PEL_SMOOTHING_COTANGENT, PEL_SMOOTHING_AREA})
-        for (bool given : {true, false})
-            for (uint32_t stages : {1u, 2u}) {
-                PelCurvatureParams params = edgeParams(0);
-                params.smoothingRadius = 0.1f;
-                params.smoothingStages = stages;
-                params.smoothingCrease = 0.5f;
-                params.smoothingWeights = weights;
-                Pose pose(mesh, given);
-                const MeshTopology topology(device(), topologyDesc(pose.mesh));
-                const LiveMesh live(topology, params);
-                pose.update(live);
-                for (int step = 0; step < 8; ++step) {
-                    const std::vector<PelVertexRange> changed{{uint32_t(random() % pose.n), 1}};
-                    pose.move(changed[0], 0.02f);
-                    pose.update(live, &changed);
-                    ASSERT_EQ(pose.values(), pose.anew(topology, params))
-                        << int(weights) << given << stages << " step " << step;
-                }
-            }
 }
 
 TEST(LiveMesh, WorksOnNoMoreRowsThanTheChangeReaches) {
@@ -225,4 +206,43 @@ TEST(MeshLive, ANewPoseIsOneSubmitWithoutCopiesOrBuilds) {
     EXPECT_EQ(device().stats().launches - before.launches, 5u)
         << "normals, tensor, two smoothing passes, store";
     expectNoTraffic(before);
+}
+
+// --- submitted behind an event that is set later, on topologies that nothing was measured on before ---
+
+TEST(MeshSubmit, EachReturns) {
+    const Mesh mesh = torus(24, 12);
+    for (PelCurvatureEstimator estimator : allEstimators) {
+        Pose pose(mesh);
+        const MeshTopology measured(device(), topologyDesc(mesh)), updated(device(), topologyDesc(mesh));
+        PelCurvatureParams params = paramsOf(estimator);
+        const LiveMesh live(updated, params);
+        params.smoothingRadius = 0.5f;
+        params.smoothingStages = 4;  // without a number the call measures the mesh
+        expectReturns(device(), "pelMeshCurvature", [&](const PelSubmit* submit) {
+            measured.curvature(params, pose.at(), pose.result(), nullptr, submit);
+        });
+        EXPECT_EQ(pose.values(), pose.anew(measured, params)) << int(estimator);
+        params = paramsOf(estimator);
+        expectReturns(device(), "the first pelLiveMeshUpdate",
+                      [&](const PelSubmit* submit) { pose.update(live, nullptr, submit); });
+        EXPECT_EQ(pose.values(), pose.anew(measured, params)) << int(estimator);
+        for (uint32_t first : {7u, 100u}) {
+            const std::vector<PelVertexRange> one{{first, 1}};
+            pose.move(one[0], 0.05f);
+            expectReturns(device(), "pelLiveMeshUpdate with `changed`",
+                          [&](const PelSubmit* submit) { pose.update(live, &one, submit); });
+            EXPECT_EQ(pose.values(), pose.anew(measured, params)) << int(estimator);
+        }
+        EXPECT_LT(live.stats().rowsStored, pose.n);
+    }
+    const MeshTopology topology(device(), topologyDesc(mesh));
+    const OnDevice normals(mesh, 3);
+    expectReturns(device(), "pelMeshNormals",
+                  [&](const PelSubmit* submit) { topology.normals(normals.at(), normals.result(), submit); });
+    EXPECT_NE(normals.out.readAll<float>()[0], -1);
+    // What needs nothing of what is queued.
+    std::vector<char> bytes;
+    expectReturns(device(), "pelMeshTopologySave", [&](const PelSubmit*) { bytes = topology.save(); });
+    EXPECT_EQ(bytes, topology.save());
 }

@@ -191,27 +191,6 @@ def candidates(path, text, m):
             yield match.start(), end + 1, f"(void)({text[match.end():comma]})", "unchecked return"
 
 
-def end_of_operand(m, at):
-    """Where an operand of && or || ends."""
-    while at < len(m) and not re.compile(r"&&|\|\||[;,?)\]}]").match(m, at):
-        at = closing(m, at) + 1 if m[at] in "([{" else at + 1
-        if at == 0:
-            return -1
-    return at
-
-
-def begin_of_operand(m, at):
-    """Where the operand of && or || that ends at `at` begins."""
-    depth = 0
-    while at > 0:
-        depth += (m[at - 1] in ")]}") - (m[at - 1] in "([{")
-        if depth < 0 or (depth == 0 and re.search(r"(?:&&|\|\||[;,?]|(?<![!<>=])=|\breturn) ?$",
-                                                  m[max(0, at - 8):at])):
-            return at
-        at -= 1
-    return -1
-
-
 def end_of_argument(m, at):
     while m[at] not in ",)":
         at = closing(m, at) + 1 if m[at] in "([{" else at + 1
@@ -232,12 +211,10 @@ def meanings(path, text, m):
     for match, end in brackets(m, r"\bif \("):
         if re.compile(r"\)\s+\{?\s*(?:return|continue|break)\b").match(m, end):
             yield match.end(), end, "false", "dropped early return"
-    for match in re.finditer(r" (?:&&|\|\|)(?=\s)", m):
-        end, begin = end_of_operand(m, match.end()), begin_of_operand(m, match.start())
-        if end > 0:
-            yield match.start(), end, "", "dropped part"
-        if begin > 0:
-            yield begin, match.end() + 1, "", "dropped part"
+    # A side without brackets of its own, or with one pair.
+    side = r"!?[\w.>\[\]-]+(?:\([^()]*\))?(?: (?:[=!]=|[<>]=?) [\w.>\[\]-]+(?:\([^()]*\))?)?"
+    yield from each(m, "dropped part", rf" (?:&&|\|\|)\s+{side}(?=[;,)\s])", "")
+    yield from each(m, "dropped part", rf"(?<=[(\s]){side} (?:&&|\|\|)\s+", "")
     for match, end in brackets(m, r"\.addPart\("):
         yield match.start(), end + 1, "", "dropped part"
     for match in re.finditer(r',?\s*\{"[^"\n]*", ', m):

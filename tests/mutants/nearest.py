@@ -24,9 +24,9 @@ class Tests:
                          for p in TREE.glob(f"{folder}/test_*.cpp")}
         self.scripts = {str(p.relative_to(TREE)): p for folder in ("bindings/python", "apps/*")
                         for p in TREE.glob(f"{folder}/tests/test_*.py")}
-        self.words = {name: words_of(f"{p.stem} {p.parent.name} " * 5 + p.read_text())
+        self.words = {name: {*words_of(f"{p.stem} {p.parent.name} {p.read_text()}")}
                       for name, p in {**self.programs, **self.scripts}.items()}
-        known = collections.Counter(word for words in self.words.values() for word in set(words))
+        known = collections.Counter(word for words in self.words.values() for word in words)
         self.rarity = {word: math.log(len(self.words) / count) for word, count in known.items()}
 
     def measure(self, name):
@@ -62,25 +62,18 @@ class Tests:
         return names
 
     def by_words(self, fault):
+        """All tests, the nearest first: those that share most rare words with the fault's file."""
         path = Path(fault.path)
-        own = self.weighed(words_of(f"{path.with_suffix('')} " * 5 + (TREE / path).read_text()))
+        own = {*words_of(f"{path.with_suffix('')} {(TREE / path).read_text()}")}
 
         def distance(name):
-            other = self.weighed(self.words[name])
-            near = sum(weight * other.get(word, 0) for word, weight in own.items())
+            shared = sum(self.rarity.get(word, 0) for word in own & self.words[name])
+            near = shared / sum(self.rarity[word] for word in self.words[name]) ** 0.5
             if name in self.programs and self.programs[name].parent.name in path.parts:
                 near *= SAME_SUBJECT
             return -near / (1 + self.measured.get(name, {}).get("seconds", 10) / 20) ** 0.5, name
 
         return sorted(self.scripts if fault.is_python() else self.programs, key=distance)
-
-    def weighed(self, words):
-        """{word: weight}, of length 1: rare words count most, and the tenth of a kind little more than the
-        first."""
-        row = {word: (1 + math.log(n)) * self.rarity.get(word, 0)
-               for word, n in collections.Counter(words).items()}
-        length = math.hypot(*row.values()) or 1
-        return {word: w / length for word, w in row.items()}
 
 
 def kernels_with(path):

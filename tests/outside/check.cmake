@@ -78,18 +78,18 @@ run(${CMAKE_COMMAND} -G Ninja -S ${WORK}/moved/share/doc/pellucid/examples -B ${
 run(${CMAKE_COMMAND} --build ${WORK}/examples --target example_own_kernel example_progress)
 run(${WORK}/examples/example_own_kernel)
 
-# Pictures come from a module beside the library, in a moved tree too; without it the message names it, and
-# EXR needs none.
+# BMP files come from a module beside the library, in a moved tree too; without it the message names it, and
+# PNG needs none.
 set(moved_command ${WORK}/moved/bin/pellucid)
 if(EXISTS ${moved_command})
-  run(${moved_command} lut specular --size 8x8 -o ${WORK}/table.png)
+  run(${moved_command} lut specular --size 8x8 -o ${WORK}/table.bmp)
   file(GLOB_RECURSE module ${WORK}/moved/*/pellucid_pictures-*.so)
   expect("${module}")
   file(REMOVE ${module})
-  execute_process(COMMAND ${moved_command} lut specular --size 8x8 -o ${WORK}/none.png
+  execute_process(COMMAND ${moved_command} lut specular --size 8x8 -o ${WORK}/none.bmp
                   RESULT_VARIABLE result ERROR_VARIABLE said)
-  if(NOT result EQUAL 3 OR NOT said MATCHES "none.png: needs pellucid_pictures-" OR EXISTS ${WORK}/none.png)
+  if(NOT result EQUAL 3 OR NOT said MATCHES "none.bmp: needs pellucid_pictures-" OR EXISTS ${WORK}/none.bmp)
     message(FATAL_ERROR "without the module for pictures: ${result}, ${said}")
   endif()
-  run(${moved_command} lut specular --size 8x8 -o ${WORK}/table.exr)
+  run(${moved_command} lut specular --size 8x8 -o ${WORK}/table.png)
 endif()

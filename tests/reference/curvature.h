@@ -48,7 +48,7 @@ struct RadiusSmoothing {
 std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> values,
                                      const RadiusSmoothing& how);
 
-// Principal curvatures, first >= second, 1/length; positive where the surface bends away from the normal (a
+// Principal curvatures, first >= second, 1/length; positive where the surface curves away from the normal (a
 // sphere with outward normals has two positive ones).
 struct PrincipalCurvatures {
     double first = 0, second = 0;

@@ -3,8 +3,6 @@
 // pixel.
 #pragma once
 
-#include <vector>
-
 #include "reference/diffusion_screen.h"
 #include "reference/shade.h"
 

@@ -58,16 +58,17 @@ std::vector<Rgb> scatterOnScreen(const ScatterPicture& p, const Profile& profile
     std::vector<Rgb> result = p.irradiance;
     for (size_t i = 0; i < result.size(); ++i) {
         if (!(areas[i] > 0)) continue;
+        const double s = p.radii.empty() ? 1 : p.radii[i];
         const Vec3 normal = p.directed > 0 ? outwardNormal(p, int(i) % p.width, int(i) / p.width) : Vec3{};
         // The pixel itself: the share of a disk of its area.
-        Rgb weights = enclosedEnergy(profile, std::min(reach, std::sqrt(areas[i] / pi))),
+        Rgb weights = enclosedEnergy(profile, std::min(reach, std::sqrt(areas[i] / pi) / s)),
             light = weights * p.irradiance[i];
         for (size_t j = 0; j < result.size(); ++j) {
             if (i == j || !(areas[j] > 0) || p.ids[j] != p.ids[i]) continue;
             const Vec3 way = p.positions[j] - p.positions[i];
             const double distance = length(way);
-            if (distance >= reach) continue;
-            const Rgb weight = areas[j] * profile.radial(distance);
+            if (distance >= reach * s) continue;
+            const Rgb weight = areas[j] / (s * s) * profile.radial(distance / s);
             weights = weights + weight;
             const double share = std::max(0.0, 1 - p.directed * dot(normal, way) / distance);
             light = light + (share * weight) * p.irradiance[j];

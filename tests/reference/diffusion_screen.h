@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "reference/profile.h"
 
@@ -13,7 +12,8 @@ struct ScatterPicture {
     int width = 0, height = 0;
     std::vector<Vec3> positions;  // length
     std::vector<Rgb> irradiance;
-    std::vector<int> ids;  // 0 is background
+    std::vector<int> ids;       // 0 is background
+    std::vector<double> radii;  // s per pixel: it takes R(d / s) / s^2; empty: 1
     // surface seen at less than a quarter of its area counts as if it were a quarter
     std::optional<Vec3> camera;
     double directed = 0;  // with a camera: factor max0(1 + directed t) of section 12, t by n_x alone

@@ -9,8 +9,9 @@
 
 namespace reference {
 
-// All lengths in one unit, millimetres for the built-in skin. Both views are normalised:
-// the integral of radial(d) 2 pi d over d > 0 and that of lineSpread(s) over all s are 1 in every channel.
+// All lengths in one unit, millimetres for the built-in skin; numbers are taken as they are. Both views are
+// normalised: the integral of radial(d) 2 pi d over d > 0 and that of lineSpread(s) over all s are 1 in every
+// channel.
 class Profile {
   public:
     virtual ~Profile() = default;

@@ -16,6 +16,7 @@ struct WalkResult {
     std::vector<double> radiance;  // per bin: radiance / irradiance that the light has at right angles
     std::vector<double> error;     // its standard error
     double reflected = 0;          // part of the light that comes out again
+    double transmitted = 0;        // of a slab: part that comes out below
 };
 
 // A ball under a parallel light. Light enters diffusely, with the cosine's distribution, and what comes out

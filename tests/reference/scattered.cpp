@@ -124,28 +124,6 @@ std::vector<Vec2> uniformPoints(int count, uint32_t seed) {
     return points;
 }
 
-std::vector<Vec2> poissonDiskPoints(int count, uint32_t seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> unit(0, 1);
-    const double distance = 0.75 * std::sqrt(2 / (std::sqrt(3.0) * count));
-    const int cells = int(1 / distance);
-    std::vector<std::vector<Vec2>> grid(size_t(cells) * size_t(cells));
-    std::vector<Vec2> points;
-    for (int tries = 0; int(points.size()) < count && tries < 200 * count; ++tries) {
-        const Vec2 p{unit(random), unit(random)};
-        const int x = int(p.x * cells), y = int(p.y * cells);
-        bool free = true;
-        for (int j = std::max(0, y - 1); j <= std::min(cells - 1, y + 1); ++j)
-            for (int i = std::max(0, x - 1); i <= std::min(cells - 1, x + 1); ++i)
-                for (Vec2 q : grid[size_t(j * cells + i)])
-                    free &= std::hypot(p.x - q.x, p.y - q.y) >= distance;
-        if (!free) continue;
-        grid[size_t(y * cells + x)].push_back(p);
-        points.push_back(p);
-    }
-    return points;
-}
-
 FlatMesh delaunay(const std::vector<Vec2>& points) {
     return {points, Delaunay(points).triangles()};
 }

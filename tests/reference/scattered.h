@@ -13,8 +13,6 @@ struct FlatMesh {
 };
 
 std::vector<Vec2> uniformPoints(int count, uint32_t seed);
-// Never nearer to each other than about 0.75 of the mean distance of a hexagonal grid of as many.
-std::vector<Vec2> poissonDiskPoints(int count, uint32_t seed);
 
 // Incremental, by cavities [Bowyer 1981; Watson 1981]. No two points may be equal.
 FlatMesh delaunay(const std::vector<Vec2>& points);

@@ -141,13 +141,12 @@ Rgb ambientTerm(const Ambient& ambient, Vec3 shading, Vec3 blurred, Rgb blend) {
     return light;
 }
 
-double sampleMap(const ShadowMap& map, double u, double v, MapFilter filter) {
+double sampleMap(const ShadowMap& map, double u, double v) {
     const auto depth = [&](double x, double y) {
         const int i = std::clamp(int(std::floor(x)), 0, map.width - 1),
                   j = std::clamp(int(std::floor(y)), 0, map.height - 1);
         return map.depth[size_t(j) * map.width + i];
     };
-    if (filter == MapFilter::nearest) return depth(u * map.width, v * map.height);
     const double x = std::clamp(u * map.width - 0.5, 0.0, map.width - 1.0), fx = x - std::floor(x),
                  y = std::clamp(v * map.height - 0.5, 0.0, map.height - 1.0), fy = y - std::floor(y);
     // Of a texel of NaN before another, std::lerp gives the other: fewer pixels than by mix() are NaN.
@@ -163,12 +162,12 @@ Vec3 shadowCoordinates(const Matrix4& m, Vec3 position, Vec3 normal, double offs
 }
 
 double thickness(const ShadowMap& map, Vec3 uvDepth, const std::vector<Vec2>& taps, double filterRadius,
-                 const DepthDecoding& decoding, MapFilter filter) {
+                 const DepthDecoding& decoding) {
     const double receiver = decoding.distance(uvDepth.z);
     double sum = 0;
     for (const Vec2& tap : taps)
         sum += max0(receiver - decoding.distance(sampleMap(map, uvDepth.x + filterRadius * tap.x,
-                                                           uvDepth.y + filterRadius * tap.y, filter)));
+                                                           uvDepth.y + filterRadius * tap.y)));
     return sum / double(taps.size());
 }
 

@@ -78,9 +78,8 @@ struct ShadowMap {
     int width = 0, height = 0;
     std::vector<double> depth;  // row = v
 };
-enum class MapFilter { nearest, bilinear };
-double sampleMap(const ShadowMap& map, double u, double v,
-                 MapFilter filter);  // texel centres as above, clamped
+// Bilinear between the texels' centres, clamped.
+double sampleMap(const ShadowMap& map, double u, double v);
 
 // From depths in the map to lengths along the light.
 struct DepthDecoding {
@@ -96,7 +95,7 @@ Vec3 shadowCoordinates(const Matrix4& worldToShadow, Vec3 position, Vec3 normal,
 // Mean over taps, given in the unit disk, of max0(z - z_tap). A tap that is 0 long from the light takes part
 // as any.
 double thickness(const ShadowMap& map, Vec3 uvDepth, const std::vector<Vec2>& taps, double filterRadius,
-                 const DepthDecoding& decoding, MapFilter filter);
+                 const DepthDecoding& decoding);
 // The taps of the pixel in that column and row, turned by 2 pi (column a + row b), a and b the powers -1 and
 // -2 of the plastic number 1.3247 (the R2 sequence), each rounded to 32 bits.
 std::vector<Vec2> turnedTaps(std::vector<Vec2> taps, uint32_t column, uint32_t row);

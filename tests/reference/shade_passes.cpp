@@ -379,8 +379,7 @@ double exponentialThickness(const ShadowMap& map, double c, Vec3 uvDepth, const 
                             double filterRadius, const DepthDecoding& decoding) {
     double sum = 0;
     for (const Vec2& tap : taps) {
-        const double e = sampleMap(map, uvDepth.x + filterRadius * tap.x, uvDepth.y + filterRadius * tap.y,
-                                   MapFilter::bilinear);
+        const double e = sampleMap(map, uvDepth.x + filterRadius * tap.x, uvDepth.y + filterRadius * tap.y);
         if (e > 0) sum += max0(decoding.distance(uvDepth.z) - decoding.distance(std::log(e) / c));
     }
     return sum / double(taps.size());

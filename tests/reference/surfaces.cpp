@@ -16,8 +16,8 @@ Vec3 direction(double longitude, double latitude) {
             std::sin(latitude)};
 }
 
-// Of the graph z(x, y) with this gradient and (zxx, zxy, zyy). Minus: one that bends up bends towards its
-// upward normal.
+// Of the graph z(x, y) with this gradient and (zxx, zxy, zyy). Minus: one that curves up curves towards
+// its upward normal.
 SurfacePoint graphPoint(double x, double y, double z, Vec2 g, Vec3 h) {
     const double w2 = 1 + g.x * g.x + g.y * g.y, w = std::sqrt(w2);
     const double gaussian = (h.x * h.z - h.y * h.y) / (w2 * w2);

@@ -1,9 +1,7 @@
 // Surfaces whose curvature is known in closed form, and triangle meshes of them of several qualities.
 #pragma once
 
-#include <cstdint>
 #include <functional>
-#include <vector>
 
 #include "reference/curvature.h"
 

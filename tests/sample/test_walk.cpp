@@ -1,20 +1,13 @@
 // Light that walks through the volume of a mesh, against the naive walk of the oracle in double precision,
 // and against walks made outside of this project (PELLUCID_RULER_DIR).
-#include <gtest/gtest.h>
 #include <omp.h>
-
-#include <chrono>
-#include <cmath>
-#include <map>
-#include <set>
-#include <stdexcept>
+#include "test.h"
 
 #include "io/image/image_file.h"
 #include "io/mesh/mesh_parts.h"
 #include "npy.h"
 #include "reference/random_walk.h"
 #include "sample/random_walk.h"
-#include "test_size.h"
 
 namespace sample = pellucid::sample;
 using sample::Vec3;
@@ -236,28 +229,6 @@ TEST(WalkLight, RefusesWhatHasNoResult) {
         walkLight(sample::WalkBody(sheet, 0), fromAbove(), points, medium(0.1), {64});
     EXPECT_GT(open.lost, 0u);
     for (float v : open.first) EXPECT_TRUE(std::isfinite(v));
-}
-
-TEST(WalkLight, BallsEqualAnotherProgramsWalks) {
-    const char* folder = std::getenv("PELLUCID_RULER_DIR");
-    if (!folder) GTEST_SKIP() << "PELLUCID_RULER_DIR names no folder";
-    const npy::Array<double> theirs = npy::read<double>(std::filesystem::path(folder) / "ball_walks_f64.npy");
-    ASSERT_EQ(theirs.shape, (std::vector<size_t>{6, 101, 3}));
-    const sample::Scene scene(sample::makeSphere(1, 192, 384).view());
-    const sample::WalkBody body(scene, 0);
-    const auto points = middles(scene, testsAreSmall() ? 8000 : 800);
-    const double radii[] = {3.47, 8.68, 11.57, 17.35, 28.92, 57.84};
-    for (size_t ball = 0; ball < 6; ball += 3) {
-        const sample::WalkedLight light =
-            walkLight(body, fromAbove(), points, medium(1 / radii[ball]), {uint32_t(sized(64, 4))});
-        const Error e = errorOf(light, [&](size_t i) {
-            const double at = (cosineAt(scene, points[i / 3]) + 1) * 50;
-            const size_t node = std::min<size_t>(99, size_t(at));
-            const double *a = &theirs.data[3 * (101 * ball + node)], *b = a + 3;
-            return a[1] + (at - double(node)) * (b[1] - a[1]);
-        });
-        EXPECT_LT(e.mean, ballError * ballError + 3 * e.uncertainty) << radii[ball];
-    }
 }
 
 namespace {

@@ -1,11 +1,6 @@
 // A frame that was prepared before its pictures came: the same bits, and nothing is read or made twice.
 #include "scene/scene_frame.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <ctime>
-
 #include "fields/field_ranges.h"
 #include "io/io_files.h"
 

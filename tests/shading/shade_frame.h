@@ -1,17 +1,9 @@
 // Random frames for the shading pass.
 #pragma once
-#include <gtest/gtest.h>
-
-#include <pellucid/pellucid.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <random>
+#include "tools.h"
 
 #include "faceworks_material.h"
 #include "reference/shade.h"
-#include "test_size.h"
 
 namespace shade_test {
 
@@ -66,10 +58,11 @@ inline PelLight plainLight() {
     return l;
 }
 
-// Leaves nothing to interpolation, of which an oracle knows nothing.
+// Leaves nothing to interpolation, of which an oracle knows nothing. Pixels are counted in all tests but
+// those that say so: each choice is a program of its own, and compiling takes most of the tests' time.
 inline PelShaderOptions exactOptions() {
     PelShaderOptions o = pelShaderOptionsDefaults();
-    o.everyPixel = 1;
+    o.everyPixel = o.countPixels = 1;
     return o;
 }
 

@@ -1,10 +1,7 @@
 // A shader on which everything is set. Tests take something away or set it wrongly, and expect an error.
 #pragma once
-#include <gtest/gtest.h>
-
-#include <functional>
-
 #include "shade_scene.h"
+#include "test.h"
 
 namespace shade_test {
 
@@ -21,15 +18,7 @@ struct Ready {
 // The call fails with this code and says all of `words`.
 inline void expectError(PelError code, const std::vector<const char*>& words,
                         const std::function<void()>& call) {
-    try {
-        call();
-        FAIL() << "no error";
-    } catch (const pellucid::Error& e) {
-        EXPECT_EQ(e.code(), code) << e.what();
-        for (const char* word : words)
-            EXPECT_NE(std::string(e.what()).find(word), std::string::npos)
-                << "\"" << word << "\" in: " << e.what();
-    }
+    expectRefused(words, call, code);
 }
 
 }  // namespace shade_test

@@ -1,10 +1,7 @@
 // Frames lit through shadow maps of every form: wide shadow and thickness per pixel, of the shader and of the
 // oracle.
 #pragma once
-#include <functional>
-
 #include "pass_scene.h"
-#include "reference/shade_passes.h"
 
 namespace shade_test {
 
@@ -291,7 +288,7 @@ inline FormTruth truthOf(const MapLight& from) {
                 return reference::thickness(
                     from.map,
                     reference::shadowCoordinates(matrixOf(l.worldToShadow), p, n, m.deepScatterNormalOffset),
-                    taps, m.thicknessFilterRadius, from.view.decoding, reference::MapFilter::bilinear);
+                    taps, m.thicknessFilterRadius, from.view.decoding);
             }};
 }
 
@@ -329,8 +326,7 @@ inline FormTruth truthOf(const CascadeLight& from) {
                 const auto& matrix = matrices[size_t(k)];
                 return reference::thickness(
                     from.maps[size_t(k)].map, reference::shadowCoordinates(matrix, inside, {0, 0, 0}, 0),
-                    taps, radius * reference::uvPerLength(matrix, 0), from.maps[size_t(k)].view.decoding,
-                    reference::MapFilter::bilinear);
+                    taps, radius * reference::uvPerLength(matrix, 0), from.maps[size_t(k)].view.decoding);
             }};
 }
 
@@ -348,7 +344,7 @@ inline FormTruth truthOf(const ContentLight& from) {
                 const Vec3 uvz =
                     reference::shadowCoordinates(matrixOf(l.worldToShadow), p, n, m.deepScatterNormalOffset);
                 return moments ? reference::thickness(from.first, uvz, taps, m.thicknessFilterRadius,
-                                                      from.from.view.decoding, reference::MapFilter::bilinear)
+                                                      from.from.view.decoding)
                                : reference::exponentialThickness(from.first, l.shadowExponent, uvz, taps,
                                                                  m.thicknessFilterRadius,
                                                                  from.from.view.decoding);

@@ -1,10 +1,7 @@
 // Packed images, tight and padded, with every code of every component; and colours written as halves: every
 // half, and what lies between two of them, rounds to the nearest, at a tie to the even one.
-#include <gtest/gtest.h>
-
-#include "half_bits.h"
 #include "shade_scene.h"
-#include "tolerances.h"
+#include "test.h"
 
 using namespace shade_test;
 
@@ -41,6 +38,7 @@ double component(PelFormat format, std::vector<uint8_t>& to, uint32_t i, uint32_
             append(to, uint16_t(code(i, k, 65536)));
             return code(i, k, 65536) / 65535.0;
         case PEL_FORMAT_R32F:
+        case PEL_FORMAT_RGB32F:
             append(to, float(code(i, k, 65536)) / 65535);
             return float(code(i, k, 65536)) / 65535;
         default:
@@ -65,6 +63,12 @@ Vec3 normalOf(PelFormat format, std::vector<uint8_t>& to, uint32_t i) {
         const uint32_t n[3] = {code(i, 4, 1024), code(i, 5, 1024), code(i / 64 + 31 * i, 3, 1024)};
         append(to, n[0] | n[1] << 10 | n[2] << 20);
         return {2 * (n[0] / 1023.0) - 1, 2 * (n[1] / 1023.0) - 1, 2 * (n[2] / 1023.0) - 1};
+    }
+    if (format == PEL_FORMAT_RGB32F) {  // taken as unit vectors
+        std::vector<uint8_t> other;
+        const Vec3 n = reference::normalized(normalOf(PEL_FORMAT_A2B10G10R10_UNORM, other, i));
+        for (int c = 0; c < 3; ++c) append(to, float(n[c]));
+        return n;
     }
     Vec3 out;
     for (uint32_t c = 0; c < 3; ++c) {
@@ -104,7 +108,8 @@ const Formats formats[] = {
      PEL_FORMAT_R16_UINT},
     {"Unorm8HalfUnorm8Normal", PEL_FORMAT_RGBA8_UNORM, PEL_FORMAT_R16F, PEL_FORMAT_RGBA8_UNORM,
      PEL_FORMAT_R32_UINT},
-    {"HalvesWithAlpha", PEL_FORMAT_RGBA16F, PEL_FORMAT_R32F, PEL_FORMAT_RGBA16F, PEL_FORMAT_R32F}};
+    {"HalvesWithAlpha", PEL_FORMAT_RGBA16F, PEL_FORMAT_R32F, PEL_FORMAT_RGBA16F, PEL_FORMAT_R32F},
+    {"Floats", PEL_FORMAT_RGB32F, PEL_FORMAT_R32F, PEL_FORMAT_RGB32F, PEL_FORMAT_R8_UINT}};
 
 uint32_t idOf(uint32_t i) {
     return code(i, 2, 65536) % 3;  // 0 is background

@@ -1,39 +1,12 @@
-// The oracle's shading terms: hand-worked values, limits, and 20,000 pixels that FaceWorks shaded.
-#include <gtest/gtest.h>
-
-#include <random>
-
+// The oracle's shading terms: hand-worked values, limits, and 20,000 pixels that FaceWorks shaded; and the
+// disks of taps, which it shares with the kernels.
 #include "npy.h"
 #include "reference/lut.h"
 #include "shade_scene.h"
-#include "tolerances.h"
+#include "test.h"
 
 using namespace reference;
 namespace {
-
-Vec3 randomUnit(std::mt19937& random) {
-    std::normal_distribution<double> gaussian;
-    return normalized({gaussian(random), gaussian(random), gaussian(random)});
-}
-
-TEST(ReferenceShade, RowsMatchTheTablesTexelCentres) {
-    const CurvatureLutSpec curvature;
-    const ShadowLutSpec shadow;
-    for (int y : {0, 7, 511}) {
-        EXPECT_NEAR(curvatureRow(1 / curvature.radius(y), 1, 100, 1), (y + 0.5) / 512,
-                    tolerance::oracleExact);
-        EXPECT_NEAR(shadowRow(1, 1 / shadow.reciprocalWidth(y, 1), 8, 100, 1), (y + 0.5) / 512,
-                    tolerance::oracleExact);
-        // A material of twice the radius looks twice as curved: row of 1/(2r) as of 1/r.
-        EXPECT_NEAR(curvatureRow(0.5 / curvature.radius(y), 1, 100, radiusRatio(2.7, 5.4)), (y + 0.5) / 512,
-                    tolerance::oracleExact);
-    }
-    EXPECT_EQ(curvatureRow(0.3, 5, 5, 1), 0);
-    EXPECT_NEAR(shadowRow(-0.5, 9, 8, 100, 1), shadowRow(0, 9, 8, 100, 1), tolerance::oracleExact);
-    EXPECT_NEAR(blurredNormalMip(1024, 2.7, 672.45346), std::log2(1024 * 2.7 / 672.45346),
-                tolerance::oracleExact);
-    EXPECT_EQ(blurredNormalMip(64, 2.7, 672.45346), 0);
-}
 
 TEST(ReferenceShade, HarmonicsAreOrthonormal) {
     // Products of basis functions, offset so that the clamp at 0 never acts, averaged over an even sphere.
@@ -55,48 +28,6 @@ TEST(ReferenceShade, HarmonicsAreOrthonormal) {
     for (int j = 0; j < 9; ++j)
         for (int k = 0; k < 9; ++k)
             EXPECT_NEAR(gram[j][k], j == k, tolerance::sampledSphere) << j << ' ' << k;
-}
-
-TEST(ReferenceShade, ShadowCoordinatesDivideAndMoveInwards) {
-    const Matrix4 m{{{1, 0, 0, 0.5}, {0, 2, 0, 0}, {0, 0, 3, 0}, {0, 0, 1, 1}}};
-    const Vec3 at = shadowCoordinates(m, {1, 1, 2}, {0, 0, 1}, 1);
-    EXPECT_NEAR(at.x, 0.75, tolerance::oracleExact);
-    EXPECT_NEAR(at.y, 1, tolerance::oracleExact);
-    EXPECT_NEAR(at.z, 1.5, tolerance::oracleExact);
-}
-
-TEST(ReferenceShade, SpecularIsReciprocalButForTheCosineAndZeroBehind) {
-    std::mt19937 random(2);
-    for (int i = 0; i < 200; ++i) {
-        const Vec3 n{0, 0, 1}, l = randomUnit(random), v = randomUnit(random);
-        const double there = specular(n, l, v, 0.3, 1.7), back = specular(n, v, l, 0.3, 1.7);
-        if (l.z <= 0) {
-            EXPECT_EQ(there, 0);
-        }
-        if (l.z > 0 && v.z > 0) {
-            EXPECT_NEAR(there * v.z, back * l.z, tolerance::oracleClosedForm);
-        }
-    }
-    // Mirror direction at normal incidence by hand: P = 1/m², F = F0, |L+V|² = 4.
-    EXPECT_NEAR(specular({0, 0, 1}, {0, 0, 1}, {0, 0, 1}, 0.5, 2), 2 * 4 * 0.028 / 4, tolerance::oracleExact);
-    EXPECT_EQ(specular({0, 0, 1}, {0, 0, 1}, {0, 0, -1}, 0.5, 2), 0);
-    EXPECT_NEAR(schlick(0, 0.028), 1, tolerance::oracleExact);
-    EXPECT_NEAR(schlick(0.5, 0.028), 0.028 + 0.972 / 32, tolerance::oracleExact);
-}
-
-TEST(ReferenceShade, LampsFallOff) {
-    Lamp lamp{{0, 0, 2}, {4, 8, 12}, 0, false, {0, 0, -1}, 0.9, 0.8};
-    EXPECT_NEAR(lampAt(lamp, {0, 0, 0}).color.x, 1, tolerance::oracleExact);
-    EXPECT_NEAR(lampAt(lamp, {0, 0, 0}).toLight.z, 1, tolerance::oracleExact);
-    lamp.range = 1.9;
-    EXPECT_EQ(lampAt(lamp, {0, 0, 0}).color.x, 0);
-    lamp.range = 10;
-    lamp.spot = true;
-    EXPECT_NEAR(lampAt(lamp, {0, 0, 0}).color.x, 1, tolerance::oracleExact);
-    const double sine = std::sqrt(1 - 0.85 * 0.85);
-    EXPECT_NEAR(lampAt(lamp, Vec3{0, 0, 2} + 2 * Vec3{sine, 0, -0.85}).color.x, 0.5,
-                tolerance::oracleClosedForm);
-    EXPECT_EQ(lampAt(lamp, {2, 0, 1}).color.x, 0);
 }
 
 TEST(ReferenceShade, GgxIsReciprocalAndLosesWhatMaskingTakes) {
@@ -211,8 +142,7 @@ TEST_F(FaceWorksPixels, ThicknessAgreesOnAverage) {
             const auto taps = shade_test::diskTaps(many ? 32 : 8);
             double ours = 0, theirs = 0, apart = 0;
             for (size_t i = 0; i < in_.shape[0]; ++i) {
-                const double t = thickness(map_, input(int(i), 16), taps, 0.02, decodings[kind],
-                                           MapFilter::bilinear),
+                const double t = thickness(map_, input(int(i), 16), taps, 0.02, decodings[kind]),
                              other = out_.row(i)[19 + 2 * kind + many];
                 ours += t, theirs += other, apart += std::pow(t - other, 2);
             }
@@ -223,5 +153,42 @@ TEST_F(FaceWorksPixels, ThicknessAgreesOnAverage) {
                         ours / theirs, rms);
         }
 }
+
+// The disks of thickness taps (bench/shading/generate_disks.py): centred, as wide as the disk, and better
+// than random points at what they are for: how much of the disk lies on one side of an edge.
+class PoissonDisk : public testing::TestWithParam<uint32_t> {};
+
+TEST_P(PoissonDisk, IsCentredInTheUnitDisk) {
+    double x = 0, y = 0, r2 = 0;
+    const auto taps = shade_test::diskTaps(GetParam());
+    for (const auto& tap : taps) {
+        x += tap.x, y += tap.y;
+        r2 += (tap.x * tap.x + tap.y * tap.y) / double(taps.size());
+        EXPECT_LE(std::hypot(tap.x, tap.y), 1);
+    }
+    EXPECT_NEAR(x, 0, 1e-6);
+    EXPECT_NEAR(y, 0, 1e-6);
+    EXPECT_NEAR(r2, 0.5, tolerance::diskMoment);
+}
+
+TEST_P(PoissonDisk, SeesEdgesBetterThanRandomTaps) {
+    const auto taps = shade_test::diskTaps(GetParam());
+    const double count = double(taps.size());
+    double ours = 0, random = 0;
+    for (int angle = 0; angle < 180; ++angle)
+        for (int step = 0; step < 100; ++step) {
+            const double a = angle * pi / 180, offset = (step + 0.5) / 50 - 1;
+            double beyond = 0;
+            for (const auto& tap : taps) beyond += std::cos(a) * tap.x + std::sin(a) * tap.y > offset;
+            const double area = (std::acos(offset) - offset * std::sqrt(1 - offset * offset)) / pi;
+            ours += std::pow(beyond / count - area, 2);
+            random += area * (1 - area) / count;
+        }
+    std::printf("%.0f taps: %.3f of random taps' RMS error over edges\n", count, std::sqrt(ours / random));
+    EXPECT_LE(std::sqrt(ours / random), tolerance::diskEdge);
+}
+
+INSTANTIATE_TEST_SUITE_P(Disks, PoissonDisk, testing::Values(8u, 16u, 32u),
+                         [](const auto& info) { return std::to_string(info.param); });
 
 }  // namespace

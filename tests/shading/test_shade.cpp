@@ -1,14 +1,7 @@
 // The shading pass against the oracle: each term alone, their sum, outputs beside radiance, irradiance per
 // pixel; and what must not change a bit: layouts of images, and what is in the target.
-#include <gtest/gtest.h>
-
-#include <cstring>
-#include <functional>
-
 #include "device_lanes.h"
-#include "half_bits.h"
 #include "shade_scene.h"
-#include "tolerances.h"
 
 using namespace shade_test;
 
@@ -243,7 +236,6 @@ TEST(ShadeIrradiance, UnscatteredIsLambert) {
             Frame f = lambert(uint32_t(1 + count));
             setScattering(f, PEL_SCATTERING_NONE);
             if (beside) f.materials[2].scattering = PEL_SCATTERING_PREINTEGRATED;
-            f.options.countPixels = 1;
             f.options.tileLists = beside ? PEL_TILES_PER_VARIANT : PEL_TILES_ONE_LIST;
             PelShaderStats stats = pelShaderStatsDefaults();
             const std::vector<float> result = shade(narrow, f, makeTables(narrow, 8, 8), &stats);
@@ -294,46 +286,10 @@ TEST(ShadeIrradiance, TheHostsIsUsedAsItIs) {
 
 // --- layouts of images (packed formats: test_format_codes.cpp) ---
 
-constexpr PelImageSlot floatSlots[] = {
-    PEL_SLOT_POSITION,  PEL_SLOT_NORMAL_GEOMETRIC, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_BLURRED,
-    PEL_SLOT_CURVATURE, PEL_SLOT_ALBEDO,           PEL_SLOT_ROUGHNESS,      PEL_SLOT_AMBIENT_OCCLUSION,
-    PEL_SLOT_SPECULAR,  PEL_SLOT_MATERIAL};
-
 std::vector<float> shadeInto(Shader& shader, const Frame& f) {
     const auto target = setTarget(device(), shader, f);
     shader.commit().execute();
     return target.readAll<float>();
-}
-
-// One interleaved record per pixel, rows padded, an odd start: the G-buffer of a host that keeps structures.
-TEST(ShadeLayouts, InterleavedAndPaddedGivesTheSameBits) {
-    const Frame f = randomFrame(3, 101, 37, 2);
-    uint32_t words = 1;
-    for (PelImageSlot slot : floatSlots) words += f.slots[slot].components;
-    const uint32_t row = words * f.width + 5;
-    std::vector<float> memory(3 + size_t(row) * f.height, NAN);
-    uint32_t at = 3, offsets[PEL_SLOT_COUNT] = {};
-    for (PelImageSlot slot : floatSlots) {
-        const Image& image = f.slots[slot];
-        offsets[slot] = at;
-        for (uint32_t y = 0; y < f.height; ++y)
-            for (uint32_t x = 0; x < f.width; ++x)
-                for (uint32_t c = 0; c < image.components; ++c)
-                    memory[at + size_t(y) * row + x * words + c] =
-                        float(image.at(size_t(y) * f.width + x, c));
-        at += image.components;
-    }
-    const Buffer buffer(device(), memory);
-    Shader shader(device());
-    setFrame(device(), shader, f, tables());
-    for (PelImageSlot slot : floatSlots) {
-        PelImageDesc desc =
-            imageDesc(buffer, floatFormats[f.slots[slot].components], f.width, f.height, offsets[slot] * 4);
-        desc.pixelStride = words * 4;
-        desc.rowStride = row * 4;
-        shader.set(slot, desc);
-    }
-    EXPECT_EQ(shadeInto(shader, f), shade(f));
 }
 
 TEST(ShadeLayouts, PlanarAndRgbaGiveTheSameBits) {

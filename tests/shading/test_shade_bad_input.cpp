@@ -1,9 +1,8 @@
 // What a shader refuses, and what the messages say; pixels with NaN, Inf or no material do not change their
 // neighbours.
-#include <cstring>
-
 #include "cl/cl_spy.h"
 #include "shader_ready.h"
+#include "test.h"
 
 using namespace shade_test;
 
@@ -219,7 +218,7 @@ TEST(ShadeBadPixels, NanAndInfStayInTheirPixel) {
     // Invalid pixels are always counted, by each kind of tile list, also where other pixels are not counted.
     for (const PelTileLists lists : {PEL_TILES_ONE_LIST, PEL_TILES_PER_VARIANT, PEL_TILES_NO_LIST}) {
         f.options.tileLists = lists;
-        f.options.disableSkipping = f.options.countPixels = lists == PEL_TILES_NO_LIST;
+        f.options.countPixels = lists == PEL_TILES_NO_LIST;
         const auto [result, stats] = shadeCounted(f);
         EXPECT_EQ(stats.pixelsInvalid, bad.size());
         EXPECT_EQ(stats.pixelsSpecular > 0, bool(f.options.countPixels));

@@ -1,12 +1,9 @@
 // Counters of PelShaderStats against the host's own counts; and materials in the last column alone, of frames
 // one pixel wider than the vectors: nothing is left out, and nothing else is touched. On devices of all
 // widths.
-#include <gtest/gtest.h>
-
 #include "device_lanes.h"
 #include "shadow_forms.h"
 #include "shared/shade.h"
-#include "tolerances.h"
 
 using namespace shade_test;
 using lanes::deviceOf;

@@ -5,11 +5,7 @@
 // calls of the library, and let one of them fail.
 #include <CL/cl.h>
 #include <dlfcn.h>
-#include <gtest/gtest.h>
-
-#include <atomic>
-#include <cstdlib>
-#include <new>
+#include "test.h"
 
 #include "pass_scene.h"
 
@@ -105,7 +101,7 @@ TEST_P(ShadeFaults, EachAllocationInTurn) {
     MapLight from = mapLight(3, false, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 61);
     Frame f = reliefFrame(1, 70, 20, 0.4f);
     f.lights = {from.light};
-    f.options.blurNormals = f.options.countPixels = 1;
+    f.options.blurNormals = 1;
     f.curvatureLut = f.shadowLut = true;
     f.slots[PEL_SLOT_CURVATURE] = f.slots[PEL_SLOT_MATERIAL];
     f.cube = {2, std::vector<Rgb>(24, Rgb{0.25, 0.5, 0.125})};

@@ -3,6 +3,7 @@
 #include "diffusion/lit_ball.h"
 #include "held_queue.h"
 #include "pass_scene.h"
+#include "test.h"
 
 using namespace pellucid;
 using fixture::expectReturns;

@@ -1,14 +1,7 @@
 // A material that names its profile: tables, widths, transmission and gain that follow from it, against
 // closed forms and the oracle's tables; units; what is said about settings without effect.
-#include <gtest/gtest.h>
-
-#include <pellucid/pellucid.hpp>
-
-#include <cmath>
-#include <random>
-
-#include "reference/lut.h"
-#include "tolerances.h"
+#include "diffusion/scatter_scene.h"
+#include "test.h"
 
 using namespace pellucid;
 
@@ -46,29 +39,23 @@ struct Inputs {
     PelShaderOptions options = pelShaderOptionsDefaults();
 };
 
-class Shading {
-  public:
-    Shading(const PelMaterial& material, const Inputs& in = {}, const Lut& curvatureLut = {},
-            const Lut& shadowLut = {})
-        : shader(device), out(device, width * height * 3 * sizeof(float)) {
+struct Shading : scatter_scene::ShownImages {
+    explicit Shading(const PelMaterial& material, const Inputs& in = {})
+        : ShownImages(Device(""), ::width, ::height) {
+        const auto scaled = [](std::vector<float> values, float by) {
+            for (float& v : values) v *= by;
+            return values;
+        };
         shader.set(in.options);
-        shader.set(PEL_SLOT_RADIANCE, imageDesc(out, PEL_FORMAT_RGB32F, width, height));
         set(PEL_SLOT_NORMAL_SHADING, scene.normals);
-        set(PEL_SLOT_CURVATURE, scene.curvature, 1 / in.perMillimetre);
-        if (in.meanCurvature) set(PEL_SLOT_MEAN_CURVATURE, scene.meanCurvature, 1 / in.perMillimetre);
-        if (in.thickness) set(PEL_SLOT_THICKNESS, scene.thickness, in.perMillimetre);
+        set(PEL_SLOT_CURVATURE, scaled(scene.curvature, 1 / in.perMillimetre));
+        if (in.meanCurvature) set(PEL_SLOT_MEAN_CURVATURE, scaled(scene.meanCurvature, 1 / in.perMillimetre));
+        if (in.thickness) set(PEL_SLOT_THICKNESS, scaled(scene.thickness, in.perMillimetre));
         PelLight light = pelLightDefaults();
         std::copy(scene.toLight, scene.toLight + 3, light.toLight);
         shader.set(std::vector<PelLight>{light});
-        if (in.shadow)
-            shader.set(0, PEL_LIGHT_WIDE_SHADOW,
-                       imageDesc(Buffer(device, scene.shadow), PEL_FORMAT_R32F, width, height));
-        shader.setMaterial(1, material, curvatureLut, shadowLut).commit();
-    }
-    void set(PelImageSlot slot, std::vector<float> values, float scale = 1) {
-        for (float& v : values) v *= scale;
-        const PelFormat format = values.size() == width * height ? PEL_FORMAT_R32F : PEL_FORMAT_RGB32F;
-        shader.set(slot, imageDesc(Buffer(device, values), format, width, height));
+        if (in.shadow) ShownImages::setMap(PEL_LIGHT_WIDE_SHADOW, scene.shadow, width, height);
+        shader.setMaterial(1, material).commit();
     }
     // A square map over `extent` a side about the origin, of a light that looks down.
     void setMap(const std::vector<float>& depth, uint32_t side, float extent) {
@@ -77,19 +64,11 @@ class Shading {
         light.worldToShadow[5] = light.worldToShadow[10] = -1 / extent;
         light.worldToShadow[3] = light.worldToShadow[7] = light.worldToShadow[11] = 0.5f;
         light.shadowDepthRange = extent;
-        const Buffer map(device, depth);
-        shader.set(std::vector<PelLight>{light})
-            .set(0, PEL_LIGHT_SHADOW_MAP, imageDesc(map, PEL_FORMAT_R32F, side, side))
-            .commit();
-    }
-    std::vector<float> radiance() {
-        shader.execute();
-        return out.readAll<float>();
+        shader.set(std::vector<PelLight>{light});
+        ShownImages::setMap(PEL_LIGHT_SHADOW_MAP, depth, side, side);
+        shader.commit();
     }
     Scene scene;
-    Device device{""};
-    Shader shader;
-    Buffer out;
 };
 
 PelMaterial materialOf(const Profile& profile) {
@@ -115,7 +94,7 @@ TEST(ShadeProfile, TheProfileAloneGivesItsTablesAndWidths) {
     Inputs in;
     in.thickness = false;
     Shading shading(materialOf(profile), in);
-    const auto radiance = shading.radiance();
+    const auto radiance = shading.execute();
     const auto truth = oracleProfile();
     for (size_t i = 0; i < width * height; ++i) {
         const auto d =
@@ -147,7 +126,7 @@ TEST(ShadeProfile, ARadiusOfZeroIsTheTablesOwn) {
     a.shader.setMaterial(1, silent, own).commit();
     b.shader.setMaterial(1, spoken, other).commit();
     EXPECT_EQ(a.shader.material(1).diffusionRadius, marble.info().radius);
-    EXPECT_EQ(a.radiance(), b.radiance());
+    EXPECT_EQ(a.execute(), b.execute());
     // Profiles are in mm, whatever the scene's unit is; a radius that the table is given is in the scene's.
     Inputs cm;
     cm.options.millimetresPerUnit = 10;
@@ -165,10 +144,10 @@ TEST(ShadeProfile, TransmissionIsTheSlabsAndNeverAdded) {
     const Profile profile = Profile::burleyDistance(distance);
     const auto truth = oracleProfile();
     Shading shading(materialOf(profile));
-    const auto radiance = shading.radiance();
+    const auto radiance = shading.execute();
     PelMaterial off = materialOf(profile);
     off.transmission = 0;
-    const auto without = Shading(off).radiance();
+    const auto without = Shading(off).execute();
     int through = 0;
     for (size_t i = 0; i < width * height; ++i)
         for (size_t c = 0; c < 3; ++c) {
@@ -183,7 +162,7 @@ TEST(ShadeProfile, TransmissionIsTheSlabsAndNeverAdded) {
     EXPECT_GT(through, 100);
     PelMaterial half = materialOf(profile);
     half.transmission = 0.5f;
-    const auto less = Shading(half).radiance();
+    const auto less = Shading(half).execute();
     for (size_t i = 0; i < less.size(); ++i) EXPECT_LE(less[i], radiance[i]);
 }
 
@@ -220,10 +199,10 @@ TEST(ShadeProfile, LitSkinLosesNothingToTheShadow) {
     const Profile profile = Profile::burleyDistance(distance);
     Inputs in;
     in.thickness = false;
-    const auto lit = Shading(materialOf(profile), in).radiance();
+    const auto lit = Shading(materialOf(profile), in).execute();
     in.shadow = true;
     Shading shading(materialOf(profile), in);
-    const auto shadowed = shading.radiance();
+    const auto shadowed = shading.execute();
     for (size_t i = 0; i < width * height; ++i)
         for (size_t c = 0; c < 3; ++c) {
             if (shading.scene.shadow[i] == 1) {
@@ -239,12 +218,12 @@ TEST(ShadeProfile, UnitsOfTheSceneDoNotMatter) {
     Inputs in;
     in.shadow = in.meanCurvature = true;
     PelMaterial material = materialOf(profile);
-    const auto expected = Shading(material, in).radiance();
+    const auto expected = Shading(material, in).execute();
     for (float unit : {10.0f, 1000.0f, 0.001f}) {
         in.perMillimetre = 1 / unit;
         in.options.millimetresPerUnit = unit;
         Shading shading(material, in);
-        const auto radiance = shading.radiance();
+        const auto radiance = shading.execute();
         for (size_t i = 0; i < radiance.size(); ++i)
             EXPECT_NEAR(radiance[i], expected[i], tolerance::unitRoundTrip) << "unit " << unit;
         EXPECT_NEAR(shading.shader.material(1).diffusionRadius * unit / profile.info().radius, 1,
@@ -257,7 +236,7 @@ TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
     const Profile profile = Profile::burley(path, albedo);
     Inputs in;
     in.thickness = false;
-    const auto plain = Shading(materialOf(profile), in).radiance();
+    const auto plain = Shading(materialOf(profile), in).execute();
     in.meanCurvature = true;
     PelMaterial material = materialOf(profile);
     const auto expectGain = [&](const Profile& of, const auto& pathOf, double strength) {
@@ -266,7 +245,7 @@ TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
         Shading shading(material, in);
         PelMaterial flat = material;
         flat.curvatureGain = 0;
-        const auto gained = shading.radiance(), without = Shading(flat, in).radiance();
+        const auto gained = shading.execute(), without = Shading(flat, in).execute();
         for (size_t i = 0; i < width * height; ++i)
             for (size_t c = 0; c < 3; ++c) {
                 const double x = strength * pathOf(c) * shading.scene.meanCurvature[i],
@@ -384,7 +363,7 @@ TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
     shading.set(PEL_SLOT_NORMAL_SHADING, normals);
     shading.set(PEL_SLOT_CURVATURE, std::vector<float>(width * height, 0.0f));  // the table's dark side is 0
     shading.setMap(depth, side, extent);
-    const auto radiance = shading.radiance();
+    const auto radiance = shading.execute();
     for (uint32_t x = 0; x < width; ++x) {
         const float at = position[3 * x];
         if (at > -1 && at < 6) continue;  // within two texels and a half of the step: one or the other

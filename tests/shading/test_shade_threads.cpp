@@ -1,10 +1,10 @@
 // Shaders used from several threads, on one device and on several; objects that outlive the caller's device;
 // progress and cancelling; and what a second frame costs.
-#include <thread>
-
 #include "cl/cl_spy.h"
+#include "held_queue.h"
 #include "pass_scene.h"
 #include "shader_ready.h"
+#include "test.h"
 
 using namespace shade_test;
 
@@ -32,7 +32,6 @@ std::vector<Frame> frames(uint32_t count) {
     for (uint32_t seed = 1; seed <= count; ++seed) {
         made.push_back(randomFrame(seed, 150, 20 + seed, 1));
         made.back().lights[0].params.type = PEL_LIGHT_DIRECTIONAL;
-        made.back().options.countPixels = 1;
     }
     return made;
 }
@@ -78,39 +77,6 @@ TEST(ShadeThreads, SubmissionsOfSeveralShadersInOneQueue) {
     for (int round = 0; round < 3; ++round)
         for (const Shader& shader : shaders) shader.execute(&submit);
     for (size_t i = 0; i < all.size(); ++i) EXPECT_EQ(targets[i].readAll<float>(), shade(all[i])) << i;
-}
-
-TEST(ReleasedDevice, IsKeptByWhatIsMadeOfIt) {
-    const Frame f = randomFrame(1, 60, 20, 1);
-    const auto right = shade(f);
-    PelDevice handle = nullptr;
-    Tables own;
-    Shader shader;
-    Buffer target;
-    {
-        const Device ours("");
-        handle = ours.get();
-        own = makeTables(ours);
-        shader = Shader(ours);
-        target = Buffer(ours, f.pixels() * 12);
-        setFrame(ours, shader, f, own);
-        shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
-    }  // the caller's last reference
-    shader.commit().execute();
-    EXPECT_EQ(target.readAll<float>(), right);
-    EXPECT_EQ(shader.stats().tilesTotal, 10u);
-    target = {};  // the shader keeps the image, too
-    shader.execute();
-    own = {};
-    shader.execute();
-    shader = {};
-    // Nothing is left: the handle is refused, not followed.
-    PelDeviceInfo info = pelDeviceInfoDefaults();
-    EXPECT_EQ(pelDeviceGetInfo(handle, &info), PEL_ERROR_INVALID_ARGUMENT);
-    PelShader late = nullptr;
-    EXPECT_EQ(pelShaderCreate(handle, &late), PEL_ERROR_INVALID_ARGUMENT);
-    EXPECT_FALSE(std::string(pelGetErrorMessage()).empty());
-    pelDeviceRelease(handle);  // does nothing
 }
 
 // Work that is queued when its objects are released is done all the same.
@@ -194,9 +160,75 @@ TEST(ShadeProgress, IsToldAndMayCancel) {
     }
 }
 
+// Names, launches, tiles and times of passes, of frames that the caller waits for and of frames in flight.
+TEST(ShadeStats, PassesByName) {
+    Frame f = randomFrame(5, 120, 60, 1);
+    for (const uint32_t profiling : {1u, 0u}) {
+        PelDeviceDesc desc = pelDeviceDescDefaults();
+        desc.selector = device().info().name;
+        desc.profiling = profiling;
+        const pellucid::Device own(desc);
+        Shader shader(own);
+        setFrame(own, shader, f, makeTables(own));
+        const auto target = setTarget(own, shader, f);
+        shader.commit();
+        own.finish();
+        EXPECT_TRUE(shader.passes().empty()) << "nothing was executed";
+        shader.execute();
+        const PelShaderStats stats = shader.stats();
+        std::vector<PelPassStats> passes = shader.passes();
+        ASSERT_EQ(passes.size(), 2u);
+        EXPECT_STREQ(passes[0].name, "classify_tiles");
+        EXPECT_STREQ(passes[1].name, "shade");
+        double milliseconds = 0;
+        for (const PelPassStats& pass : passes) {
+            EXPECT_EQ(pass.launches, 1u);
+            EXPECT_EQ(pass.tiles, stats.tilesTotal);
+            EXPECT_EQ(pass.execution, 1u);
+            EXPECT_EQ(pass.milliseconds > 0, profiling == 1);
+            milliseconds += pass.milliseconds;
+        }
+        EXPECT_GT(passes[0].bytes, stats.tilesTotal * sizeof(uint32_t));
+        EXPECT_EQ(milliseconds, stats.deviceMilliseconds);
+        if (!profiling) continue;
+        // Frames held back: the newest that has finished is the first one until they go on.
+        fixture::HeldQueue held(own);
+        const spy::Counts before = spy::counts();
+        PelEvent done = nullptr;
+        const PelSubmit submit{nullptr, 0, &done};
+        for (int i = 0; i < 3; ++i) {
+            if (done) pelEventRelease(done);
+            f.ambient.constant[1] += 0.125f;
+            f.lights[0].params.color[0] += 0.125f;
+            std::vector<PelLight> lights;
+            for (const Light& light : f.lights) lights.push_back(light.params);
+            shader.set(lights);
+            shader.set(f.ambient).set(pelCameraDefaults()).commit();
+            shader.execute(&submit);
+            EXPECT_EQ(shader.passes().at(1).execution, 1u);
+        }
+        EXPECT_EQ(spy::counts().waits, before.waits) << "none of these calls waits";
+        EXPECT_EQ(spy::counts().buffersMade, before.buffersMade) << "nor allocates";
+        held.release();
+        pellucid::Event(done).wait();
+        EXPECT_EQ(shader.passes().at(1).execution, 4u);
+    }
+    uint32_t room = 1;
+    PelPassStats one = pelPassStatsDefaults();
+    Shader shader(device());
+    setFrame(device(), shader, f, tables());
+    const auto target = setTarget(device(), shader, f);
+    shader.commit().execute();
+    expectRefused("2 structures", [&] { return pelShaderGetPasses(shader.get(), &one, &room); });
+    expectRefused("count", [&] { return pelShaderGetPasses(shader.get(), &one, nullptr); });
+    expectRefused("PelPassStats", [&] { return pelShaderGetPasses(shader.get(), nullptr, &(room = 9)); });
+    PelDeviceDesc desc = pelDeviceDescDefaults();
+    desc.profiling = 3;
+    expectRefused("PelDeviceDesc.profiling is 3", [&] { pellucid::Device refused(desc); });
+}
+
 TEST(ShadeStats, NothingIsSentOrBuiltTwice) {
     Frame f = randomFrame(5, 120, 60, 1);
-    f.options.countPixels = 1;
     Shader shader(device());
     setFrame(device(), shader, f, tables());
     const auto target = setTarget(device(), shader, f);

@@ -1,11 +1,7 @@
 // Sharp shadows from shadow maps: neither acne nor gaps, whatever the angle, the shape and the unit of
 // lengths.
-#include <gtest/gtest.h>
-
-#include <functional>
-
 #include "pass_scene.h"
-#include "tolerances.h"
+#include "test.h"
 
 using namespace shade_test;
 
@@ -79,13 +75,6 @@ Vec3 lightAt(double cosine, double turn) {
 
 const Cast ground = [](Vec3 o, Vec3 d) { return -o[2] / d[2]; };
 
-// To a ball about the origin; -1: the ray misses it.
-double reachOfBall(Vec3 o, Vec3 d, double radius) {
-    const double dd = reference::dot(d, d), od = reference::dot(o, d),
-                 root = od * od - dd * (reference::dot(o, o) - radius * radius);
-    return root < 0 ? -1 : (-od - std::sqrt(root)) / dd;
-}
-
 void scatterOverGround(Scene& s, uint32_t count) {
     Random random(3);
     for (uint32_t i = 0; i < count; ++i) {
@@ -112,119 +101,6 @@ TEST(SharpShadow, APlaneThrowsNoneOnItselfAtAnyAngleInAnyUnit) {
                     EXPECT_LT(most, 1 + 1e-4);
                 }
             }
-}
-
-// A ball's own limb is the hardest case: there the tangent plane fits over less than a texel. The error is of
-// irradiance.
-TEST(SharpShadow, ABallIsLitUpToItsTerminator) {
-    for (double radius : {10.0, 3.0})
-        for (bool perspective : {false, true}) {
-            const Cast ball = [&](Vec3 o, Vec3 d) {
-                const double t = reachOfBall(o, d, radius);
-                return t < 0 ? 290.0 : t;
-            };
-            Scene s = sceneOf(lightAt(0.6, 1), perspective, false, ball);
-            Random random(5);
-            for (int i = 0; i < 4000; ++i) {
-                float n[3];
-                random.unit(n);
-                s.normals.push_back({n[0], n[1], n[2]});
-                s.points.push_back(radius * s.normals.back());
-            }
-            double worst = 0, sum = 0;
-            const std::vector<float> e = lit(s);
-            for (size_t i = 0; i < e.size(); ++i) {
-                const double error = e[i] - std::max(cosine(s, i), 0.0);
-                worst = std::max(worst, std::abs(error));
-                sum += error * error;
-            }
-            std::printf("ball of radius %g: worst %.4f, rms %.5f\n", radius, worst,
-                        std::sqrt(sum / double(e.size())));
-            EXPECT_LT(worst, 0.01);
-            EXPECT_LT(std::sqrt(sum / double(e.size())), 1e-4);
-        }
-}
-
-// A sheet over half of the ground: what is under it is dark up to its edge, however near it hangs, as far as
-// texels can tell.
-TEST(SharpShadow, EdgesAreWhereTheyBelongAndOccludersMayBeNear) {
-    for (double c : {1.0, 0.7, 0.4}) {
-        const Vec3 toLight = lightAt(c, 0.3);
-        for (double texels : {1.0, 4.0, 60.0}) {
-            const double height = texels * extent / mapSize;
-            const Cast sheet = [&](Vec3 o, Vec3 d) {
-                const double t = (height - o[2]) / d[2];
-                return (o + t * d)[0] < 0 ? t : ground(o, d);
-            };
-            Scene s = sceneOf(toLight, false, false, sheet);
-            scatterOverGround(s, 4000);
-            // Where the sheet's edge throws its shadow.
-            const double edge = -height * toLight[0] / toLight[2];
-            const std::vector<float> e = lit(s);
-            double misplaced = 0;
-            for (size_t i = 0; i < e.size(); ++i) {
-                const double share = e[i] / cosine(s, i), beyond = (s.points[i][0] - edge) / s.texel;
-                if (beyond > 2 / c) {
-                    EXPECT_GT(share, 0.999) << c << " " << texels << " at " << beyond;
-                }
-                if (beyond < -2 / c) {
-                    EXPECT_LT(share, 0.001) << c << " " << texels << " at " << beyond;
-                }
-                misplaced += (share - (beyond > 0)) * 16 / double(e.size());
-            }
-            EXPECT_LT(std::abs(misplaced), 0.6 * s.texel / c)
-                << "how far the edge is off its place: cosine " << c << " height " << texels;
-        }
-    }
-}
-
-// An edge lies where it belongs to a part of a texel, however it is turned against the texels. A round body's
-// outline is known better: its surface tells where it ends. RMS of light within two texels of edges.
-TEST(SharpShadow, EdgesAreWithinAPartOfATexel) {
-    Random random(7);
-    const auto square = [&](const Cast& cast, int points, const auto& place) {
-        Scene s = sceneOf({0, 0, 1}, false, false, cast);
-        std::vector<double> beyond;
-        for (int i = 0; i < points; ++i) {
-            beyond.push_back(random.uniform(-2, 2) * s.texel);
-            const auto [x, y] = place(beyond.back());
-            s.points.push_back({x, y, 0});
-            s.normals.push_back({0, 0, 1});
-        }
-        const std::vector<float> e = lit(s);
-        double sum = 0;
-        for (size_t i = 0; i < e.size(); ++i) sum += std::pow(e[i] - (beyond[i] > 0), 2) / points;
-        return sum;
-    };
-    double straight = 0, round = 0;
-    for (int k = 0; k < 24; ++k) {
-        const double turn = 0.13 + 0.27 * k, edge = 0.11 * 0.37 * k, height = 40 * extent / mapSize;
-        const Cast sheet = [&](Vec3 o, Vec3 d) {
-            const double t = (height - o[2]) / d[2];
-            const Vec3 at = o + t * d;
-            return std::cos(turn) * at[0] + std::sin(turn) * at[1] < edge ? t : ground(o, d);
-        };
-        straight += square(sheet, 400, [&](double beyond) {
-            const double along = random.uniform(-8, 8), x = edge + beyond;
-            return std::pair(std::cos(turn) * x - std::sin(turn) * along,
-                             std::sin(turn) * x + std::cos(turn) * along);
-        });
-    }
-    for (const double radius : {4.0, 6.3, 9.1}) {
-        const Vec3 middle{0.07 * radius, -0.11, 20};
-        const Cast ball = [&](Vec3 o, Vec3 d) {
-            const double t = reachOfBall(o - middle, d, radius);
-            return t < 0 ? ground(o, d) : t;
-        };
-        round += square(ball, 2000, [&](double beyond) {
-            const double turn = random.uniform(0, 6.2831853), r = radius + beyond;
-            return std::pair(middle[0] + r * std::cos(turn), middle[1] + r * std::sin(turn));
-        });
-    }
-    std::printf("RMS error of light: straight edges %.4f, round %.4f\n", std::sqrt(straight / 24),
-                std::sqrt(round / 3));
-    EXPECT_LT(std::sqrt(straight / 24), tolerance::sharpEdge);
-    EXPECT_LT(std::sqrt(round / 3), tolerance::sharpRoundEdge);
 }
 
 // The pass is its definition, on a map of discs and noise, where shadows, edges and texels at the tolerance

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from dataclasses import asdict
 
 
 def main() -> int:
@@ -25,7 +26,6 @@ def main() -> int:
         help="give up after so many seconds without any worker (default: 300)")
     add("--jobs", "-j", type=int, default=0, metavar="N",
         help="tables in flight per worker (default: four per core)")
-    add("--no-read-back", action="store_true", help="believe the workers' check sums")
     add("--json", action="store_true", help="one JSON object on standard output")
     a = parser.parse_args()
     if a.scheduler and (a.workers or a.device):
@@ -46,8 +46,7 @@ def main() -> int:
     error = None
     try:
         summary = run(a.manifest, a.out, scheduler=a.scheduler, workers=a.workers, device=a.device,
-                      timeout=a.timeout, jobs=a.jobs, patience=a.patience, read_back=not a.no_read_back,
-                      progress=True)
+                      timeout=a.timeout, jobs=a.jobs, patience=a.patience, progress=True)
     except ValueError as e:
         return fail(3, e)
     except BatchError as e:
@@ -58,7 +57,7 @@ def main() -> int:
     except KeyboardInterrupt:
         return fail(4, "interrupted; the same command goes on from here")
     if a.json:
-        print(json.dumps(summary.to_dict(), indent=2))
+        print(json.dumps(asdict(summary), indent=2))
     else:
         print(f"{summary.entries} tables: {summary.made} made ({summary.redone} of them anew), "
               f"{summary.kept} were there, {summary.failed} failed")

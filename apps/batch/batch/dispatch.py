@@ -15,22 +15,23 @@ import sys
 import threading
 import time
 from concurrent.futures import CancelledError, ThreadPoolExecutor
-from typing import Any, Callable, Optional
+from typing import Any
 
 import distributed
 
 from .. import __version__
+from ..device import progress_bar
 from . import worker as work
 from .manifest import Manifest
-from .report import BatchError, Display, NoWorker, Summary
+from .report import BatchError, NoWorker, Summary
 from .store import Store, StoreError
 
 PIECES = 256  # at least, for workers that come later
-PIECES_PER_WORKER = 8  # that is there or was asked for, so that all end together
+PIECES_PER_WORKER = 8  # that is there, so that all end together
 LARGEST_PIECE = 1024  # entries
 ATTEMPTS = 3  # of an entry by itself, before it is to blame for the workers that it costs
 LOOK_SECONDS = 0.5  # between two looks at who is there
-ASK_AGAIN_SECONDS = 20  # for workers that were lost; above Dask's 15 to notice
+LATEST_SECONDS = 10.0  # until a dismissed process has ended; Dask kills it after four
 
 
 def on_worker(*arguments: Any) -> tuple[str, str, Any]:
@@ -59,19 +60,20 @@ on_worker.__module__ = "__main__"
 class Dispatcher:
     """One batch on one cluster; `run` does it."""
 
-    def __init__(self, client: Any, manifest: Manifest, store: Store, display: Display, *, timeout: float,
-                 jobs: int, patience: float, read_back: bool, ask: Optional[Callable[[], None]],
-                 expected: int) -> None:
-        self._client, self._manifest, self._store, self._display = client, manifest, store, display
-        self._timeout, self._jobs, self._patience, self._read_back = timeout, jobs, patience, read_back
-        self._ask, self._expected = ask, expected
+    def __init__(self, client: Any, manifest: Manifest, store: Store, *, progress: bool, timeout: float,
+                 jobs: int, patience: float) -> None:
+        self._client, self._manifest, self._store = client, manifest, store
+        self._spoken, self._bar_of_all = progress, progress_bar() if progress else None
+        self._timeout, self._jobs, self._patience = timeout, jobs, patience
         self._open = set(range(len(manifest)))  # entries that nobody has finished
         self._there = [False] * len(manifest)
         self._attempts: dict[int, int] = {}
         self._present: set[str] = set()
         self._barred: set[str] = set()
-        self._pieces: dict[Any, list[int]] = {}  # by future
-        self._alone = self._asked = time.monotonic()
+        self._garbled: set[str] = set()  # workers that gave garbage, whose processes may still write
+        # By future: entries, and the workers that were asked; none where all were.
+        self._pieces: dict[Any, tuple[list[int], set[str]]] = {}
+        self._alone = time.monotonic()
         self._last_trouble = ""
         self.summary = Summary(entries=len(manifest), duplicates=manifest.duplicates)
 
@@ -97,7 +99,7 @@ class Dispatcher:
                 self._client.cancel(list(self._pieces), force=True)
             self.summary.total_ms = 1e3 * (time.monotonic() - start)
             self.summary.per_second = self.summary.made / max(time.monotonic() - start, 1e-9)
-            self._display.show(self.summary.entries - len(self._open), last=True)
+            self._bar_of_all = None  # ends it
             self._write_index()
         return self.summary
 
@@ -108,24 +110,52 @@ class Dispatcher:
         distributed.Variable(self._name, client=self._client).set(packed)
         self._look()
         count = len(self._manifest)
-        pieces = max(PIECES, PIECES_PER_WORKER * max(len(self._present), self._expected))
+        pieces = max(PIECES, PIECES_PER_WORKER * len(self._present))
         size = max(1, min(LARGEST_PIECE, count // pieces))
         for first in range(0, count, size):
             self._submit(list(range(first, min(first + size, count))))
         looked = time.monotonic()
         with ThreadPoolExecutor(8) as readers:
-            while self._open:
+            while self._open or self._written_late(readers):
                 if time.monotonic() - looked > LOOK_SECONDS:
                     self._look()
                     looked = time.monotonic()
                 done = [future for future in self._pieces if future.done()]
                 for future, answer in zip(done, readers.map(self._receive, done)):
-                    self._handle(self._pieces.pop(future), answer)
-                self._display.show(self.summary.entries - len(self._open))
+                    piece = self._pieces.pop(future, None)
+                    if piece:  # not submitted anew meanwhile
+                        self._handle(piece[0], answer)
+                if self._bar_of_all:
+                    self._bar_of_all(1 - len(self._open) / len(self._manifest), "tables")
                 if not done:
                     time.sleep(0.02)
         with contextlib.suppress(NoWorker):
             self._look()  # who was lost last
+
+    def _written_late(self, readers: ThreadPoolExecutor) -> bool:
+        """Whether entries are open again, because a worker that was dismissed has gone on until its process
+        ended, and written over files that had been checked."""
+        if not self._garbled:
+            return False
+        end = time.monotonic() + LATEST_SECONDS
+        with contextlib.suppress(NoWorker):
+            while self._garbled & self._present and time.monotonic() < end:
+                time.sleep(0.1)
+                self._look()
+        self._garbled.clear()
+        made = [i for i, there in enumerate(self._there) if there]
+
+        def is_whole(i: int) -> bool:
+            return self._manifest.holds(i, self._store.read(self._manifest.entries[i].file) or b"")
+
+        try:
+            damaged = [i for i, whole in zip(made, readers.map(is_whole, made)) if not whole]
+        except StoreError as e:
+            raise BatchError(str(e)) from e
+        self._open.update(damaged)
+        if damaged:
+            self._submit(damaged)
+        return bool(damaged)
 
     def _write_index(self) -> None:
         """Also of a batch that did not come to its end, unless the output failed or no table is there."""
@@ -152,9 +182,11 @@ class Dispatcher:
             self._trouble(f"worker {address} is gone")
         self._present = present
         self._barred &= present
-        if self._ask and now - self._asked > ASK_AGAIN_SECONDS:
-            self._ask()
-            self._asked = now
+        # Dask asks others only while there are any: what was left when all had gone waits for ever.
+        for future in [f for f, (_, asked) in self._pieces.items()
+                       if asked and not asked & present and not f.done()]:
+            self._client.cancel([future], force=True)
+            self._submit(self._pieces.pop(future)[0])
         if present - self._barred:
             self._alone = now
         elif now - self._alone > self._patience:
@@ -174,11 +206,16 @@ class Dispatcher:
                 self._client.restart_workers([address], timeout=30, raise_for_error=False)
 
         if restart:
+            self._garbled.add(address)
             threading.Thread(target=renew, daemon=True).start()
 
     def _trouble(self, message: str) -> None:
         self._last_trouble = message
-        self._display.message(message)
+        self._say(message)
+
+    def _say(self, message: str) -> None:
+        if self._spoken:
+            print(("\r\033[K" if sys.stderr.isatty() else "") + message, file=sys.stderr, flush=True)
 
     def _submit(self, indices: list[int]) -> None:
         # If all usable workers go, Dask asks others.
@@ -186,7 +223,7 @@ class Dispatcher:
         future = self._client.submit(on_worker, self._name, __version__, indices, self._store.out, self._jobs,
                                      self._timeout, workers=usable or None, allow_other_workers=bool(usable),
                                      pure=False)
-        self._pieces[future] = indices
+        self._pieces[future] = indices, set(usable or ())
 
     def _again(self, indices: list[int]) -> None:
         """Hands entries out once more, in halves: one of them may be what costs the workers."""
@@ -213,7 +250,8 @@ class Dispatcher:
             address, kind, answers = future.result(timeout=30)
             if kind == "made":
                 try:
-                    answers = [(*answer, self._is_true(self._pieces[future], *answer)) for answer in answers]
+                    indices = self._pieces[future][0]
+                    answers = [(*answer, self._is_true(indices, *answer)) for answer in answers]
                 except (LookupError, TypeError, ValueError):
                     return address, "garbage", "no answer of a known form"
             return address, kind, answers
@@ -224,7 +262,7 @@ class Dispatcher:
         """Whether an entry's file is there, whole, and what the worker says."""
         if index not in indices or what not in work.KINDS or not isinstance(text, str):
             raise ValueError(what)
-        if what not in work.FILE_THERE or not self._read_back:
+        if what not in work.FILE_THERE:
             return True
         data = self._store.read(self._manifest.entries[index].file)
         return (data is not None and self._manifest.holds(index, data) and
@@ -273,6 +311,8 @@ class Dispatcher:
 
     def _close(self, address: str, index: int, what: str) -> None:
         self._open.discard(index)
+        if self._there[index]:  # counted before it was written over
+            return
         self._there[index] = True
         if what == work.KEPT:
             self.summary.kept += 1
@@ -283,9 +323,10 @@ class Dispatcher:
 
     def _close_failed(self, index: int, message: str) -> None:
         self._open.discard(index)
+        self._there[index] = False
         self._entry_failed(f"{self._manifest.path}:{self._manifest.entries[index].line}: {message}")
 
     def _entry_failed(self, message: str) -> None:
         self.summary.failed += 1
         self.summary.warnings.append(message)
-        self._display.message(message)
+        self._say(message)

@@ -1,11 +1,7 @@
-"""Results of a batch, and its progress on standard error."""
+"""Results of a batch."""
 from __future__ import annotations
 
-import sys
-import time
-from collections import deque
-from dataclasses import asdict, dataclass, field
-from typing import Any
+from dataclasses import dataclass, field
 
 
 class BatchError(Exception):
@@ -35,35 +31,3 @@ class Summary:
     per_second: float = 0.0
     made_by: dict[str, int] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
-
-    def to_dict(self) -> dict[str, Any]:
-        """The same for JSON."""
-        return asdict(self)
-
-
-class Display:
-    """Rate and time left: in place on a terminal, a line every ten seconds elsewhere."""
-
-    def __init__(self, total: int, quiet: bool) -> None:
-        self._total, self._quiet, self._terminal = total, quiet, sys.stderr.isatty()
-        self._start = self._spoken = time.monotonic()
-        self._past = deque([(self._start, 0)])
-
-    def message(self, text: str) -> None:
-        if not self._quiet:
-            print(("\r\033[K" if self._terminal else "") + text, file=sys.stderr, flush=True)
-
-    def show(self, done: int, last: bool = False) -> None:
-        now = time.monotonic()
-        if self._quiet or now - self._start < 0.5 or not last and now - self._spoken < (
-            0.1 if self._terminal else 10):
-            return
-        self._spoken = now
-        self._past.append((now, done))
-        while len(self._past) > 2 and now - self._past[1][0] > 10:  # the rate of the last ten seconds
-            self._past.popleft()
-        then, before = (self._start, 0) if last else self._past[0]
-        rate = (done - before) / max(now - then, 1e-3)
-        left = f", {(self._total - done) / rate:.0f} s left" if rate > 0 and not last else ""
-        print(f"{chr(13) if self._terminal else ''}{done} of {self._total}, {rate:.1f} per second{left}",
-              file=sys.stderr, end="   " if self._terminal and not last else "\n", flush=True)

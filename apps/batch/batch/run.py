@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import contextlib
-import functools
 import logging
 import os
 from collections.abc import Iterator, Sequence
@@ -11,7 +10,7 @@ from typing import Any, Optional
 from .._errors import PellucidError
 from ..device import Device, devices
 from .manifest import Manifest
-from .report import BatchError, Display, NoWorker, Summary
+from .report import BatchError, NoWorker, Summary
 from .store import Store, StoreError
 
 try:
@@ -65,7 +64,7 @@ def _connected(scheduler: Any) -> Iterator[Any]:
 
 def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str], *, scheduler: Any = None,
         workers: Optional[int] = None, device: Sequence[str] = (), timeout: float = 120.0, jobs: int = 0,
-        patience: float = 300.0, read_back: bool = True, progress: bool = False) -> Summary:
+        patience: float = 300.0, progress: bool = False) -> Summary:
     """Makes the tables of a manifest that are not in `out` yet.
 
     Parameters
@@ -75,11 +74,10 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
         A folder that all workers see under this name, or what fsspec knows (s3://...).
     scheduler : address, Client, cluster or None
         A Dask cluster whose workers have this package: the address of its scheduler, a distributed.Client,
-        or a cluster object as those of dask-jobqueue and dask-kubernetes. None: processes of this machine.
+        or a cluster object as those of dask-jobqueue and dask-kubernetes, whose own `scale` and `adapt` say
+        how many workers there are. None: processes of this machine.
     workers : int, optional
-        Without a scheduler: how many processes; one per device without it. With a cluster object: how many
-        it is asked for, again when some were lost (their job's time was up, or their machine died). They may
-        come late or never.
+        Without a scheduler: how many processes; one per device without it.
     device : selectors
         Without a scheduler: devices that the processes take by turns; all without it. On a cluster every
         worker takes its own, by its PELLUCID_DEVICE.
@@ -91,8 +89,6 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
         Entries in flight per worker; 0: four per core.
     patience : seconds
         How long to wait when there is no worker.
-    read_back : bool
-        False: believe the workers' check sums instead of reading every file once.
     progress : bool
         On standard error.
 
@@ -103,17 +99,13 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
     Raises
     ------
     ValueError
-        It is no manifest, or workers are asked of a scheduler that cannot start any.
+        It is no manifest, or workers are asked of a scheduler, which has its own.
     BatchError
         The output is full or gone; NoWorker, which is one: there is no scheduler, or no worker for too long.
         What is made is kept: the same call goes on from there.
     """
-    ask = None
     if scheduler is not None and workers is not None:
-        if not callable(getattr(scheduler, "scale", None)):
-            raise ValueError("workers: an address or a Client cannot start any; give a cluster object "
-                             "(SLURMCluster, KubeCluster) or leave it out")
-        ask = functools.partial(scheduler.scale, workers)
+        raise ValueError("workers are processes of this machine; a cluster has its own: cluster.scale(n)")
     if not isinstance(manifest, Manifest):
         manifest = Manifest(manifest)
     try:
@@ -130,8 +122,5 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
     else:
         connection = _connected(scheduler)
     with connection as client:
-        if ask:
-            ask()
-        return Dispatcher(client, manifest, store, Display(len(manifest), quiet=not progress),
-                          timeout=timeout, jobs=jobs, patience=patience, read_back=read_back, ask=ask,
-                          expected=workers or 0).run()
+        return Dispatcher(client, manifest, store, progress=progress, timeout=timeout, jobs=jobs,
+                          patience=patience).run()

@@ -1,11 +1,13 @@
 """Eyes: which materials are eyeballs, where their balls are and where they look."""
 
 import re
+from math import dist
+
+from mathutils import Matrix, Vector
 
 from .fault import warn
-from .principled import AUTO, EYE, PRESET
+from .principled import AUTO, EYE, PRESET, custom_keys
 
-PREFIX = "pellucid_eye_"  # custom properties of a Blender material that set a key of [[eye]]
 NAMED = re.compile(r"eye(ball)?s?([ ._-].*|\d*)$", re.IGNORECASE)
 ADULT = 12.0  # mm, radius of the sclera that the library's other lengths belong to
 LENGTHS = {"cornea_radius": 7.8, "limbus_radius": 6.0, "limbus_width": 1.0, "chamber_depth": 3.05,
@@ -23,40 +25,20 @@ def is_eye(material):
     return bool(NAMED.match(material.name))
 
 
-def solve(rows, right):
-    """Gauss's elimination with the largest pivot; rows and right are changed. None if there is no one
-    solution."""
-    n = len(rows)
-    for i in range(n):
-        pivot = max(range(i, n), key=lambda k: abs(rows[k][i]))
-        if abs(rows[pivot][i]) < 1e-12:
-            return None
-        rows[i], rows[pivot], right[i], right[pivot] = rows[pivot], rows[i], right[pivot], right[i]
-        for k in range(i + 1, n):
-            f = rows[k][i] / rows[i][i]
-            right[k] -= f * right[i]
-            rows[k] = [a - f * b for a, b in zip(rows[k], rows[i])]
-    x = [0.0] * n
-    for i in reversed(range(n)):
-        x[i] = (right[i] - sum(rows[i][k] * x[k] for k in range(i + 1, n))) / rows[i][i]
-    return x
-
-
 def fit_ball(points):
-    """Centre and radius of the sphere with the least squares of |p|^2 - 2 p.c - d, about the points' mean."""
-    n = len(points)
-    mean = [sum(p[k] for p in points) / n for k in range(3)]
-    rows, right = [[0.0] * 4 for _ in range(4)], [0.0] * 4
-    for p in points:
-        q = [p[k] - mean[k] for k in range(3)]
-        row, value = [2 * q[0], 2 * q[1], 2 * q[2], 1.0], sum(c * c for c in q)
-        for i in range(4):
-            right[i] += row[i] * value
-            rows[i] = [a + row[i] * b for a, b in zip(rows[i], row)]
-    x = solve(rows, right)
-    if x is None or x[3] + x[0] ** 2 + x[1] ** 2 + x[2] ** 2 <= 0:
+    """Centre and radius of the sphere with the least squares of |p|^2 - 2 p.c - d, about the points' mean and
+    in units of their extent."""
+    mean = [sum(p[k] for p in points) / len(points) for k in range(3)]
+    extent = max(max(abs(p[k] - mean[k]) for k in range(3)) for p in points) or 1.0
+    rows = [(*(2 * (p[k] - mean[k]) / extent for k in range(3)), 1.0) for p in points]
+    sums = [[sum(row[i] * row[k] for row in rows) / len(rows) for k in range(4)] for i in range(4)]
+    right = [sum(row[i] * sum(c * c for c in row[:3]) / 4 for row in rows) / len(rows) for i in range(4)]
+    matrix = Matrix(sums)  # of floats: a determinant below 1e-5 is that of points (almost) in a plane
+    if matrix.determinant() < 1e-5:
         return None
-    return [x[k] + mean[k] for k in range(3)], (x[3] + x[0] ** 2 + x[1] ** 2 + x[2] ** 2) ** 0.5
+    x = matrix.inverted() @ Vector(right)
+    square = x[3] + x[0]**2 + x[1]**2 + x[2]**2
+    return ([extent * x[k] + mean[k] for k in range(3)], extent * square**0.5) if square > 0 else None
 
 
 def ball_of(points):
@@ -67,22 +49,18 @@ def ball_of(points):
         return None
     centre, radius = found
     for _ in range(3):
-        near = [p for p in points if distance(p, centre) < 1.02 * radius]
+        near = [p for p in points if dist(p, centre) < 1.02 * radius]
         found = fit_ball(near) if len(near) > 8 else None
         if found is None:
             break
         centre, radius = found
     gaze = [0.0, 0.0, 0.0]
     for p in points:
-        out = distance(p, centre) - 1.01 * radius
+        out = dist(p, centre) - 1.01 * radius
         if out > 0:
             gaze = [g + out * (p[k] - centre[k]) for k, g in enumerate(gaze)]
     length = sum(g * g for g in gaze) ** 0.5
     return centre, radius, [g / length for g in gaze] if length > 1e-3 * radius**2 else None
-
-
-def distance(a, b):
-    return sum((a[k] - b[k]) ** 2 for k in range(3)) ** 0.5
 
 
 def find(things, unit):
@@ -113,9 +91,5 @@ def find(things, unit):
             keys = {"center": tuple(centre), "gaze": tuple(gaze), "up": (0.0, 0.0, 1.0),
                     "sclera_radius": scale * ADULT}
             keys.update({key: scale * length for key, length in LENGTHS.items()})
-            for name in material.keys():
-                if name.startswith(PREFIX):
-                    own = material[name]
-                    keys[name[len(PREFIX) :]] = own if isinstance(own, (int, float, str)) else tuple(own)
-            eyes.append((material, keys))
+            eyes.append((material, {**keys, **custom_keys(material, "pellucid_eye_")}))
     return eyes

@@ -10,6 +10,12 @@ PRESET = "pellucid_preset"
 AUTO, PLAIN, SKIN, EYE = FIXED = ("auto", "plain", "skin", "eye")
 
 
+def custom_keys(material, prefix):
+    """The custom properties of a Blender material that begin so, without that."""
+    owns = {name[len(prefix):]: material[name] for name in material.keys() if name.startswith(prefix)}
+    return {key: own if isinstance(own, (int, float, str)) else tuple(own) for key, own in owns.items()}
+
+
 class Scattering:
     """How far light goes under a surface. `radius`: Blender units, red, green, blue; `weight`: 0 to 1."""
 

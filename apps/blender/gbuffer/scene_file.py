@@ -1,5 +1,6 @@
 """The scene file of `pellucid shade` (docs/guide/scene-file.md)."""
 
+import json
 import os
 
 from . import principled
@@ -12,23 +13,11 @@ SKIN = {"profile": "skin", "scattering": "preintegrated", "deep_scatter_color": 
 SKIN_LENGTHS = {"deep_scatter_radius": 6.0, "deep_scatter_normal_offset": 0.2}
 EYES = {"scattering": "none", "thickness_taps": 0}  # the sclera; its gloss is that of the film of tears
 PLAIN = {"scattering": "none", "thickness_taps": 0}
-PREFIX = "pellucid_"  # custom properties of a Blender material that set a key of [[material]]
-
-
-def number(value):
-    text = f"{float(value):.9g}"
-    return text if "." in text or "e" in text or "n" in text else text + ".0"
 
 
 def value(v):
-    if isinstance(v, str):
-        return '"' + v.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    if isinstance(v, int):
-        return str(v)
-    try:
-        return "[" + ", ".join(value(inner) for inner in v) + "]"
-    except TypeError:
-        return number(v)
+    """As TOML has it, which writes texts, numbers and arrays as JSON does."""
+    return json.dumps(v, ensure_ascii=False)
 
 
 def comment(name):
@@ -71,7 +60,7 @@ def write(path, unit, camera, lamps, sky, materials, eyes, curvature, fallback):
         "# Written by apps/blender/render_gbuffer.py. Axes: Blender's world, Z up. Lengths: Blender units,",
         f"# of {unit:g} mm each.",
         "version = 2",
-        f"unit_mm = {number(unit)}",
+        f"unit_mm = {value(unit)}",
         "blur_normals = 1",
         "",
         "[channels]",
@@ -98,28 +87,26 @@ def write(path, unit, camera, lamps, sky, materials, eyes, curvature, fallback):
             lines += [f'type = "{lamp.kind.lower()}"', "position = " + value(tuple(lamp.position))]
         if lamp.kind == "SPOT":
             lines += ["spot_direction = " + value(tuple(lamp.forward)),
-                      "spot_cos_inner = " + number(lamp.cos_inner),
-                      "spot_cos_outer = " + number(lamp.cos_outer)]
+                      "spot_cos_inner = " + value(lamp.cos_inner),
+                      "spot_cos_outer = " + value(lamp.cos_outer)]
         lines += ["color = " + value(lamp.color)]
         if lamp.map_file:
             lines += ["", "[light.shadow_map]", "file = " + value(lamp.map_file), 'channel = "R"']
-            lines += ["filter_texels = 48", "bias = " + number(0.5 / unit)]
+            lines += ["filter_texels = 48", "bias = " + value(0.5 / unit)]
             lines += ["world_to_shadow = " + value([v for row in lamp.to_shadow for v in row])]
             if lamp.kind == "SUN":
-                lines += ['projection = "parallel"', "depth_range = " + number(lamp.depth_range)]
+                lines += ['projection = "parallel"', "depth_range = " + value(lamp.depth_range)]
             else:
-                lines += ['projection = "perspective"', "depth_a = " + number(lamp.depth_a),
-                          "depth_b = " + number(lamp.depth_b)]
+                lines += ['projection = "perspective"', "depth_a = " + value(lamp.depth_a),
+                          "depth_b = " + value(lamp.depth_b)]
     extents = [lamp.extent for lamp in lamps if lamp.map_file and lamp.kind == "SUN"]
     for id_, material, surface in materials:
         if material.name in of_eyes:
             lines += ["", "[[eye]]", f"material = {id_}",
                       *(f"{key} = {value(v)}" for key, v in of_eyes[material.name].items())]
         keys = keys_of(surface, chosen[id_], unit, os.path.dirname(path), extents)
-        for name in material.keys():
-            if name.startswith(PREFIX) and not name.startswith("pellucid_eye") and name != principled.PRESET:
-                own = material[name]
-                keys[name[len(PREFIX) :]] = own if isinstance(own, (int, float, str)) else tuple(own)
+        keys.update({key: own for key, own in principled.custom_keys(material, "pellucid_").items()
+                     if key != "preset" and not key.startswith("eye")})
         lines += ["", "[[material]]  " + comment(material.name), f"id = {id_}"]
         lines += [f"{key} = {value(v)}" for key, v in keys.items() if v != ""]
     with open(path, "w", encoding="utf-8") as file:

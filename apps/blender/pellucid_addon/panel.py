@@ -2,6 +2,8 @@
 
 import bpy
 
+from .fields import FIELDS
+
 
 class PELLUCID_PT_panel(bpy.types.Panel):
     bl_label, bl_idname = "Pellucid", "PELLUCID_PT_panel"
@@ -34,18 +36,16 @@ class PELLUCID_PT_materials(bpy.types.Panel):
             row = self.layout.row(align=True)
             row.label(text=material.name, icon_value=material.preview.icon_id if material.preview else 0)
             row.prop(material, "pellucid", text="")
+            add = row.operator_menu_enum("pellucid.own_value", "field", text="", icon="ADD")
+            add.material = material.name
+            for name, field in FIELDS.items():
+                if name in material:
+                    row = self.layout.row(align=True)
+                    row.prop(material, f'["{name}"]', text=field[0])
+                    remove = row.operator("pellucid.own_value", text="", icon="X")
+                    remove.material, remove.field = material.name, name
         if not materials:
             self.layout.label(text="No materials: everything is skin")
 
 
-CLASSES = (PELLUCID_PT_panel, PELLUCID_PT_materials)
-
-
-def register():
-    for kind in CLASSES:
-        bpy.utils.register_class(kind)
-
-
-def unregister():
-    for kind in reversed(CLASSES):
-        bpy.utils.unregister_class(kind)
+register, unregister = bpy.utils.register_classes_factory((PELLUCID_PT_panel, PELLUCID_PT_materials))

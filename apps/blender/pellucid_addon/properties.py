@@ -8,6 +8,8 @@ import subprocess
 
 import bpy
 
+from .fields import FIELDS  # which packaging/blender_addon writes
+
 PRESET = "pellucid_preset"
 FIXED = [("auto", "From its shader", "Scatters as its Subsurface says: weight 0 is no skin"),
          ("plain", "Nothing scatters", "Shaded by Lambert, with the gloss of its shader"),
@@ -56,6 +58,26 @@ def write(material, index):
     material[PRESET] = items(None, None)[index][0]
 
 
+class PELLUCID_OT_own_value(bpy.types.Operator):
+    """Sets this value for the material, or leaves it to the preset again"""
+
+    bl_idname, bl_label, bl_options = "pellucid.own_value", "Own value", {"UNDO"}
+    material: bpy.props.StringProperty()
+    field: bpy.props.EnumProperty(items=[(name, row[0], row[1]) for name, row in FIELDS.items()])
+
+    def execute(self, context):
+        material = bpy.data.materials[self.material]
+        if self.field in material:
+            del material[self.field]
+            return {"FINISHED"}
+        _, words, default, least, most, step = FIELDS[self.field]
+        material[self.field] = default
+        known = {} if isinstance(default, int) else {"step": step}
+        material.id_properties_ui(self.field).update(default=default, soft_min=type(default)(least),
+                                                     soft_max=type(default)(most), description=words, **known)
+        return {"FINISHED"}
+
+
 class Settings(bpy.types.PropertyGroup):
     samples: bpy.props.EnumProperty(name="Anti-aliasing",
                                     description="The G-buffer is rendered larger on each side, and the "
@@ -90,6 +112,7 @@ class Preferences(bpy.types.AddonPreferences):
 
 
 def register():
+    bpy.utils.register_class(PELLUCID_OT_own_value)
     bpy.utils.register_class(Settings)
     bpy.utils.register_class(Preferences)
     bpy.types.Scene.pellucid = bpy.props.PointerProperty(type=Settings)
@@ -103,3 +126,4 @@ def unregister():
     del bpy.types.Scene.pellucid
     bpy.utils.unregister_class(Preferences)
     bpy.utils.unregister_class(Settings)
+    bpy.utils.unregister_class(PELLUCID_OT_own_value)

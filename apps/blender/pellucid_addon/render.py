@@ -195,9 +195,4 @@ class PELLUCID_OT_render(bpy.types.Operator):
         return self.end(context.scene, failure)
 
 
-def register():
-    bpy.utils.register_class(PELLUCID_OT_render)
-
-
-def unregister():
-    bpy.utils.unregister_class(PELLUCID_OT_render)
+register, unregister = bpy.utils.register_classes_factory((PELLUCID_OT_render,))

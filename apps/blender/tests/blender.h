@@ -1,9 +1,7 @@
 // Blender for the tests: the installed `blender`, or what PELLUCID_BLENDER names, such as blender_module
 // with bpy of PyPI.
 #pragma once
-#include <cstdlib>
-#include <string>
-#include <vector>
+#include "test.h"
 
 #include "io/image/image_file.h"
 

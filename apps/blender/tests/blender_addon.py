@@ -65,6 +65,10 @@ for vertex in eyeball.data.vertices:  # a cornea that looks to -y
         vertex.co.y -= 0.3 * (-vertex.co.y - 0.8 * 0.9)
 ball(3, 0.9, jade)
 jade.pellucid = "jade"
+for made, field in ((jade, "pellucid_roughness2"), (jade, "pellucid_f0"), (eye, "pellucid_eye_iris_seed")):
+    bpy.ops.pellucid.own_value(material=made.name, field=field)
+jade["pellucid_roughness2"], eye["pellucid_eye_iris_seed"] = 0.25, 7
+bpy.ops.pellucid.own_value(material=jade.name, field="pellucid_f0")  # left to the preset again
 
 data = bpy.data.lights.new("sun", "SUN")
 data.energy = 3
@@ -79,6 +83,7 @@ scene.camera = camera
 scene.world = None
 
 report = {"library": sys.modules["pellucid.properties"].library()}
+report["own"] = [sorted(k for k in m.keys() if k != "pellucid_preset") for m in (jade, eye)]
 before = {m.name: [n.name for n in m.node_tree.nodes] for m in bpy.data.materials if m.use_nodes}
 engine, scenes = scene.render.engine, len(bpy.data.scenes)
 scene.pellucid.samples = "2"

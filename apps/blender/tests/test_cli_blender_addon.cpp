@@ -1,10 +1,7 @@
 // The add-on's zip in the installed Blender, without a window: a scene with skin, teeth, an eye and jade,
 // and the button (blender_addon.py).
-#include <cmath>
-
 #include "blender.h"
 #include "cli/cli_run.h"
-#include "io/image/image_file.h"
 #include "io/lut/profile_file.h"
 #include "io/scene/scene_file.h"
 
@@ -52,6 +49,9 @@ TEST_F(CommandTest, TheAddOnRendersSkinTeethAnEyeAndJade) {
     const io::SceneMaterial &face = scene.materials[1], &stone = scene.materials[2],
                             &teeth = scene.materials[3];
     EXPECT_EQ(stone.profile, "jade");
+    EXPECT_EQ(report["own"].dump(), R"([["pellucid_roughness2"],["pellucid_eye_iris_seed"]])");
+    EXPECT_FLOAT_EQ(stone.material.roughness2, 0.25f);
+    EXPECT_EQ(scene.eyes[0].eye.irisSeed, 7u);
     EXPECT_TRUE(teeth.profile.empty() && teeth.curvatureLut.empty()) << "weight 0 is no skin";
     EXPECT_EQ(teeth.material.scattering, PEL_SCATTERING_NONE);
     EXPECT_NEAR(teeth.material.roughness, 0.04, 1e-6);  // 0.2 squared

@@ -1,8 +1,6 @@
 // Small glTF files in memory.
 #pragma once
-#include <cstring>
-#include <string>
-#include <vector>
+#include "test.h"
 
 namespace gltf {
 

@@ -1,6 +1,4 @@
 // pellucid import: glTF files made here and samples of Debian's assimp-testmodels, to the picture.
-#include <cmath>
-
 #include "cli/cli_run.h"
 #include "gltf/tests/gltf_bytes.h"
 #include "io/image/image_file.h"

@@ -1,13 +1,5 @@
 // glTF: geometry, nodes, materials, cameras and lights of small files that are made here, and files that
 // are wrong.
-#include "gltf/gltf_file.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "gltf/gltf_import.h"
@@ -180,14 +172,14 @@ TEST(Gltf, CamerasAndLights) {
     EXPECT_EQ(s.cameras[0].verticalFov, 0.5);
     EXPECT_EQ(s.cameras[0].aspect, 2);
     ASSERT_EQ(s.lights.size(), 2u);
-    EXPECT_NEAR(s.lights[0].forward[1], -1, 1e-6);  // -z, turned a quarter about -x
-    const SceneLight sun = sceneLight(s.lights[0], 1), spot = sceneLight(s.lights[1], 2);
-    EXPECT_NEAR(sun.light.toLight[1], 1, 1e-6);
-    EXPECT_NEAR(sun.light.color[1], 1.5 / M_PI, 1e-6);
-    EXPECT_EQ(spot.light.position[1], 2);
-    EXPECT_NEAR(spot.light.color[0], 2 * 10 * 1e6 / M_PI, 1);  // 10 lux at a metre
-    EXPECT_NEAR(spot.light.spotCosOuter, std::cos(0.4), 1e-6);
-    EXPECT_EQ(spot.light.range, 4);
+    const PelLight &sun = s.lights[0].light, &spot = s.lights[1].light;
+    EXPECT_NEAR(sun.toLight[1], 1, 1e-6);  // against -z, turned a quarter about -x
+    EXPECT_NEAR(sun.color[1], 1.5 / M_PI, 1e-6);
+    EXPECT_EQ(spot.type, PEL_LIGHT_SPOT);
+    EXPECT_EQ(spot.position[1], 2);
+    EXPECT_NEAR(spot.color[0], 10 * 1e6 / M_PI, 1);  // 10 lux at a metre
+    EXPECT_NEAR(spot.spotCosOuter, std::cos(0.4), 1e-6);
+    EXPECT_EQ(spot.range, 4);
 }
 
 TEST(Gltf, MaterialsThatScatter) {

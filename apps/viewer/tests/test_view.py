@@ -12,11 +12,10 @@ from view_session import renders_again, reset  # noqa: E402
 from pellucid import Device  # noqa: E402
 from pellucid.view.camera import Orbit, direction  # noqa: E402
 from pellucid.view.export import export  # noqa: E402
-from pellucid.view.iris import iris_image  # noqa: E402
 from pellucid.view.look import EYES, MODES, PRESETS, SKIN, Lamp, Look  # noqa: E402
 from pellucid.view.pictures import TILE_COLORS, chosen_method, tiles  # noqa: E402
 from pellucid.view.server import Pace, Viewer  # noqa: E402
-from pellucid.view.session import Session  # noqa: E402
+from pellucid.view.session import Session, iris_image  # noqa: E402
 
 # Values that the standard look does not have.
 SLIDERS = {"radius_scale": 3.0, "albedo": (0.5, 1, 1), "specular": 0.9, "roughness": 0.6, "f0": 0.1,

@@ -13,6 +13,7 @@ from nicegui import Client, core, ui  # noqa: E402
 from nicegui.page import page  # noqa: E402
 from view_session import reset  # noqa: E402
 
+import pellucid  # noqa: E402
 from pellucid.view.export import export  # noqa: E402
 from pellucid.view.look import Look  # noqa: E402
 from pellucid.view.page import Page  # noqa: E402
@@ -90,7 +91,8 @@ def test_every_control_sets_the_value_that_it_names(fresh):
             low, high = e.props["min"], e.props["max"]
             assert low <= value() <= high and low < high, name
             assert e.value == value(), name
-            for wanted in (high, low, high):
+            order = (low, high) if value() == high else (high, low)
+            for wanted in (*order, order[0]):
                 e.set_value(wanted)
                 assert value() == wanted and viewer.changes, name
                 viewer.changes = 0
@@ -129,6 +131,28 @@ def test_a_preset_sets_the_material_and_keeps_the_light(fresh):
         marked(elements, ui.select)["preset"].set_value("Jade")
         assert fresh.look.profile == "jade" and fresh.look.specular == 0.6
         assert (fresh.look.ambient, fresh.look.exposure) == (0.7, 2.0)
+
+    opened(fresh, act)
+
+
+def test_skin_by_its_pigments_sets_profile_and_albedo_and_the_page_shows_them(fresh):
+    def act(elements, viewer):
+        sliders, selects = marked(elements, ui.slider), marked(elements, ui.select)
+        sliders["slider-melanin"].set_value(0.2)
+        assert fresh.look.profile == selects["profile"].value == "pigments"
+        for c in range(3):
+            assert sliders[f"slider-albedo-{c}"].value == fresh.look.albedo[c] < 0.5
+        dark = fresh.profile(fresh.look).info
+        assert dark.kind == pellucid.ProfileKind.SKIN_LAYERS
+        sliders["slider-melanin"].set_value(0.02)
+        assert sliders["slider-albedo-0"].value > 0.5
+        assert fresh.profile(fresh.look).info.width[0] > dark.width[0]
+        selects["profile"].set_value("jade")
+        assert fresh.look.profile == "jade"
+        selects["profile"].set_value("pigments")  # as the sliders are
+        assert selects["profile"].value == "pigments" and fresh.look.albedo[0] > 0.5
+        selects["preset"].set_value("Skin, very dark")
+        assert fresh.look.melanin == 0.133 and fresh.look.albedo[0] < 0.4
 
     opened(fresh, act)
 

@@ -1,8 +1,5 @@
 """What the viewer exports, and scene files in the viewer."""
 import json
-import shutil
-import subprocess
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +8,7 @@ pytest.importorskip("moderngl", reason="moderngl is not installed")
 files = pytest.importorskip("pellucid.files", reason="this build reads no files")
 from view_session import renders_again, reset  # noqa: E402
 
-from pellucid.view.export import cpp_float, export, snippet  # noqa: E402
+from pellucid.view.export import export  # noqa: E402
 from pellucid.view.look import Look  # noqa: E402
 from pellucid.view.scene_session import SceneSession  # noqa: E402
 
@@ -28,35 +25,13 @@ def test_what_is_exported_renders_to_the_same_bits(session, tmp_path, profile):
         session.look.iris_texture, session.look.iris_color = str(tmp_path / "iris.png"), (1.0, 1.0, 1.0)
         session.look.iris_profile = "skin"
     written = {p.name for p in export(session, tmp_path / "look", 192, 108)}
-    assert {"scene.toml", "gbuffer.exr", "picture.exr", "picture.png", "look.json", "look.cpp",
-            "shadow_0.exr"} <= written
+    assert {"scene.toml", "gbuffer.exr", "picture.exr", "picture.png", "look.json", "shadow_0.exr"} <= written
     assert renders_again(tmp_path / "look")
     known = session.look.copy()
     if profile == "custom":
         assert "iris.exr" in written
         known.iris_texture = "iris.exr"
     assert Look.from_dict(json.loads((tmp_path / "look/look.json").read_text())) == known
-
-
-@pytest.mark.parametrize("values", [
-    {}, {"profile": "custom", "method": "screen", "deep_scatter": (0.5, 0.1, 0.0), "radius_scale": 2.0},
-    {"method": "none", "transmission": 0.0, "ggx": True, "iris_profile": "skin", "iris_seed": 4}])
-def test_the_exported_cpp_compiles(session, tmp_path, values):
-    compiler = shutil.which("c++") or shutil.which("g++") or shutil.which("clang++")
-    include = Path(__file__).parents[3] / "host/include"
-    if compiler is None or not include.exists():
-        pytest.skip("no C++ compiler here")
-    reset(session)
-    for name, value in values.items():
-        setattr(session.look, name, value)
-    text = snippet(session, session.look)
-    (tmp_path / "look.cpp").write_text(text)
-    done = subprocess.run([compiler, "-std=c++17", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I",
-                           include, tmp_path / "look.cpp"], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    # Every number of the look is in it.
-    for name in ("roughness", "f0", "roughness2", "lobe_mix", "ambient"):
-        assert cpp_float(getattr(session.look, name)) in text
 
 
 def test_a_scene_file_is_shown_as_it_was_exported(session, tmp_path):

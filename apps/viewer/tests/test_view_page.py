@@ -104,7 +104,7 @@ def address(tmp_path_factory, lost):
         yield url
     finally:
         process.terminate()
-        process.wait(20)
+        process.wait(PATIENCE)
 
 
 @pytest.fixture(scope="module")
@@ -127,13 +127,13 @@ def page(address, tmp_path_factory):
 
 def picture(page):
     """The picture at rest, as an array."""
-    wait_for(lambda: page.execute_script("return window.pelMoving === false"), "the picture at rest", 20)
+    wait_for(lambda: page.execute_script("return window.pelMoving === false"), "the picture at rest")
     last, same = None, 0
-    for _ in range(200):
+    for _ in range(10 * PATIENCE):
         count = page.execute_script("return window.pelFrames")
         same = same + 1 if count == last else 0
         last = count
-        if same > 4:
+        if same > 9:
             break
         time.sleep(0.1)
     data = page.execute_script("return document.getElementById('pel-canvas').toDataURL('image/png')")
@@ -148,7 +148,7 @@ def act_and_compare(page, act):
     before = picture(page)
     count = page.execute_script("return window.pelFrames")
     act()
-    wait_for(lambda: page.execute_script("return window.pelFrames") > count, "another picture", 60)
+    wait_for(lambda: page.execute_script("return window.pelFrames") > count, "another picture")
     return before, picture(page)
 
 
@@ -196,7 +196,14 @@ def unfold(page, heading):
     if title.find_elements(By.XPATH, "./ancestor::*[contains(@class,'q-expansion-item--collapsed')]"):
         page.execute_script("arguments[0].scrollIntoView({block: 'center'})", title)
         title.click()
-        time.sleep(0.6)  # it slides open
+        content = title.find_element(By.XPATH, "./ancestor::*[contains(@class,'q-expansion-item')][1]")
+        heights = [-2, -1]  # it slides open
+
+        def still():
+            heights.append(content.size["height"])
+            time.sleep(0.2)
+            return heights[-1] == heights[-2] == heights[-3]
+        wait_for(still, "the open panel")
 
 
 def click_slider(page, name, share):
@@ -226,21 +233,21 @@ def test_a_lost_device_is_reported_and_opened_again(page, lost):
     lost.touch()
     click_slider(page, "slider-exposure", 0.3)
     box = page.find_element(By.ID, "pel-error")
-    wait_for(box.is_displayed, "the message", 20)
+    wait_for(box.is_displayed, "the message")
     assert "the device is gone" in box.text
     count = page.execute_script("return window.pelFrames")
     page.find_element(By.ID, "pel-again").click()
-    wait_for(lambda: page.execute_script("return window.pelFrames") > count, "a picture", 60)
+    wait_for(lambda: page.execute_script("return window.pelFrames") > count, "a picture")
     assert not box.is_displayed() and picture(page).std() > 10
 
 
 def test_export_renders_again(page, tmp_path):
     unfold(page, "Export")
     pack = wait_for(lambda: [b for b in page.find_elements(By.CSS_SELECTOR, "[data-pel='export']")
-                             if b.is_displayed()], "the button", 10)[0]
+                             if b.is_displayed()], "the button")[0]
     page.execute_script("arguments[0].scrollIntoView({block: 'center'})", pack)
     pack.click()
-    archive = wait_for(lambda: list(page.downloads.glob("*.zip")), "the download", 60)[0]
+    archive = wait_for(lambda: list(page.downloads.glob("*.zip")), "the download")[0]
     with zipfile.ZipFile(archive) as z:
         z.extractall(tmp_path)
     folder = tmp_path / "pellucid-look"
@@ -254,6 +261,6 @@ def test_a_bad_mesh_is_shown_and_the_old_one_stays(page, tmp_path):
     before = picture(page)
     upload(page, "Drop an OFF", bad)
     shown = wait_for(lambda: [e.text for e in page.find_elements(By.CSS_SELECTOR, ".q-notification")
-                             if "obj" in e.text], "a message", 20)
+                             if "obj" in e.text], "a message")
     assert "3" in shown[0] or "vertex" in shown[0]
     assert not differ(before, picture(page))

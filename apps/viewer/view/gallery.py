@@ -14,10 +14,13 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from .. import files
+from ..skin import skin_info
 from .export import export
-from .look import Lamp, Look
-from .session import Session
+from .look import PRESETS, SKINS, Lamp, Look
+from .session import Session, pigments
 
 SIDE = [Lamp("Key", 75.0, 15.0)]
 BACK = [Lamp("Key", 150.0, 15.0, intensity=2.5)]
@@ -108,6 +111,31 @@ GALLERY: dict[str, list[Entry]] = {
 }
 
 
+def view(session: Session) -> None:
+    session.orbit.azimuth, session.orbit.elevation, session.orbit.pan = 20.0, 2.0, (0.0, 0.0)
+    session.orbit.frame(session.mesh.low, session.mesh.high, 1.0)
+
+
+def skins(session: Session, out: Path, size: int) -> list[str]:
+    """One head in a row of skins from their pigments, and their numbers."""
+    pictures = []
+    lines = ["![One head, six skins](skins.png)", "",
+             "One head, six skins, by melanin and blood alone: the viewer's presets, nearest to measured "
+             "mean colours.", "", "| skin | melanin | blood | L\\*, a\\*, b\\* | ITA | mean distance, mm |",
+             "|---|---|---|---|---|---|"]
+    for name, _, _ in SKINS:
+        session.look = Look.from_dict({**PRESETS[name], "ambient": 0.08})
+        session.take_pigments(session.look)
+        info = skin_info(pigments(session.look))
+        pictures.append(session.radiance(session.look, size, size))
+        lab, far = (", ".join(f"{v:.{digits}f}" for v in of) for of, digits in
+                    ((info.lab, 0), (info.mean_distance, 2)))
+        lines.append(f"| {name.removeprefix('Skin, ')} | {session.look.melanin} | {session.look.blood} | "
+                     f"{lab} | {info.typology_angle:.0f}° | {far} |")
+    files.write_image(out / "skins.png", np.concatenate(pictures, 1))
+    return [*lines, ""]
+
+
 def make(out: Path, pictures_only: bool, sections: Iterable[str], size: int = 480) -> None:
     session = Session()
     session.load(files.standard_head())
@@ -118,11 +146,13 @@ def make(out: Path, pictures_only: bool, sections: Iterable[str], size: int = 48
              "there gives the same picture.", ""]
     for section in sections:
         lines += [f"## {section}", ""]
+        if section == "Materials":
+            view(session)
+            lines += skins(session, out, size // 2)
         for entry in GALLERY[section]:
             print(f"{section}: {entry.name}", file=sys.stderr, flush=True)
             session.look, session.mm = Look(), 1.0
-            session.orbit.azimuth, session.orbit.elevation, session.orbit.pan = 20.0, 2.0, (0.0, 0.0)
-            session.orbit.frame(session.mesh.low, session.mesh.high, 1.0)
+            view(session)
             entry.change(session)
             with tempfile.TemporaryDirectory() as scratch:
                 folder = out / entry.name if not pictures_only else Path(scratch)

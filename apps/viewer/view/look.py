@@ -5,6 +5,8 @@ import copy
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
+from .._types import MaterialValues
+
 MODES = {
     "final": "Final picture",
     "lambert": "Without scattering",
@@ -61,24 +63,26 @@ def _lamps() -> list[Lamp]:
 
 
 @dataclass
-class Look:
-    """Materials, lights and how the picture is shown. Lengths in mm."""
+class Look(MaterialValues):
+    """Materials, lights and how the picture is shown: the material's fields that have a slider, and those
+    below. Lengths in mm."""
 
-    profile: str = "skin"            # of the library, or "custom"
+    profile: str = "skin"            # of the library, "pigments" or "custom"
     distance: tuple[float, float, float] = (0.29, 0.11, 0.054)  # mm, of "custom": Burley's d per channel
+    # of "pigments": shares of volume, of melanin, and of haemoglobin; mm
+    melanin: float = 0.05
+    eumelanin: float = 1.0
+    blood: float = 0.02
+    oxygenation: float = 0.75
+    epidermis: float = 0.06
     radius_scale: float = 1.0        # times the profile's lengths
     method: str = "auto"
     target_error: float = 0.002      # of white, what `auto` may be off
-    transmission: float = 1.0
     # colour of FaceWorks' own term, in place of transmission
     deep_scatter: tuple[float, float, float] = (0.0, 0.0, 0.0)
     albedo: tuple[float, float, float] = (1.0, 1.0, 1.0)  # times the mesh's
     specular: float = 0.35
-    roughness: float = 0.3
-    f0: float = 0.028
     ggx: bool = False
-    roughness2: float = 0.15
-    lobe_mix: float = 0.15
     pores: float = 0.06              # slope of the relief that the renderer adds
     # Of eyes; mm of an eye of an adult's size.
     pupil: float = 2.0               # radius
@@ -124,6 +128,14 @@ class Look:
         return look
 
 
+PIGMENTS = "melanin", "eumelanin", "blood", "oxygenation", "epidermis"
+
+# Name, melanin and blood: the skins nearest to mean colours of arms, L* 63.0, 60.9 (inner arms; Xiao et
+# al., Characterising the variations in ethnic skin colours, 2017), 53.7, 49.2, 43.7 and 38.1 (upper and
+# lower arms; Alaluf et al., Ethnic variation in melanin content and composition, 2002).
+SKINS = (("Skin, pale", 0.026, 0.006), ("Skin, light", 0.03, 0.008), ("Skin, medium", 0.055, 0.013),
+         ("Skin, brown", 0.082, 0.013), ("Skin, dark", 0.097, 0.026), ("Skin, very dark", 0.133, 0.037))
+
 # What a preset leaves as it is: lights and view.
 KEPT_BY_PRESETS = ("lamps", "ambient", "shadow_size", "exposure", "curve", "shoulder", "mode", "target_error")
 
@@ -132,6 +144,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     "Skin": {},
     "Skin, softer": {"radius_scale": 2.0},
     "Skin, oily": {"specular": 0.6, "roughness": 0.2, "ggx": True},
+    **{name: {"profile": "pigments", "melanin": melanin, "blood": blood} for name, melanin, blood in SKINS},
     "Marble": {"profile": "marble", "albedo": (1.05, 1.4, 1.6), "specular": 0.3, "roughness": 0.15,
                "pores": 0.0},
     "Jade": {"profile": "jade", "albedo": (0.35, 1.2, 0.75), "specular": 0.6, "roughness": 0.12,

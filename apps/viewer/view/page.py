@@ -14,7 +14,7 @@ from nicegui import app, events, ui
 from .. import files
 from .export import export
 from .look import Look
-from .panels import ComparePanel, EyesPanel, LightsPanel, MaterialPanel, PicturePanel, ProfilePanel
+from .panels import ComparePanel, EyesPanel, LightsPanel, MaterialPanel, PicturePanel, ProfilePanel, SkinPanel
 from .scene_page import SceneExportPanel, SceneLightsPanel, SceneMaterialsPanel, ScenePanel
 from .scene_session import SceneSession
 from .server import Viewer
@@ -149,7 +149,7 @@ class ExportPanel(Panel):
             return json.dumps(self.look.to_dict(), indent=2).encode()
 
         for label, make, name, marker in (
-                ("Scene, G-buffer, pictures, C++ (.zip)", pack, "pellucid-look.zip", "export"),
+                ("Scene, G-buffer, pictures (.zip)", pack, "pellucid-look.zip", "export"),
                 ("Picture (.png, 1920 x 1080)", draw, "pellucid.png", "picture"),
                 ("Look (.json)", look, "look.json", "look")):
             async def give(make: Callable[[], bytes] = make, name: str = name) -> None:
@@ -190,14 +190,21 @@ class Page:
                            SceneExportPanel(self)]
         else:
             mesh = MeshPanel(self)
-            self.panels = [PicturePanel(self), MaterialPanel(self), EyesPanel(self), LightsPanel(self),
-                           ProfilePanel(self),
-                           ComparePanel(self), self.statistics, mesh, ExportPanel(self)]
+            profile = ProfilePanel(self)
+            self.panels = [PicturePanel(self), MaterialPanel(self), SkinPanel(self, profile), EyesPanel(self),
+                           LightsPanel(self), profile, ComparePanel(self), self.statistics, mesh,
+                           ExportPanel(self)]
             mesh.question()
         self.build()
         ui.timer(0.5, self.statistics.update)
 
+    def follow(self) -> None:
+        """Has the widgets show values that another one has set."""
+        for value, element in self.shown:
+            element.set_value(value())
+
     def build(self) -> None:
+        self.shown: list[tuple[Callable[[], Any], Any]] = []  # what a widget is to show, and the widget
         self.column.clear()
         with self.column:
             ui.label("Pellucid").classes("text-lg")

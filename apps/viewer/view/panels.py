@@ -1,13 +1,21 @@
 """The parts of the page that set what is shown."""
 from __future__ import annotations
 
+from dataclasses import fields
+from typing import TYPE_CHECKING
+
 import numpy as np
 from nicegui import events, ui
 
+from .._types import MaterialValues
 from ..profile import Profile
-from .iris import iris_image
-from .look import KEPT_BY_PRESETS, METHODS, MODES, PRESETS, Look
+from ..skin import skin_info
+from .look import KEPT_BY_PRESETS, METHODS, MODES, PIGMENTS, PRESETS, Look
+from .session import iris_image, pigments
 from .widgets import Panel, fail
+
+if TYPE_CHECKING:
+    from .page import Page
 
 CURVES = {"soft": "Soft", "none": "None", "filmic": "Filmic", "agx-like": "AgX-like"}
 
@@ -31,6 +39,8 @@ class PicturePanel(Panel):
         new = Look.from_dict(PRESETS[name])
         for kept in KEPT_BY_PRESETS:
             setattr(new, kept, getattr(self.look, kept))
+        if new.profile == "pigments":
+            self.viewer.session.take_pigments(new)
         return new
 
     def preset(self, name: str) -> None:
@@ -46,14 +56,40 @@ class MaterialPanel(Panel):
         self.select("Scattering", METHODS, "method")
         self.field("target_error")
         self.slider("Radius scale", self.look, "radius_scale", 0.1, 5, 0.05)
-        for key in ("transmission", "specular", "roughness", "f0"):
-            self.field(key)
+        for value in fields(MaterialValues):
+            self.field(value.name)
         self.switch("Dual-lobe GGX", self.look, "ggx")
-        self.field("roughness2")
-        self.field("lobe_mix")
         self.slider("Pores", self.look, "pores", 0, 0.5, 0.01)
         self.channels("Albedo scale, {}", "albedo", 0.0, 2.0, 0.01)
         self.channels("Deep scatter, {}", "deep_scatter", 0.0, 3.0, 0.05)
+
+
+class SkinPanel(Panel):
+    name = "Skin"
+
+    def __init__(self, page: Page, profile: ProfilePanel) -> None:
+        super().__init__(page)
+        self.profile = profile
+
+    def build(self) -> None:
+        for key in PIGMENTS:
+            self.field(key, then=self.follow)
+        self.numbers = ui.label().classes("text-xs").props("data-pel=skin-numbers")
+        self.tell()
+
+    def tell(self) -> None:
+        info = skin_info(pigments(self.look))
+        lightness, a, b = info.lab
+        travels = ", ".join(f"{d:.2f}" for d in info.mean_distance)
+        self.numbers.set_text(f"L* {lightness:.0f}, a* {a:.0f}, b* {b:.0f}, "
+                              f"ITA {info.typology_angle:.0f} degrees; light travels {travels} mm")
+
+    def follow(self) -> None:
+        """Profile and albedo are those of the pigments."""
+        self.viewer.session.take_pigments(self.look)
+        self.page.follow()
+        self.profile.draw_profile()
+        self.tell()
 
 
 class EyesPanel(Panel):
@@ -111,7 +147,7 @@ class ProfilePanel(Panel):
     name = "Profile"
 
     def build(self) -> None:
-        self.select("Profile", [*Profile.library_names(), "custom"], "profile", self.draw_profile)
+        self.select("Profile", [*Profile.library_names(), "pigments", "custom"], "profile", self.chosen)
         self.channels("Custom d, {}, mm", "distance", 0.01, 5.0, 0.01, self.draw_profile)
         text = {"color": "#ccc"}
         lines = [{"type": "line", "showSymbol": False, "data": [], "lineStyle": {"color": color}}
@@ -121,6 +157,12 @@ class ProfilePanel(Panel):
             "title": {"text": "light by distance: 2πr R(r), 1/mm", "textStyle": {"fontSize": 11, **text}},
             "xAxis": {"type": "value", "name": "mm", "nameLocation": "middle", "nameGap": 25},
             "yAxis": {"type": "value"}, "series": lines}).style("height:13rem;width:100%")
+        self.draw_profile()
+
+    def chosen(self) -> None:
+        if self.look.profile == "pigments":
+            self.viewer.session.take_pigments(self.look)
+            self.page.follow()
         self.draw_profile()
 
     def draw_profile(self) -> None:

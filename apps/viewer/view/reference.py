@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Callable, Optional
 import numpy as np
 from numpy.typing import NDArray
 
-from ..reference import surface_integral
+from ..scatter import surface_integral
 from .look import SKIN, Look, skin_triangles
 from .passes import tinted
 

@@ -17,6 +17,8 @@ from . import shaders
 from .camera import look_at, parallel, unit
 from .preview import levels
 
+SKIN_ALBEDO = 0.76, 0.54, 0.44  # of meshes that have none
+
 
 @dataclass
 class GBuffer:
@@ -74,7 +76,7 @@ class Renderer:
         return str(self.context.info["GL_RENDERER"])
 
     def set_mesh(self, mesh: Mesh, curvature: ArrayLike, millimetres_per_unit: float = 1.0,
-                 albedo: ArrayLike = (0.76, 0.54, 0.44)) -> None:
+                 albedo: ArrayLike = SKIN_ALBEDO) -> None:
         """Takes a mesh and its curvature per vertex (1/length). `albedo`: of meshes that have none."""
         self.context.__enter__()
         n = len(mesh.positions)

@@ -2,11 +2,12 @@
 from __future__ import annotations
 
 import tempfile
+from dataclasses import fields
 from pathlib import Path
 
 from nicegui import events, ui
 
-from .._types import Scattering
+from .._types import MaterialValues, Scattering
 from ..profile import Profile
 from .panels import tone_mapping
 from .scene_session import MODES
@@ -38,8 +39,8 @@ class SceneMaterialsPanel(Panel):
                 f"dense options-dense data-pel=profile-{id}").classes("w-full")
             self.select("Scattering", {s.name.lower(): s.name.capitalize() for s in Scattering}, "scattering",
                         owner=material, marker=f"scattering-{id}")
-            for key in ("specular", "roughness", "f0", "transmission"):
-                self.field(key, material, marker=f"{key}-{id}")
+            for value in fields(MaterialValues):
+                self.field(value.name, material, marker=f"{value.name}-{id}")
 
 
 class SceneLightsPanel(Panel):

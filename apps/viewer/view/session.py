@@ -3,24 +3,25 @@ from __future__ import annotations
 
 import copy
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any, Callable, Optional, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import files
-from .._types import Eye, Light, Material
+from .._show import linear
+from .._types import Eye, Light, Material, MaterialValues, Skin
 from ..device import Device
 from ..mesh import MeshTopology
 from ..profile import Profile
+from ..skin import skin_info
 from .camera import Orbit, direction
-from .iris import iris_image
-from .look import CUT, EYES, RIGHT_EYE, SKIN, TEETH, TONGUE, Lamp, Look
+from .look import CUT, EYES, PIGMENTS, RIGHT_EYE, SKIN, TEETH, TONGUE, Lamp, Look, skin_triangles
 from .passes import Pass
 from .pictures import LINEAR, picture, srgb_bytes
 from .reference import Reference
-from .renderer import GBuffer, Renderer
+from .renderer import SKIN_ALBEDO, GBuffer, Renderer
 from .texture import Texture
 
 T = TypeVar("T")
@@ -74,6 +75,27 @@ def eyes_of(mesh: files.Mesh, look: Optional[Look] = None, mm: float = 1.0) -> d
     return found
 
 
+def iris_image(path: Any) -> NDArray[np.float32]:
+    """The middle square of an image as linear albedo, (n, n, 3): its inscribed circle is the iris' rim.
+
+    Raises
+    ------
+    FileError
+        A file that is missing or damaged.
+    ValueError
+        An image without colours.
+    """
+    channels = files.read_image(path)
+    if not set("RGB") <= set(channels):
+        raise ValueError(f"{path} has the channels {', '.join(channels)}; R, G and B are needed for an iris")
+    image = np.stack([channels[c] for c in "RGB"], 2)
+    n = min(image.shape[:2])
+    top, left = (image.shape[0] - n) // 2, (image.shape[1] - n) // 2
+    image = np.ascontiguousarray(image[top:top + n, left:left + n], np.float32)
+    # Files of light; others are of sRGB.
+    return image if str(path).lower().endswith((".exr", ".hdr")) else linear(image)
+
+
 # The first elements of a sequence that fills a square evenly, by which pictures are shifted [Halton 1964].
 _HALTON = list(zip((1 / 2, 1 / 4, 3 / 4, 1 / 8, 5 / 8, 3 / 8, 7 / 8),
                    (1 / 3, 2 / 3, 1 / 9, 4 / 9, 7 / 9, 2 / 9, 5 / 9)))
@@ -87,6 +109,10 @@ def _kept(cache: dict[Any, T], key: Any, most: int, make: Callable[[], T]) -> T:
             cache.pop(next(iter(cache)))
         cache[key] = made
     return cache[key]
+
+
+def pigments(look: Look) -> Skin:
+    return Skin(**{name: getattr(look, name) for name in PIGMENTS})
 
 
 class Session:
@@ -202,10 +228,21 @@ class Session:
         return self.renderer.level(5 * 2 * self.orbit.distance * np.tan(np.radians(self.orbit.fov) / 2) / 270)
 
     def profile(self, look: Look) -> Profile:
+        if look.profile == "pigments":
+            return _kept(self._profiles, tuple(getattr(look, name) for name in PIGMENTS), 33,
+                         lambda: Profile.skin_layers(pigments(look), name="pigments"))
         if look.profile == "custom":
             return _kept(self._profiles, look.distance, 33,
                          lambda: Profile.burley_distance(look.distance, "custom"))
         return _kept(self._profiles, look.profile, 33, lambda: Profile.named(look.profile))
+
+    def take_pigments(self, look: Look) -> None:
+        """Gives the look the profile and, on this mesh, the albedo of its pigments."""
+        info, own = skin_info(pigments(look)), np.asarray(SKIN_ALBEDO)
+        if self.mesh.albedo is not None:
+            own = self.mesh.albedo[np.unique(skin_triangles(self.mesh))].mean(0)
+        red, green, blue = np.clip(info.albedo / np.maximum(own, 1e-3), 0, 2).round(3).tolist()
+        look.profile, look.albedo = "pigments", (red, green, blue)
 
     def camera(self, aspect: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Eye, and world to clip space in OpenGL's convention."""
@@ -233,15 +270,14 @@ class Session:
 
     def materials(self, look: Look) -> dict[int, Material]:
         """What the ids of the mesh are made of."""
-        skin = Material(scattering=look.method, specular=look.specular, roughness=look.roughness, f0=look.f0,
-                        roughness2=look.roughness2, lobe_mix=look.lobe_mix,
-                        specular_model="ggx" if look.ggx else "ksk")
+        skin = Material(scattering=look.method, specular_model="ggx" if look.ggx else "ksk")
+        for value in fields(MaterialValues):
+            setattr(skin, value.name, getattr(look, value.name))
         sharp = 1.0 / self.mm  # of shadows where nothing scatters: 1 mm
         if look.method == "none" and look.transmission == 0:
             skin.shadow_filter_width = sharp
         else:
             skin.profile = self.profile(look)
-            skin.transmission = look.transmission
             skin.deep_scatter_color = look.deep_scatter
             if look.radius_scale != 1:
                 skin.diffusion_radius = skin.profile.info.radius * look.radius_scale / self.mm

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._types import Ambient, Material, TextureScatterParams
+from ..scatter import TextureScatter
 from ..shader import Shader
-from ..texture_scatter import TextureScatter
 from .look import Look, skin_triangles
 
 if TYPE_CHECKING:

@@ -94,13 +94,16 @@ class Panel:
             ui.label(name).classes("text-xs").style("width:8.5rem")
             ui.label().classes("text-xs text-right").style("width:3.2rem").bind_text_from(
                 owner, attribute, backward=lambda v: f"{v if index is None else v[index]:.4g}")
-            ui.slider(min=low, max=high, step=step, value=value(), on_change=change).props(
-                f"dense data-pel=slider-{marker}")
+            self.page.shown.append((value, ui.slider(
+                min=low, max=high, step=step, value=value(), on_change=change).props(
+                    f"dense data-pel=slider-{marker}")))
 
-    def field(self, key: str, owner: Any = None, attribute: str = "", marker: str = "") -> None:
+    def field(self, key: str, owner: Any = None, attribute: str = "", marker: str = "",
+              then: Callable[[], None] = lambda: None) -> None:
         """The slider of a field of the library."""
         label, low, high, step = SLIDERS[key]
-        self.slider(label, self.look if owner is None else owner, attribute or key, low, high, step, marker)
+        self.slider(label, self.look if owner is None else owner, attribute or key, low, high, step, marker,
+                    then=then)
 
     def channels(self, name: str, attribute: str, low: float, high: float, step: float,
                  then: Callable[[], None] = lambda: None) -> None:
@@ -111,16 +114,20 @@ class Panel:
     def select(self, name: str, options: Any, attribute: str, then: Callable[[], None] = lambda: None,
                owner: Any = None, marker: str = "") -> None:
         of = self.look if owner is None else owner
-        value = getattr(of, attribute)
+
+        def value() -> Any:
+            now = getattr(of, attribute)
+            return now.name.lower() if isinstance(now, IntEnum) else now
 
         def change(e: events.ValueChangeEventArguments) -> None:
+            if e.value == value():
+                return
             setattr(of, attribute, e.value)
             then()
             self.viewer.changed()
 
-        shown = value.name.lower() if isinstance(value, IntEnum) else value
-        ui.select(options, value=shown, label=name, on_change=change).props(
-            f"dense options-dense data-pel={marker or attribute}").classes("w-full")
+        self.page.shown.append((value, ui.select(options, value=value(), label=name, on_change=change).props(
+            f"dense options-dense data-pel={marker or attribute}").classes("w-full")))
 
     def switch(self, name: str, owner: Any, attribute: str, marker: str = "") -> None:
         def change(e: events.ValueChangeEventArguments) -> None:

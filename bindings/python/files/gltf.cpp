@@ -3,11 +3,9 @@
 #include <pybind11/stl.h>
 
 #include <filesystem>
-#include <optional>
 
 #include "files.h"
 #include "gltf/gltf_import.h"
-#include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/lut/profile_file.h"
 

@@ -4,15 +4,12 @@
 
 #include <algorithm>
 #include <new>
-#include <stdexcept>
 
 #include "demo/demo_head.h"
 #include "files.h"
-#include "io/file_error.h"
 #include "io/image/image_file.h"
 #include "io/image/image_format.h"
 #include "io/image/tone_map.h"
-#include "io/mesh/mesh_file.h"
 
 namespace py = pybind11;
 

@@ -3,11 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
-#include <memory>
-#include <optional>
-#include <sstream>
 
 #include "files.h"
 #include "io/scene/scene_keys.h"
@@ -90,13 +86,13 @@ class Scene {
     }
     bool hasGBuffer() const { return gbuffer_.has_value(); }
 
-    using Material = std::tuple<uint32_t, std::string, std::string>;  // id, bytes, name of the profile
-    py::dict shade(uintptr_t device, const std::vector<Material>& materials,
-                   const std::vector<std::string>& lights, const std::string& ambient,
-                   const std::string& camera, const std::string& options,
-                   const std::vector<std::string>& outputs) {
-        const io::SceneFile scene = changed(materials, lights, ambient, camera, options);
-        const auto o = structOf<PelShaderOptions>(options);
+    // Materials (id, bytes, name of the profile), lights, ambient light, camera, options.
+    using Material = std::tuple<uint32_t, std::string, std::string>;
+    using State =
+        std::tuple<std::vector<Material>, std::vector<std::string>, std::string, std::string, std::string>;
+
+    py::dict shade(uintptr_t device, const State& state, const std::vector<std::string>& outputs) {
+        const io::SceneFile scene = changed(state);
         std::vector<PelImageSlot> wanted;
         std::vector<std::string> names;
         for (const io::OutputKey& k : io::outputKeys)
@@ -109,7 +105,7 @@ class Scene {
         std::vector<std::string> warnings;
         {
             const py::gil_scoped_release free;
-            io::SceneFrame& frame = frameFor(reinterpret_cast<PelDevice>(device), scene, o, wanted);
+            io::SceneFrame& frame = frameFor(reinterpret_cast<PelDevice>(device), scene, wanted);
             frame.shade();
             radiance = frame.radiance();
             for (const PelImageSlot slot : wanted) parts.push_back(frame.output(slot));
@@ -127,16 +123,14 @@ class Scene {
     }
 
     // Files are named relative to the folder that the scene is written to.
-    void save(const std::string& path, const std::vector<Material>& materials,
-              const std::vector<std::string>& lights, const std::string& ambient, const std::string& camera,
-              const std::string& options) const {
-        for (const auto& [id, bytes, profile] : materials)
-            if (structOf<PelMaterial>(bytes).profile)
+    void save(const std::string& path, const State& state) const {
+        io::SceneFile scene = changed(state);
+        for (const io::SceneMaterial& m : scene.materials)
+            if (m.material.profile)
                 throw py::value_error(
-                    "material " + std::to_string(id) +
+                    "material " + std::to_string(m.id) +
                     " has a profile of its own, which a scene file can only name: set Scene.profiles[" +
-                    std::to_string(id) + "] to the name or the file of one");
-        io::SceneFile scene = changed(materials, lights, ambient, camera, options);
+                    std::to_string(m.id) + "] to the name or the file of one");
         namespace fs = std::filesystem;
         const fs::path folder = fs::absolute(path).parent_path();
         const auto move = [&](std::string& file) {
@@ -156,14 +150,22 @@ class Scene {
     }
 
   private:
-    io::SceneFile changed(const std::vector<Material>& materials, const std::vector<std::string>& lights,
-                          const std::string& ambient, const std::string& camera,
-                          const std::string& options) const {
+    // Materials that the file does not have have no files of their own.
+    io::SceneFile changed(const State& state) const {
+        const auto& [materials, lights, ambient, camera, options] = state;
         io::SceneFile scene = scene_;
-        setMaterials(scene, materials);
+        scene.materials.clear();
+        for (const auto& [id, bytes, profile] : materials) {
+            const auto known = std::ranges::find(scene_.materials, id, &io::SceneMaterial::id);
+            io::SceneMaterial& m =
+                scene.materials.emplace_back(known == scene_.materials.end() ? io::SceneMaterial() : *known);
+            m.id = id;
+            m.material = structOf<PelMaterial>(bytes);
+            m.profile = m.material.profile ? "" : profile;
+        }
         std::erase_if(scene.eyes, [&](const io::SceneEye& e) {
-            return std::ranges::none_of(scene.materials,
-                                        [&](const io::SceneMaterial& m) { return m.id == e.material; });
+            return std::ranges::find(scene.materials, e.material, &io::SceneMaterial::id) ==
+                   scene.materials.end();
         });
         scene.lights.resize(lights.size());
         for (size_t i = 0; i < lights.size(); ++i) scene.lights[i].light = structOf<PelLight>(lights[i]);
@@ -176,46 +178,25 @@ class Scene {
         onDevice_.reset();
         gbuffer_ = std::move(image);
     }
-    // Materials that the file does not have have no files of their own.
-    static void setMaterials(io::SceneFile& scene, const std::vector<Material>& materials) {
-        std::vector<io::SceneMaterial> all;
-        for (const auto& [id, bytes, profile] : materials) {
-            io::SceneMaterial m;
-            for (const io::SceneMaterial& known : scene.materials)
-                if (known.id == id) m = known;
-            m.id = id;
-            m.material = structOf<PelMaterial>(bytes);
-            m.profile = m.material.profile ? "" : profile;
-            all.push_back(std::move(m));
-        }
-        scene.materials = std::move(all);
-    }
     // Kept from call to call, so that only what changed is set again.
-    io::SceneFrame& frameFor(PelDevice device, const io::SceneFile& scene, const PelShaderOptions& options,
+    io::SceneFrame& frameFor(PelDevice device, const io::SceneFile& scene,
                              const std::vector<PelImageSlot>& outputs) {
-        if (onDevice_ && onDevice_->frame && onDevice_->device.get() == device &&
-            onDevice_->outputs == outputs) {
-            try {
-                onDevice_->frame->update(scene, onDevice_->luts, options);
-            } catch (...) {
-                onDevice_->frame.reset();
-                throw;
-            }
-            return *onDevice_->frame;
-        }
         if (!onDevice_ || onDevice_->device.get() != device) onDevice_.emplace(device);
-        onDevice_->frame.reset();
-        onDevice_->outputs = outputs;
-        // With progress.
-        onDevice_->frame.emplace(
-            io::prepareFrame(onDevice_->device, scene, onDevice_->luts, options, outputs));
+        OnDevice& on = *onDevice_;
         try {
-            onDevice_->frame->show(*gbuffer_, scene);
+            if (on.frame && on.outputs == outputs) {
+                on.frame->update(scene, on.luts, scene.options);
+            } else {
+                on.frame.reset();
+                on.outputs = outputs;
+                on.frame.emplace(io::prepareFrame(on.device, scene, on.luts, scene.options, outputs));
+                on.frame->show(*gbuffer_, scene);
+            }
         } catch (...) {
-            onDevice_->frame.reset();
+            on.frame.reset();
             throw;
         }
-        return *onDevice_->frame;
+        return *on.frame;
     }
     py::array_t<float> image(const std::vector<float>& values, int components) const {
         std::vector<py::ssize_t> shape{gbuffer_->height, gbuffer_->width};

@@ -1,8 +1,6 @@
 #include <CL/cl.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <thread>
 

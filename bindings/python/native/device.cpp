@@ -4,7 +4,7 @@
 namespace pel::python {
 
 namespace {
-py::object errorCallback = py::none();
+py::object errorCallback = py::none(), logCallback = py::none();
 
 void onError(void*, PelError code, const char* message) {
     WithGil gil;
@@ -12,6 +12,15 @@ void onError(void*, PelError code, const char* message) {
         errorCallback(int(code), message);
     } catch (py::error_already_set& error) {
         error.discard_as_unraisable("pellucid error callback");
+    }
+}
+
+void onLog(void*, PelLogLevel level, const char* object, const char* text) {
+    WithGil gil;
+    try {
+        logCallback(int(level), object, text);
+    } catch (py::error_already_set& error) {
+        error.discard_as_unraisable("pellucid log callback");
     }
 }
 
@@ -37,10 +46,15 @@ void bindDevice(py::module_& module) {
         errorCallback = callback;
         pelSetErrorCallback(callback.is_none() ? nullptr : onError, nullptr);
     });
+    module.def("set_log_callback", [](const py::object& callback) {
+        logCallback = callback;
+        pelSetLogCallback(callback.is_none() ? nullptr : onLog, nullptr);
+    });
     // The interpreter's end must find no Python object in static storage.
     py::module_::import("atexit").attr("register")(py::cpp_function([] {
         pelSetErrorCallback(nullptr, nullptr);
-        errorCallback = py::none();
+        pelSetLogCallback(nullptr, nullptr);
+        errorCallback = logCallback = py::none();
         interpreterEnds();
     }));
     module.def("devices", [] {
@@ -57,9 +71,13 @@ void bindDevice(py::module_& module) {
         .def("watch", &Cancel::watch)
         .def("ask", &Cancel::ask);
     py::class_<Device>(module, "Device")
-        .def_static(
-            "create",
-            [](const std::string& selector) { return created([&] { return pellucid::Device(selector); }); })
+        .def_static("create",
+                    [](const std::string& selector, uint32_t profiling) {
+                        PelDeviceDesc desc = pelDeviceDescDefaults();
+                        desc.selector = selector.c_str();
+                        desc.profiling = profiling;
+                        return created([&] { return pellucid::Device(desc); });
+                    })
         .def_static("from_cl",
                     [](uintptr_t context, uintptr_t device, uintptr_t queue) {
                         return created([&] {
@@ -67,6 +85,7 @@ void bindDevice(py::module_& module) {
                                                             pointer(queue));
                         });
                     })
+        .def("set_name", named<Device>())
         .def("address", [](const Device& d) { return reinterpret_cast<uintptr_t>(d.get()); })
         .def("info", structure<pelDeviceInfoDefaults>(pelDeviceGetInfo))
         .def("stats", structure<pelDeviceStatsDefaults>(pelDeviceGetStats))
@@ -90,6 +109,7 @@ void bindDevice(py::module_& module) {
         .def_static("create", maker<Buffer>(pelBufferCreate))
         .def_static("from_host", maker<Buffer>(pelBufferCreateFromHost))
         .def_static("from_cl", maker<Buffer>(pelBufferCreateFromCl))
+        .def("set_name", named<Buffer>())
         .def("size", value<size_t>(pelBufferGetSize))
         .def("cl", value<void*>(pelBufferGetCl))
         .def("read", function(pelBufferRead))

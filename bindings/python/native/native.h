@@ -7,15 +7,12 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cstddef>
-#include <cstring>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <pellucid/pellucid.hpp>
-#include <span>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -315,6 +312,14 @@ Wrapper wrapped(Create&& create) {
     decltype(std::declval<const Wrapper&>().get()) handle = nullptr;
     call([&] { return create(&handle); });
     return Wrapper(handle);
+}
+
+// pelSetName of the handle of a T.
+template <class T>
+auto named() {
+    return [](const T& object, const std::string& name) {
+        call([&] { return pelSetName(object.get(), name.c_str()); });
+    };
 }
 
 void bindDevice(py::module_& module);

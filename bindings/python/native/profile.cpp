@@ -9,6 +9,7 @@ void bindProfile(py::module_& module) {
         .def_static("gaussians", maker<Profile>(pelProfileCreateGaussians))
         .def_static("burley", maker<Profile>(pelProfileCreateBurley))
         .def_static("burley_distance", maker<Profile>(pelProfileCreateBurleyDistance))
+        .def_static("skin_layers", maker<Profile>(pelProfileCreateSkinLayers))
         .def_static("named", maker<Profile>(pelProfileCreateNamed))
         .def_static("dipole", maker<Profile>(pelProfileCreateDipole))
         .def_static("table", maker<Profile>(pelProfileCreateTable))
@@ -47,6 +48,10 @@ void bindProfile(py::module_& module) {
                  if (stopped) throw py::error_already_set();
              })
         .def("address", [](const Profile& p) { return address(p.get()); });
+    module.def("skin_info", structure<pelSkinInfoDefaults>(pelSkinGetInfo));
+    module.def("skin_reflectance", function(pelSkinReflectance));
+    module.def("skin_albedo", function(pelSkinAlbedo));
+    module.def("skin_from_albedo", function(pelSkinFromAlbedo));
 }
 
 }  // namespace pel::python

@@ -5,12 +5,32 @@ namespace pel::python {
 
 void bindScatter(py::module_& module) {
     using pellucid::Scatter, pellucid::TextureScatter;
+    using Optional = std::optional<ImageView>;
     py::class_<Scatter, Owner<Scatter>>(module, "Scatter")
         .def_static("create", maker<Scatter>(pelScatterCreate))
         .def("set_material", function(pelScatterSetMaterial))
         .def("set_controls", function(pelScatterSetControls))
         .def("set_image", function(pelScatterSetImage))
         .def("execute", function(pelScatterExecute))
+        .def("warm_up",
+             [](const Scatter& s, const Device& d, const py::object& params, const Optional& irradiance,
+                const Optional& positions, const Optional& depth, const Optional& ids, const Optional& out) {
+                 Argument<const PelImageDesc*> images[]{
+                     Argument<const PelImageDesc*>(irradiance), Argument<const PelImageDesc*>(positions),
+                     Argument<const PelImageDesc*>(depth), Argument<const PelImageDesc*>(ids),
+                     Argument<const PelImageDesc*>(out)};
+                 PelScatterWork scatter = pelScatterWorkDefaults();
+                 scatter.scatter = s.get();
+                 scatter.params = structOf<PelScatterParams>(params);
+                 scatter.irradiance = images[0].get(), scatter.positions = images[1].get();
+                 scatter.depth = images[2].get(), scatter.ids = images[3].get();
+                 scatter.out = images[4].get();
+                 PelWarmUp work = pelWarmUpDefaults();
+                 work.scatters = &scatter, work.numScatters = 1;
+                 uint32_t built = 0;
+                 call([&] { return pelWarmUpPrograms(d.get(), &work, &built); });
+                 return built;
+             })
         .def("stats", structure<pelScatterStatsDefaults>(pelScatterGetStats));
 
     py::class_<TextureScatter, Owner<TextureScatter>>(module, "TextureScatter")

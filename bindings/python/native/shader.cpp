@@ -1,3 +1,4 @@
+#include <pellucid/pellucid_conventions.h>
 #include <map>
 #include <mutex>
 
@@ -28,9 +29,35 @@ struct Argument<PelShader> {
     std::unique_lock<std::recursive_mutex> lock{};
 };
 
+// A function that returns the bytes of each structure of an array.
+template <auto defaults, class T>
+auto structures(PelError (*get)(PelShader, T*, uint32_t*)) {
+    return [get](const Shader& s) {
+        std::vector<T> values(24, defaults());
+        uint32_t count = uint32_t(values.size());
+        Argument<PelShader> shader(&s);
+        call([&] { return get(shader.get(), values.data(), &count); });
+        py::list all;
+        for (uint32_t i = 0; i < count; ++i) all.append(bytesOf(values[i]));
+        return all;
+    };
+}
+
+// Fills a structure from a matrix; false where the matrix makes none.
+template <auto set>
+auto ofMatrix() {
+    return []<class T>(PelError (*)(const float*, PelConvention, T*)) {
+        return [](uintptr_t matrix, uint32_t depth, bool yDown, bool bottomFirst, const py::object& target) {
+            const PelConvention convention{PelClipDepth(depth), yDown, bottomFirst, 0};
+            return !set(static_cast<const float*>(pointer(matrix)), convention, structOf<T>(target));
+        };
+    }(set);
+}
+
 void bindShader(py::module_& module) {
     py::class_<Shader, Owner<Shader>>(module, "Shader")
         .def_static("create", maker<Shader>(pelShaderCreate))
+        .def("set_name", named<Shader>())
         .def("set_options", function(pelShaderSetOptions))
         .def("set_image", function(pelShaderSetImage))
         .def("set_material", function(pelShaderSetMaterial))
@@ -62,7 +89,11 @@ void bindShader(py::module_& module) {
              })
         .def("material", structure<pelMaterialDefaults>(pelShaderGetMaterial))
         .def("warnings", value<const char*>(pelShaderGetWarnings))
-        .def("stats", structure<pelShaderStatsDefaults>(pelShaderGetStats));
+        .def("stats", structure<pelShaderStatsDefaults>(pelShaderGetStats))
+        .def("passes", structures<pelPassStatsDefaults>(pelShaderGetPasses))
+        .def("memory", structures<pelPassMemoryDefaults>(pelShaderGetMemory));
+    module.def("camera_of", ofMatrix<pelCameraFromViewProjection>());
+    module.def("light_of", ofMatrix<pelLightFromViewProjection>());
     module.def("warm_up_programs", [](const Device& d, uint32_t groups,
                                       const std::vector<const Shader*>& shaders, uint32_t threads) {
         uint32_t built = 0;

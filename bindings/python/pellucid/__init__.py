@@ -16,16 +16,14 @@ from ._errors import PellucidError
 from ._struct import did_you_mean
 from ._types import *  # noqa: F401,F403
 from ._types import __all__ as _type_names
-from .device import Buffer, Device, Event, devices, set_error_callback
-from .live import LiveMesh, screen_curvature, submit_screen_curvature
+from .device import Buffer, Device, Event, devices, set_error_callback, set_log_callback
 from .lut import Lut
-from .mesh import MeshTopology, orient_mesh
+from .mesh import LiveMesh, MeshTopology, orient_mesh, screen_curvature, submit_screen_curvature
 from .profile import Profile
-from .reference import compare, submit_surface_integral, surface_integral
-from .scatter import Scatter
+from .scatter import Scatter, TextureScatter, compare, submit_surface_integral, surface_integral
 from .scene import Scene, Shaded, load_scene, shade
 from .shader import Shader, warm_up_programs
-from .texture_scatter import TextureScatter
+from .skin import skin_albedo, skin_from_albedo, skin_info, skin_reflectance
 
 _driver.offer()
 
@@ -56,5 +54,7 @@ __version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"
 __all__ = [  # noqa: PLE0604
     "Buffer", "Device", "Event", "Image", "LiveMesh", "Lut", "MeshTopology", "PellucidError", "Profile",
     "Scatter", "Scene", "Shaded", "Shader", "TextureScatter", "Vertices", "compare", "devices", "load_scene",
-    "orient_mesh", "screen_curvature", "set_error_callback", "shade", "submit_screen_curvature",
-    "submit_surface_integral", "surface_integral", "warm_up_programs", *_type_names]
+    "orient_mesh", "screen_curvature", "set_error_callback", "set_log_callback", "shade",
+    "skin_albedo", "skin_from_albedo", "skin_info", "skin_reflectance",
+    "submit_screen_curvature", "submit_surface_integral", "surface_integral",
+    "warm_up_programs", *_type_names]

@@ -7,7 +7,7 @@ from enum import EnumMeta, IntEnum, IntFlag
 from typing import Any, ClassVar, Generic, NoReturn, TypeVar, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from . import _native
 
@@ -145,94 +145,73 @@ class Struct(metaclass=_PublicNames):
     __hash__ = None  # type: ignore[assignment]
 
 
-class _Field(Generic[T]):
-    """An attribute over a field of the C structure."""
+class Field(Generic[T]):
+    """An attribute over a field of the C structure. Vectors and matrices (row-major, multiplying column
+    vectors) come back read-only, structures as copies. `kind`: of enumerators and of structures."""
 
-    def __init__(self, name: str) -> None:
-        self.name = name
+    def __init__(self, name: str, kind: type[T] | None = None) -> None:
+        self.name, self.kind = name, kind
 
     @overload
-    def __get__(self, owner: None, kind: Any) -> _Field[T]: ...
+    def __get__(self, owner: None, kind: Any) -> Field[T]: ...
     @overload
     def __get__(self, owner: Struct, kind: Any) -> T: ...
     def __get__(self, owner: Struct | None, kind: Any) -> Any:
-        return self if owner is None else self._read(owner, owner._data[self.name][0])
+        if owner is None:
+            return self
+        stored, of = owner._data[self.name][0], self.kind
+        if of is not None and issubclass(of, Struct):
+            inner = of()
+            inner._data[0] = stored
+            return inner
+        if of is not None:
+            return of(int(stored))  # type: ignore[call-arg]
+        if isinstance(stored, bytes):
+            return stored.decode("utf-8", "replace")
+        if isinstance(stored, np.ndarray):
+            stored = stored.copy()
+            stored.flags.writeable = False
+            return stored
+        return stored.item()
 
-    def _read(self, owner: Struct, stored: Any) -> T:
-        raise NotImplementedError
+    def __set__(self, owner: Struct, value: Any) -> None:
+        kind, dtype, name = self.kind, owner._dtype[self.name], f"{type(owner).__name__}.{self.name}"
 
-    def _fail(self, owner: Struct, value: Any, right: str) -> ValueError:
-        return ValueError(f"{type(owner).__name__}.{self.name} is {value!r}; it must be {right}")
+        def wrong(right: str) -> ValueError:
+            return ValueError(f"{name} is {value!r}; it must be {right}")
 
-
-class FloatField(_Field[float]):
-    """A float32 or float64."""
-
-    def _read(self, owner: Struct, stored: Any) -> float:
-        return float(stored)
-
-    def __set__(self, owner: Struct, value: float) -> None:
-        try:
-            owner._data[self.name] = float(value)
-        except (TypeError, ValueError):
-            raise self._fail(owner, value, "a number") from None
-
-
-class IntField(_Field[int]):
-    """An unsigned integer or a flag."""
-
-    def _read(self, owner: Struct, stored: Any) -> int:
-        return int(stored)
-
-    def __set__(self, owner: Struct, value: int) -> None:
-        limits = np.iinfo(owner._dtype[self.name])
-        try:
-            number = value.__index__()
-        except AttributeError:
-            raise self._fail(owner, value, "an integer") from None
-        if not limits.min <= number <= limits.max:
-            raise self._fail(owner, value, f"from {limits.min} to {limits.max}")
-        owner._data[self.name] = number
-
-
-class ArrayField(_Field[NDArray[Any]]):
-    """A vector or a matrix (row-major, multiplying column vectors)."""
-
-    def _read(self, owner: Struct, stored: Any) -> NDArray[Any]:
-        values: NDArray[Any] = stored.copy()
-        values.flags.writeable = False
-        return values
-
-    def __set__(self, owner: Struct, value: ArrayLike) -> None:
-        shape = owner._dtype[self.name].shape
-        size = int(np.prod(shape))
-        try:
-            values = np.asarray(value, dtype=owner._dtype[self.name].base)
-        except (TypeError, ValueError):
-            raise self._fail(owner, value, f"{size} numbers") from None
-        if values.size != size:
-            raise self._fail(owner, value, f"{size} numbers, shape {shape}")
-        owner._data[self.name][0] = values.reshape(shape)
+        stored: Any
+        if kind is not None and issubclass(kind, Struct):
+            if not isinstance(value, kind):
+                raise wrong(f"a {kind.__name__}")
+            stored = value._data[0]
+        elif kind is not None:
+            stored = int(to_enum(kind, value, name))  # type: ignore[type-var]
+        elif dtype.kind == "S":
+            stored = value.encode()
+            if len(stored) >= dtype.itemsize:
+                raise wrong(f"at most {dtype.itemsize - 1} bytes")
+        elif dtype.kind in "iu":
+            limits = np.iinfo(dtype)
+            if not hasattr(value, "__index__"):
+                raise wrong("an integer")
+            stored = value.__index__()
+            if not limits.min <= stored <= limits.max:
+                raise wrong(f"from {limits.min} to {limits.max}")
+        else:
+            try:
+                stored = np.asarray(value, dtype.base).reshape(dtype.shape) if dtype.shape else float(value)
+            except (TypeError, ValueError):
+                size = int(np.prod(dtype.shape))
+                raise wrong(f"{size} numbers, shape {dtype.shape}" if dtype.shape else "a number") from None
+        owner._data[self.name][0] = stored
 
 
-class TextField(_Field[str]):
-    """A string of limited length."""
-
-    def _read(self, owner: Struct, stored: Any) -> str:
-        return bytes(stored).decode("utf-8", "replace")
-
-    def __set__(self, owner: Struct, value: str) -> None:
-        data, size = value.encode(), owner._dtype[self.name].itemsize
-        if len(data) >= size:
-            raise self._fail(owner, value, f"at most {size - 1} bytes")
-        owner._data[self.name] = data
-
-
-class ProfileField(_Field[Any]):
+class ProfileField(Field[Any]):
     """A diffusion profile, or the name of one of the library; None for none."""
 
-    def _read(self, owner: Struct, stored: Any) -> Any:
-        return owner._profile
+    def __get__(self, owner: Struct | None, kind: Any) -> Any:
+        return self if owner is None else owner._profile
 
     def __set__(self, owner: Struct, value: Any) -> None:
         from .profile import as_profile
@@ -240,35 +219,3 @@ class ProfileField(_Field[Any]):
         profile = as_profile(value, f"{type(owner).__name__}.{self.name}")
         owner._profile = profile
         owner._data[self.name] = 0 if profile is None else profile._handle.address()
-
-
-class EnumField(_Field[E]):
-    """One of a list of names."""
-
-    def __init__(self, name: str, kind: type[E]) -> None:
-        super().__init__(name)
-        self.kind = kind
-
-    def _read(self, owner: Struct, stored: Any) -> E:
-        return self.kind(int(stored))
-
-    def __set__(self, owner: Struct, value: E | str) -> None:
-        owner._data[self.name] = int(to_enum(self.kind, value, f"{type(owner).__name__}.{self.name}"))
-
-
-class StructField(_Field[S]):
-    """A structure inside a structure; comes back as a copy."""
-
-    def __init__(self, name: str, kind: type[S]) -> None:
-        super().__init__(name)
-        self.kind = kind
-
-    def _read(self, owner: Struct, stored: Any) -> S:
-        inner = self.kind()
-        inner._data[0] = stored
-        return inner
-
-    def __set__(self, owner: Struct, value: S) -> None:
-        if not isinstance(value, self.kind):
-            raise self._fail(owner, value, f"a {self.kind.__name__}")
-        owner._data[self.name][0] = value._data[0]

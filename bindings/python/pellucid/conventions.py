@@ -11,35 +11,26 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ._types import Camera, Light, ShadowProjection
+from . import _native
+from ._types import Camera, Light
 
-_DEPTHS = ("-1..1", "0..1", "1..0")
+_DEPTHS = ("-1..1", "0..1", "1..0")  # PelClipDepth
 
 
-def _matrix(value: ArrayLike, what: str) -> NDArray[np.float64]:
-    m = np.asarray(value, np.float64)
+def _set(target: Any, function: Any, view_projection: ArrayLike, depth: str, y_up: bool, first_row: str,
+         wrong: str) -> Any:
+    m = np.ascontiguousarray(view_projection, np.float32)
     if m.shape != (4, 4) or not np.isfinite(m).all():
-        raise ValueError(f"{what} has the shape {m.shape}; 4 x 4 finite numbers are needed")
-    return m
-
-
-def _check(depth: str, first_row: str) -> None:
+        raise ValueError(f"view_projection has the shape {m.shape}; 4 x 4 finite numbers are needed")
     if depth not in _DEPTHS:
         raise ValueError(f"depth is {depth!r}; it must be one of {', '.join(_DEPTHS)}")
     if first_row not in ("top", "bottom"):
         raise ValueError(f"first_row is {first_row!r}; it must be 'top' or 'bottom'")
-
-
-def clip_to_image(depth: str = "-1..1", y_up: bool = True, first_row: str = "top") -> NDArray[np.float64]:
-    """Homogeneous clip space to (u, v, z) of an image: u, v from 0 to 1 over it, v = 0 at its first row, z
-    as the depth buffer has it."""
-    _check(depth, first_row)
-    down = y_up == (first_row == "top")  # v grows against y
-    half = depth == "-1..1"
-    return np.array([[0.5, 0, 0, 0.5], [0, -0.5 if down else 0.5, 0, 0.5],
-                     [0, 0, 0.5 if half else 1, 0.5 if half else 0], [0, 0, 0, 1.0]])
+    if not function(m.ctypes.data, _DEPTHS.index(depth), not y_up, first_row == "bottom", target._data):
+        raise ValueError(f"view_projection {wrong}")
+    return target
 
 
 def camera_from_view_projection(view_projection: ArrayLike, depth: str = "-1..1", y_up: bool = True,
@@ -50,22 +41,9 @@ def camera_from_view_projection(view_projection: ArrayLike, depth: str = "-1..1"
     The position is where the projection puts it: on the line through the middle of the picture for a
     parallel one.
     """
-    m = _matrix(view_projection, "view_projection")
-    _check(depth, "top")
-    # Pellucid's clip space: y up, z as in the depth image.
-    to_pellucid = np.diag([1.0, 1.0 if y_up else -1.0, 1.0, 1.0])
-    if depth == "-1..1":
-        to_pellucid[2, 2:] = 0.5, 0.5
-    clip = to_pellucid @ m
-    try:
-        inverse = np.linalg.inv(clip)
-    except np.linalg.LinAlgError:
-        raise ValueError("view_projection has no inverse") from None
-    # The eye is what x = y = w = 0 holds.
-    eye = np.linalg.svd(clip[[0, 1, 3]])[2][3]
-    near = abs(eye[3]) > 1e-12 * np.abs(eye[:3]).max()
-    place = eye[:3] / eye[3] if near else -1e6 * eye[:3] / np.linalg.norm(eye[:3])
-    return Camera(position=place, inverse_view_projection=inverse, **fields)
+    camera: Camera = _set(Camera(**fields), _native.camera_of, view_projection, depth, y_up, "top",
+                          "has no inverse")
+    return camera
 
 
 def light_from_view_projection(view_projection: ArrayLike, depth: str = "-1..1", y_up: bool = True,
@@ -76,34 +54,6 @@ def light_from_view_projection(view_projection: ArrayLike, depth: str = "-1..1",
     `fields` are others of Light, such as `color`. For a spot, `spot_cos_inner` and `spot_cos_outer` are left
     to the caller.
     """
-    m = _matrix(view_projection, "view_projection")
-    matrix = clip_to_image(depth, y_up, first_row) @ m
-    light = Light(world_to_shadow=matrix, **fields)
-    if np.abs(m[3, :3]).max() <= 1e-12 * np.abs(m[:3, :3]).max():  # parallel
-        matrix = matrix / m[3, 3]
-        light.world_to_shadow = matrix
-        length = np.linalg.norm(matrix[2, :3])
-        if length == 0:
-            raise ValueError("view_projection makes no depth")
-        # z grows along this row (or against it: reversed), by 1 over depth_range.
-        sign = -1.0 if depth == "1..0" else 1.0
-        light.to_light = -sign * matrix[2, :3] / length
-        light.shadow_projection = ShadowProjection.PARALLEL
-        light.shadow_depth_range = sign / length
-        return light
-    # Along the view axis the distance is w (its gradient scaled to 1), and z = (a + b w) / w.
-    axis = matrix[3, :3]
-    scale = np.linalg.norm(axis)
-    slope = matrix[2, :3] @ axis / scale**2
-    offset = matrix[2, 3] - slope * matrix[3, 3]  # z w = slope w + offset
-    if offset == 0:
-        raise ValueError("view_projection makes no depth")
-    eye = np.linalg.svd(np.array([matrix[0] - 0.5 * matrix[3], matrix[1] - 0.5 * matrix[3], matrix[3]]))[2][3]
-    light.type = "spot"  # type: ignore[assignment]
-    light.position = eye[:3] / eye[3]
-    light.spot_direction = axis / scale
-    light.shadow_projection = ShadowProjection.PERSPECTIVE
-    # distance = w / scale = 1 / (A z + B); z = slope + offset / w, so 1 / w = (z - slope) / offset.
-    light.shadow_depth_a = scale / offset
-    light.shadow_depth_b = -scale * slope / offset
+    light: Light = _set(Light(**fields), _native.light_of, view_projection, depth, y_up, first_row,
+                        "makes no depth")
     return light

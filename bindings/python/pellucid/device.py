@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from . import _in_flight, _native
 from ._struct import OfThisProcess, S
-from ._types import DeviceInfo, DeviceStats, DeviceType
+from ._types import DeviceInfo, DeviceStats, DeviceType, LogLevel
 
 Progress = Callable[[float, str], Optional[bool]]
 
@@ -41,6 +41,13 @@ def set_error_callback(callback: Optional[Callable[[int, str], object]]) -> None
     _native.set_error_callback(callback)
 
 
+def set_log_callback(callback: Optional[Callable[[LogLevel, str, str], object]]) -> None:
+    """Calls `callback(level, name, text)` with every error as it is raised and every warning of a commit, on
+    the thread of the call. `name` is that of the first object of the call that has one (`set_name`). None
+    removes it."""
+    _native.set_log_callback(callback and (lambda level, name, text: callback(LogLevel(level), name, text)))
+
+
 class Device(OfThisProcess):
     """An OpenCL device with a queue of its own.
 
@@ -50,6 +57,10 @@ class Device(OfThisProcess):
         A number in `devices()`; "gpu", "cpu" or "accelerator"; or a part of the name or platform. "": the
         environment variable PELLUCID_DEVICE, and without it the best GPU, else the best CPU.
 
+    profiling : bool, optional
+        Whether kernels are timed. None: as the environment variable PELLUCID_PROFILING says, 0 or 1; without
+        it they are.
+
     Raises
     ------
     PellucidError
@@ -58,8 +69,9 @@ class Device(OfThisProcess):
 
     _instead = "make one there, pellucid.Device(selector)"
 
-    def __init__(self, selector: str | int = "") -> None:
-        self._open(_in_flight.interruptible(lambda: _native.Device.create(str(selector))))
+    def __init__(self, selector: str | int = "", profiling: Optional[bool] = None) -> None:
+        timed = 2 if profiling is None else int(profiling)
+        self._open(_in_flight.interruptible(lambda: _native.Device.create(str(selector), timed)))
 
     def _open(self, handle: _native.Device) -> None:
         self._handle = handle
@@ -103,6 +115,10 @@ class Device(OfThisProcess):
         """Waits until everything submitted has finished."""
         self._handle.marker().wait()
         _in_flight.sweep()
+
+    def set_name(self, name: str) -> None:
+        """A name for errors and the log."""
+        self._handle.set_name(name)
 
     def set_progress(self, callback: Progress | bool | None) -> None:
         """Reports how far long work is.
@@ -238,6 +254,10 @@ class Buffer(OfThisProcess):
         self = cls.__new__(cls)
         self._setup(device, _native.Buffer.from_cl(device._handle, _cl_address(mem, "mem")), mem)
         return self
+
+    def set_name(self, name: str) -> None:
+        """A name for errors and the log."""
+        self._handle.set_name(name)
 
     @property
     def nbytes(self) -> int:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _native, _show
 from ._errors import PellucidError
 from ._struct import OfThisProcess, did_you_mean, to_enum
-from ._types import BurleyFit, ProfileInfo
+from ._types import BurleyFit, ProfileInfo, Skin
 from .device import _filled
 
 
@@ -19,6 +19,13 @@ def _triple(value: ArrayLike, what: str) -> NDArray[np.float32]:
     if numbers.shape not in ((), (3,)):
         raise ValueError(f"{what} has the shape {numbers.shape}; one number or three (RGB) are needed")
     return np.ascontiguousarray(np.broadcast_to(numbers, 3), np.float32)
+
+
+def _skin(skin: Optional[Skin], fields: dict[str, Any]) -> Skin:
+    made = skin.copy() if skin is not None else Skin()
+    for key, value in fields.items():
+        setattr(made, key, value)
+    return made
 
 
 class Profile(OfThisProcess):
@@ -72,6 +79,11 @@ class Profile(OfThisProcess):
     def burley_distance(cls, distance: ArrayLike, name: str = "") -> Profile:
         """The same from its own length d (> 0), by which other programs know it."""
         return cls._named(name, _native.Profile.burley_distance, _triple(distance, "distance"))
+
+    @classmethod
+    def skin_layers(cls, skin: Optional[Skin] = None, name: str = "", **fields: Any) -> Profile:
+        """Skin computed from what it is made of, in mm: Skin(melanin=0.05, blood=0.02, ...)."""
+        return cls._named(name, _native.Profile.skin_layers, _skin(skin, fields)._data.data)
 
     @classmethod
     def named(cls, material: str) -> Profile:

@@ -1,17 +1,27 @@
-"""Scattering alone, for hosts that light their own frames."""
+"""Scattering alone: on the screen, for hosts that light their own frames; in the texture of a mesh; and by
+the surface integral, which every diffusion method approximates."""
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, Optional
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from . import _native
-from ._arrays import Image, natives, submit, to_image
+from . import _in_flight, _native
+from ._arrays import Image, natives, submit, to_image, vertex_view
 from ._struct import OfThisProcess, to_enum
-from ._types import ImageSlot, ScatterControls, ScatterParams, ScatterStats
+from ._types import (
+    ImageSlot,
+    IrradianceAt,
+    ScatterControls,
+    ScatterParams,
+    ScatterStats,
+    TextureScatterParams,
+    TextureScatterStats,
+)
 from .device import Device, Event, _filled, _handles
+from .mesh import _triangles
 from .profile import Profile, as_profile
 
 
@@ -74,14 +84,27 @@ class Scatter(OfThisProcess):
         self.submit_execute(irradiance, positions, result, depth=depth, ids=ids, params=params).wait()
         return result
 
+    def warm_up(self, irradiance: Any, positions: Any = None, out: Any = None, *, depth: Any = None,
+                ids: Any = None, params: Optional[ScatterParams] = None) -> int:
+        """Builds the OpenCL programs of such an `execute` before it; only the formats and packing of the
+        images matter. See warm_up_programs. Returns how many programs were not there before."""
+        target = np.empty(np.shape(irradiance), np.float32) if out is None else out
+        settings, images = self._arguments(irradiance, positions, target, depth, ids, params)
+        return int(_in_flight.interruptible(
+            lambda: self._handle.warm_up(self.device._handle, settings._data, *natives(images)), *images))
+
+    def _arguments(self, irradiance: Any, positions: Any, out: Any, depth: Any, ids: Any,
+                   params: Optional[ScatterParams]) -> tuple[ScatterParams, list[Optional[Image]]]:
+        target = to_image(self.device, out, "out", output=True)
+        return ScatterParams() if params is None else params, [
+            target if out is irradiance else to_image(self.device, irradiance, "irradiance"),
+            to_image(self.device, positions, "positions"), to_image(self.device, depth, "depth"),
+            to_image(self.device, ids, "ids", ids=True), target]
+
     def submit_execute(self, irradiance: Any, positions: Any, out: Any, *, depth: Any = None, ids: Any = None,
                        params: Optional[ScatterParams] = None, waits: Iterable[Event] = ()) -> Event:
         """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
-        settings = ScatterParams() if params is None else params
-        target = to_image(self.device, out, "out", output=True)
-        images = [target if out is irradiance else to_image(self.device, irradiance, "irradiance"),
-                  to_image(self.device, positions, "positions"), to_image(self.device, depth, "depth"),
-                  to_image(self.device, ids, "ids", ids=True), target]
+        settings, images = self._arguments(irradiance, positions, out, depth, ids, params)
         given, kept = natives(images), list(self._images.values())
         views = [x._view for x in [*images, *kept] if x is not None]
         return Event(submit(self.device, views, _handles(waits),
@@ -90,3 +113,183 @@ class Scatter(OfThisProcess):
     def stats(self) -> ScatterStats:
         """What the last execution did."""
         return _filled(ScatterStats, self._handle.stats())
+
+
+class TextureScatter(OfThisProcess):
+    """Irradiance of a mesh, drawn into its texture and scattered there; see pelTextureScatterExecute. Keeps
+    memory between calls.
+
+    Parameters
+    ----------
+    device : Device
+    width, height : int
+        Of the texture, texels.
+    indices : (t, 3) or (3 t,) integers
+        Three vertices per triangle.
+    uvs : (n, 2) float32
+        Texture coordinates per vertex, from 0 to 1.
+
+    Raises
+    ------
+    PellucidError
+        Indices out of range, coordinates that are not finite.
+    """
+
+    _instead = "make one there"
+
+    def __init__(self, device: Device, width: int, height: int, indices: ArrayLike, uvs: ArrayLike) -> None:
+        coordinates = np.ascontiguousarray(uvs, np.float32)
+        if coordinates.ndim != 2 or coordinates.shape[1] != 2:
+            raise ValueError(f"uvs have the shape {coordinates.shape}; (n, 2) is needed")
+        packed = _triangles(indices, len(coordinates), None)[0]
+        self.device, self.width, self.height = device, width, height
+        self._handle = _native.TextureScatter.create(device._handle, width, height, len(coordinates),
+                                                     packed.ctypes.data, packed.size, coordinates.ctypes.data)
+
+    def set_positions(self, positions: Any) -> None:
+        """Where the vertices are, (n, 3) float32: before anything else, and again when the mesh moved."""
+        self.submit_set_positions(positions).wait()
+
+    def submit_set_positions(self, positions: Any, *, waits: Iterable[Event] = ()) -> Event:
+        """The same after `waits`, without waiting."""
+        view = vertex_view(self.device, positions, 3, "positions")
+        return Event(submit(self.device, [view], _handles(waits),
+                            lambda w: self._handle.set_positions(view.native, w), self))
+
+    def draw(self, values: Any, out: Optional[NDArray[np.float32]] = None, *,
+             unit: bool = False) -> NDArray[np.float32]:
+        """Values per vertex, (n, 3) float32, drawn into the texture, (height, width, 3); `unit`: they are
+        normals."""
+        result = np.empty((self.height, self.width, 3), np.float32) if out is None else out
+        self.submit_draw(values, result, unit=unit).wait()
+        return result
+
+    def submit_draw(self, values: Any, out: Any, *, unit: bool = False, waits: Iterable[Event] = ()) -> Event:
+        """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
+        view = vertex_view(self.device, values, 3, "values")
+        image = to_image(self.device, out, "out", output=True)
+        values_native, image_native = natives([view, image])
+        return Event(submit(self.device, [view, image._view], _handles(waits),
+                            lambda w: self._handle.draw(values_native, unit, image_native, w), self, image))
+
+    def execute(self, irradiance: Any, albedo: Any = None, *, out: Optional[NDArray[np.float32]] = None,
+                params: Optional[TextureScatterParams] = None) -> NDArray[np.float32]:
+        """Scattered irradiance, (height, width, 3).
+
+        Parameters
+        ----------
+        irradiance : (height, width, 3)
+            The host's own, or drawn; only texels in triangles count.
+        albedo : (height, width, 3), optional
+            With params.albedo_before or albedo_after.
+        out : (height, width, 3) float32, optional
+            A new array without it; may be the irradiance.
+        params : TextureScatterParams, optional
+        """
+        result = np.empty((self.height, self.width, 3), np.float32) if out is None else out
+        self.submit_execute(irradiance, albedo, result, params=params).wait()
+        return result
+
+    def submit_execute(self, irradiance: Any, albedo: Any, out: Any, *,
+                       params: Optional[TextureScatterParams] = None, waits: Iterable[Event] = ()) -> Event:
+        """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
+        settings = TextureScatterParams() if params is None else params
+        target = to_image(self.device, out, "out", output=True)
+        images = [target if out is irradiance else to_image(self.device, irradiance, "irradiance"),
+                  to_image(self.device, albedo, "albedo"), target]
+        given = natives(images)
+        views = [x._view for x in images if x is not None]
+        return Event(submit(self.device, views, _handles(waits),
+                            lambda w: self._handle.execute(settings._data, *given, w), self))
+
+    def stats(self) -> TextureScatterStats:
+        """What the last execution did."""
+        return _filled(TextureScatterStats, self._handle.stats())
+
+
+def surface_integral(device: Device, positions: Any, triangles: Any, irradiance: Any, points: Any,
+                     out: Optional[NDArray[np.float32]] = None, *, profile: Profile | str | None = None,
+                     diffusion_radius: float = 0.0,
+                     millimetres_per_unit: float = 1.0, cut: Sequence[float] = (0.0, 0.0, 0.0),
+                     tolerance: float = 1e-3) -> NDArray[np.float32]:
+    """Light that leaves a surface after diffusing under it: sum over the mesh of R(distance) irradiance; see
+    pelSurfaceIntegral.
+
+    Parameters
+    ----------
+    positions : (n, 3) float32
+    triangles : (m, 3) integers
+    irradiance : (n, 3), (m, 3) or (m, 3, 3) float32
+        RGB per vertex, per triangle (where n is not m), or per corner of each triangle. 0 or more,
+        visibility in it.
+    points : (k, 3) float32
+        Where; on the triangles.
+    out : (k, 3) float32, optional
+        A new array without it.
+    profile : Profile or name of one of the library, optional
+        Skin without it.
+    diffusion_radius : float
+        In the profile's unit; 0: its own.
+    millimetres_per_unit : float
+        Units of the profile per unit of positions.
+    cut : three floats
+        Where R ends, per channel, in the profile's unit; 0: nowhere.
+    tolerance : float
+        Error of the hierarchy, part of the largest irradiance.
+    """
+    result = np.empty(np.shape(points), np.float32) if out is None else out
+    submit_surface_integral(device, positions, triangles, irradiance, points, result, profile=profile,
+                            diffusion_radius=diffusion_radius, millimetres_per_unit=millimetres_per_unit,
+                            cut=cut, tolerance=tolerance).wait()
+    return result
+
+
+def submit_surface_integral(device: Device, positions: Any, triangles: Any, irradiance: Any, points: Any,
+                            out: Any, *, profile: Profile | str | None = None, diffusion_radius: float = 0.0,
+                            millimetres_per_unit: float = 1.0, cut: Sequence[float] = (0.0, 0.0, 0.0),
+                            tolerance: float = 1e-3, waits: Iterable[Event] = ()) -> Event:
+    """The same after `waits`, without waiting: leave points and out alone until the event is done."""
+    p = np.ascontiguousarray(positions, np.float32)
+    e = np.ascontiguousarray(irradiance, np.float32)
+    if p.ndim != 2 or p.shape[1] != 3:
+        raise ValueError(f"positions has shape {p.shape}; (n, 3) is needed")
+    t = _triangles(triangles, len(p), None)[0].reshape(-1, 3)
+    places = {(len(p), 3): IrradianceAt.VERTEX, (len(t), 3): IrradianceAt.TRIANGLE,
+              (len(t), 3, 3): IrradianceAt.CORNER}
+    if e.shape not in places:
+        raise ValueError(f"irradiance has shape {e.shape}; it must be one of {', '.join(map(str, places))}")
+    at = IrradianceAt.VERTEX if e.shape == (len(p), 3) else places[e.shape]
+    views = [vertex_view(device, points, 3, "points"), vertex_view(device, out, 3, "out", output=True)]
+    x, s = (v.native for v in views)
+    known = as_profile(profile)
+    handle = None if known is None else known._handle
+    return Event(submit(device, views, _handles(waits), lambda w: _native.surface_integral(
+        device._handle, p.ctypes.data, len(p), t.ctypes.data, t.size, e.ctypes.data, int(at), handle,
+        diffusion_radius, millimetres_per_unit, list(cut), tolerance, x, s, w)))
+
+
+def compare(a: Any, b: Any, mask: Any = None) -> dict[str, Any]:
+    """How far two pictures of linear RGB are apart.
+
+    Parameters
+    ----------
+    a, b : (height, width, 3) floats
+        Or (..., 3) of any shape; of one shape.
+    mask : (height, width), optional
+        Where it is 0 or False, pixels do not count.
+
+    Returns
+    -------
+    dict
+        pixels, invalid_pixels (with a NaN or Inf: left out), rmse, mean, p99 and max per channel (of a - b;
+        the last two of its size), rmse_all, psnr in dB of a white of 1, and CIEDE2000 [Sharma et al. 2005]
+        as delta_e_mean, delta_e_p99, delta_e_max. All but the counts are NaN when no pixel was compared.
+    """
+    one, two = (np.ascontiguousarray(x, np.float32) for x in (a, b))
+    if one.shape != two.shape or one.ndim < 1 or one.shape[-1] != 3:
+        raise ValueError(f"a has shape {one.shape}, b {two.shape}; both need the same, ending in 3 channels")
+    within = None if mask is None else np.ascontiguousarray(np.asarray(mask) != 0, np.uint8)
+    if within is not None and within.shape != one.shape[:-1]:
+        raise ValueError(f"mask has shape {within.shape}; {one.shape[:-1]} is needed")
+    return _native.compare_images(one.ctypes.data, two.ctypes.data, one.size // 3,
+                                  0 if within is None else within.ctypes.data)

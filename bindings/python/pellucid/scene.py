@@ -103,7 +103,7 @@ class Scene(OfThisProcess):
         files.FileError
             The file cannot be written.
         """
-        self._native.save(str(path), *self._state())
+        self._native.save(str(path), self._state())
 
     def _state(self) -> tuple[Any, ...]:
         return ([(id, m._data.tobytes(), self.profiles.get(id, "")) for id, m in self.materials.items()],
@@ -184,5 +184,5 @@ def shade(scene: Scene, device: Optional[Device] = None, outputs: Iterable[str] 
         state = scene._state()
     finally:
         scene.options.count_pixels = counted
-    made = scene._native.shade(scene._device._handle.address(), *state, wanted)
+    made = scene._native.shade(scene._device._handle.address(), state, wanted)
     return Shaded(made["radiance"], made["outputs"], _filled(ShaderStats, made["stats"]), made["warnings"])

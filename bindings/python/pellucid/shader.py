@@ -19,6 +19,8 @@ from ._types import (
     Light,
     LightSlot,
     Material,
+    PassMemory,
+    PassStats,
     ProgramGroup,
     ShaderOptions,
     ShaderStats,
@@ -40,6 +42,11 @@ class Shader(OfThisProcess):
         self.device = device
         self._handle = _native.Shader.create(device._handle)
         self._images: dict[Any, Image] = {}
+
+    def set_name(self, name: str) -> Shader:
+        """A name for errors and the log."""
+        self._handle.set_name(name)
+        return self
 
     def set_image(self, slot: ImageSlot | str, image: Any) -> Shader:
         """Sets one image of the G-buffer.
@@ -275,6 +282,21 @@ class Shader(OfThisProcess):
         """What the last execution did."""
         self.device.finish()
         return _filled(ShaderStats, self._handle.stats())
+
+    def passes(self) -> list[PassStats]:
+        """The passes that launched something in the newest execution that has finished, without a wait."""
+        return [_filled(PassStats, data) for data in self._handle.passes()]
+
+    def memory(self) -> list[PassMemory]:
+        """Which passes hold device memory beside the arrays, and what each will hold once the state that is
+        set is committed. Nothing is committed, and no image allocated.
+
+        Raises
+        ------
+        PellucidError
+            Those of `commit`.
+        """
+        return [_filled(PassMemory, data) for data in self._handle.memory()]
 
 
 def warm_up_programs(device: Device, groups: ProgramGroup | int = 0, shaders: Sequence[Shader] = (),

@@ -60,7 +60,10 @@ def main(package, environment, *arguments):
         print("bindings/python/tests::packages_from_PyPI SKIPPED (pip cannot reach what the tests need)")
         raise SystemExit(77)
     report = environment / "report.xml"
-    variables = {**os.environ, **sanitized(), "PYTHONPATH": str(package), "PYTHONDONTWRITEBYTECODE": "1"}
+    # Bytecode beside the environment: processes of tests import the same modules again and again.
+    variables = {**os.environ, **sanitized(), "PYTHONPATH": str(package),
+                 "PYTHONPYCACHEPREFIX": str(environment / "bytecode")}
+    variables.pop("PYTHONDONTWRITEBYTECODE", None)
     folders = [ROOT / f for f in FOLDERS] if not any(Path(a).exists() for a in arguments) else []
     status = subprocess.run([environment / "bin/python", "-m", "pytest", "-v", "-rs", "-p",
                              "no:cacheprovider", "--tb=short",

@@ -31,14 +31,16 @@ def test_other_threads_run_during_work(device, make_sphere):
 
     thread = threading.Thread(target=tick)
     thread.start()
-    start = time.perf_counter()
-    while time.perf_counter() - start < 0.4:
+    inside, patience = 0, time.perf_counter() + 60
+    while inside < 20 and time.perf_counter() < patience:
+        start = time.perf_counter()
         topology.curvature(mesh.positions, mesh.normals, smoothing_passes=60)
-    end = time.perf_counter()
+        end = time.perf_counter()
+        inside += max(0, sum(start < t < end for t in ticks) - 1)  # one may have begun before the call
+        ticks.clear()
     stop.set()
     thread.join()
-    # Had the calls kept the GIL, the other thread would have run only between them.
-    assert sum(start < t < end for t in ticks) > 20
+    assert inside >= 20
 
 
 def test_arrays_live_until_their_work_is_done(device, make_sphere):
@@ -123,8 +125,10 @@ def test_progress_bar_ends_with_its_work(monkeypatch):
 
 
 def at_once():
-    """Seconds until Ctrl-C is noticed: longer under sanitizers, and with other programs at work."""
-    share = max(1.0, 2 * os.getloadavg()[0] / (os.cpu_count() or 1))
+    """Seconds until Ctrl-C is noticed: longer under sanitizers, on slow machines and busy ones."""
+    start = time.monotonic()
+    sum(range(10_000_000))  # a fifth of a second or so
+    share = max(2.0, 8 * (time.monotonic() - start), 4 * os.getloadavg()[0] / (os.cpu_count() or 1))
     return share * (10 if os.environ.get("PELLUCID_SANITIZE") else 1)
 
 
@@ -208,8 +212,8 @@ COMPILE = textwrap.dedent("""
     shader.set_material(1, pel.Material(specular=1, deep_scatter_color=(1, 1, 1), thickness_taps=32), lut)
     shader.set_lights([pel.Light(shadow_filter_texels=48, shadow_depth_range=1)])
     shader.set_light_image(0, "shadow_map", image[..., 0]).set_image("curvature", image[..., 1])
-    print("go", flush=True)
     try:
+        print("go", flush=True)
         shader.commit()
     except KeyboardInterrupt:
         print(time.time(), flush=True)
@@ -231,7 +235,7 @@ def test_ctrl_c_while_a_compiler_works(tmp_path):
         child.send_signal(signal.SIGINT)
         assert float(child.stdout.readline()) - sent < at_once()
         assert float(child.stdout.readline()) > 0.01, "the compiler had finished before Ctrl-C was noticed"
-        assert child.wait(60) == 0
+        assert child.wait(300) == 0
     finally:
         child.kill()
         child.wait()
@@ -266,7 +270,7 @@ FORK = textwrap.dedent("""
 
 
 def test_calls_in_a_forked_process_raise():
-    done = subprocess.run([sys.executable, "-c", FORK], stdout=subprocess.PIPE, text=True, timeout=60)
+    done = subprocess.run([sys.executable, "-c", FORK], stdout=subprocess.PIPE, text=True, timeout=300)
     assert done.returncode == 0
     assert done.stdout.split("\n")[:14] == ["INVALID_STATE True"] * 12 + ["3", "True"]
 

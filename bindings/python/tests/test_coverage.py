@@ -12,12 +12,14 @@ from pellucid import _native
 HEADER = (ROOT / "host/include/pellucid/pellucid.h").read_text()
 # Functions that the native module does not name, except reference counting, and what stands for them.
 OTHERWISE = {"pelDeviceCreate": "pellucid::Device(", "pelDeviceCreateFromCl": "pellucid::Device::fromCl(",
+             "pelDeviceCreateWith": "pellucid::Device(desc)", "pelSetName": "named<Shader>(",
              "pelEventWait": "pelEventIsDone(", "pelLutGetSize": "pelLutRead"}
 # Structures of pointers and handles, and what stands for them.
 ARRAYS = {"PelImageDesc": pel.Image, "PelVertexView": pel.Vertices, "PelMeshTopologyDesc": pel.MeshTopology,
           "PelSubmit": pel.Event, "PelGaussian": pel.Profile.gaussians, "PelVertexRange": pel.LiveMesh.update,
-          "PelWarmUp": pel.warm_up_programs, "PelTextureScatterDesc": pel.TextureScatter,
-          "PelSurfaceIntegralDesc": pel.surface_integral}
+          "PelWarmUp": pel.warm_up_programs, "PelScatterWork": pel.Scatter.warm_up,
+          "PelTextureScatterDesc": pel.TextureScatter,
+          "PelDeviceDesc": pel.Device, "PelSurfaceIntegralDesc": pel.surface_integral}
 
 
 def sources(folder, pattern):

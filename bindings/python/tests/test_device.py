@@ -24,6 +24,18 @@ def test_selector_picks_and_names_what_there_is():
     assert caught.value.code is pel.ErrorCode.NO_DEVICE and seen == [(caught.value.code, str(caught.value))]
 
 
+def test_the_log_hears_errors_with_names(device):
+    heard = []
+    shader = pel.Shader(device).set_name("hero")
+    pel.set_log_callback(lambda *line: heard.append(line))
+    try:
+        with pytest.raises(pel.PellucidError, match="^hero: "):
+            shader.commit()
+    finally:
+        pel.set_log_callback(None)
+    assert [(level, name) for level, name, _ in heard] == [(pel.LogLevel.ERROR, "hero")]
+
+
 def test_buffer_round_trip(device):
     values = np.arange(1000, dtype=np.int64)
     buffer, out = pel.Buffer(device, values), np.empty_like(values)

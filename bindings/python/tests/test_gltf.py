@@ -1,7 +1,7 @@
 """glTF scenes in Python: the same as `pellucid import` makes."""
+import base64
 import json
 import math
-import struct
 import subprocess
 
 import numpy as np
@@ -23,25 +23,18 @@ PLASTER = {"name": "Plaster", "pbrMetallicRoughness": {"metallicFactor": 0}}
 RADIUS = 0.02  # m
 
 
-def ball(rings=24, segments=48):
-    a, b = np.meshgrid(np.linspace(0, math.pi, rings + 1), np.linspace(0, 2 * math.pi, segments + 1),
-                       indexing="ij")
-    points = RADIUS * np.stack([np.sin(a) * np.sin(b), np.cos(a), np.sin(a) * np.cos(b)], -1).reshape(-1, 3)
-    at = (np.arange(rings)[:, None] * (segments + 1) + np.arange(segments)).ravel()
-    below = at + segments + 1
-    indices = np.stack([at, below, at + 1, at + 1, below, below + 1], -1)
-    return points.astype("<f4"), (points[:, :2] + RADIUS).astype("<f4"), indices.astype("<u4")
-
-
+# An octahedron with outward faces.
+POINTS = np.vstack([np.eye(3), -np.eye(3)]) * RADIUS
+FACES = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]]
 PNG = _show.png(np.full((2, 2, 3), 200, np.uint8))
 
 
 @pytest.fixture
 def glb(tmp_path):
-    """Two balls, of wax and of plaster, a camera and a lamp."""
-    parts = [a.tobytes() for a in ball()] + [PNG]
+    """Two octahedra, of wax and of plaster, a camera and a lamp."""
+    parts = [POINTS.astype("<f4").tobytes(), (POINTS[:, :2] + RADIUS).astype("<f4").tobytes(),
+             np.array(FACES, "<u4").tobytes(), PNG]
     starts = np.cumsum([0] + [len(p) for p in parts]).tolist()
-    points = len(ball()[0])
     document = {
         "asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1, 2, 3]}], "materials": [WAX, PLASTER],
         "textures": [{"source": 0}],
@@ -53,20 +46,15 @@ def glb(tmp_path):
                   {"extensions": {"KHR_lights_punctual": {"light": 0}}}],
         "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.01, "aspectRatio": 1.5}}],
         "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": math.pi}]}},
-        "buffers": [{"byteLength": starts[-1]}],
-        "bufferViews": [{"buffer": 0, "byteOffset": start, "byteLength": len(p)} for start,
-                        p in zip(starts, parts)],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": points, "type": "VEC3"},
-                      {"bufferView": 1, "componentType": 5126, "count": points, "type": "VEC2"},
-                      {"bufferView": 2, "componentType": 5125, "count": ball()[2].size, "type": "SCALAR"}]}
-    text = json.dumps(document).encode()
-    text += b" " * (-len(text) % 4)
-    binary = b"".join(parts)
-    binary += b"\0" * (-len(binary) % 4)
-    path = tmp_path / "balls.glb"
-    path.write_bytes(struct.pack("<III", 0x46546C67, 2, 28 + len(text) + len(binary)) +
-                     struct.pack("<II", len(text), 0x4E4F534A) + text
-                     + struct.pack("<II", len(binary), 0x004E4942) + binary)
+        "buffers": [{"byteLength": starts[-1], "uri": "data:;base64," + base64.b64encode(
+            b"".join(parts)).decode()}],
+        "bufferViews": [{"buffer": 0, "byteOffset": start, "byteLength": len(p)}
+                        for start, p in zip(starts, parts)],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 6, "type": "VEC3"},
+                      {"bufferView": 1, "componentType": 5126, "count": 6, "type": "VEC2"},
+                      {"bufferView": 2, "componentType": 5125, "count": 24, "type": "SCALAR"}]}
+    path = tmp_path / "balls.gltf"
+    path.write_text(json.dumps(document))
     return path
 
 
@@ -116,7 +104,7 @@ def test_it_is_saved_as_the_command_does(glb, tmp_path):
     (lambda glb, f: pel.load_gltf(glb, profiles="granite"), files.FileError, "granite"),
     (lambda glb, f: pel.load_gltf(glb, unit_mm=0), ValueError, "unit_mm"),
     (lambda glb, f: pel.load_gltf(glb, lights=math.nan), ValueError, "lights"),
-    (lambda glb, f: pel.load_gltf(glb).save(glb / "x"), files.FileError, "balls.glb/x"),
+    (lambda glb, f: pel.load_gltf(glb).save(glb / "x"), files.FileError, "balls.gltf/x"),
     (lambda glb, f: files.load_profile(f / "none.toml"), files.FileError, "none.toml")])
 def test_errors(glb, tmp_path, use, error, message):
     with pytest.raises(error, match=message):

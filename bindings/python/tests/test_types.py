@@ -56,7 +56,8 @@ def test_wrong_names_and_values_are_named(use, error, message):
 
 def test_help_is_about_the_package():
     text = pydoc.plain(pydoc.render_doc(pel))
-    assert len(text.splitlines()) < 4500
+    # A structure takes about 70 lines; what NumPy and enumerations inherit would be thousands.
+    assert len(text.splitlines()) < 4800
     assert "__divmod__" not in text and "roughness" in text and "SPOT" in text
     assert not {"Any", "annotations"} & set(dir(pel)) and set(pel.__all__) <= set(dir(pel))
 

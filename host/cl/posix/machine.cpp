@@ -12,7 +12,6 @@
 #include <cstring>
 #include <fstream>
 #include <new>
-#include <sstream>
 
 #include "cl/error.h"
 #include "cl/machine.h"

@@ -68,6 +68,18 @@ PEL_API const char* pelGetErrorMessage(void);
 typedef void (*PelErrorCallback)(void* user, PelError error, const char* message);
 PEL_API void pelSetErrorCallback(PelErrorCallback callback, void* user);
 
+typedef enum PelLogLevel { PEL_LOG_ERROR = 0, PEL_LOG_WARNING = 1 } PelLogLevel;
+
+/* Called on the calling thread with each error before it is returned, and with each sentence of
+ * pelShaderGetWarnings during the commit. `object`: the name of the first object of the call that has one, or
+ * "". NULL removes it. One for the whole process, beside the error callback. */
+typedef void (*PelLogCallback)(void* user, PelLogLevel level, const char* object, const char* text);
+PEL_API void pelSetLogCallback(PelLogCallback callback, void* user);
+
+/* Names an object, such as "hero's shader", for the log; error messages of its calls begin with the name. Any
+ * handle will do. NULL or "" takes the name away. */
+PEL_API PelError pelSetName(void* object, const char* name);
+
 /* The library's version as one number: major * 10000 + minor * 100 + patch. */
 PEL_API uint32_t pelVersion(void);
 
@@ -114,6 +126,26 @@ PEL_API PelError pelDeviceEnumerate(uint32_t index, PelDeviceInfo* info);
  * best GPU, else the best CPU. Errors: PEL_ERROR_NO_DEVICE (the message lists the devices found, or names the
  * package that brings one). */
 PEL_API PelError pelDeviceCreate(const char* selector, PelDevice* device);
+
+/* A host's own device memory: returns a cl_mem buffer of the context, of at least `bytes`, or NULL if there
+ * is none. The library takes over its reference: clSetMemObjectDestructorCallback tells the host of its end.
+ */
+typedef void* (*PelAllocateCallback)(void* user, void* clContext, size_t bytes);
+
+typedef struct PelDeviceDesc {
+    uint32_t structSize;
+    /* 1: kernels are timed by OpenCL's profiling, which the milliseconds of PelDeviceStats, PelShaderStats
+     * and PelPassStats need; 0: not. Default 2: as the environment variable PELLUCID_PROFILING says, and 1
+     * without it */
+    uint32_t profiling;
+    const char* selector; /* as of pelDeviceCreate; NULL */
+    /* all device memory comes from here, on the calling thread, and on others of PelWarmUp.threads and
+     * PelShaderOptions.buildInBackground; NULL: OpenCL's */
+    PelAllocateCallback allocate;
+    void* allocateUser;
+} PelDeviceDesc;
+/* pelDeviceCreate with options. */
+PEL_API PelError pelDeviceCreateWith(const PelDeviceDesc* desc, PelDevice* device);
 
 /* Makes a device from the caller's own cl_context, cl_device_id and in-order cl_command_queue (retained; all
  * needed). All work goes to that queue. */
@@ -340,7 +372,7 @@ typedef enum PelCurvatureEstimator {
     PEL_CURVATURE_QUADRIC = 2
 } PelCurvatureEstimator;
 
-/* What is written for a vertex. Curvatures are positive where the surface bends away from its normal (a
+/* What is written for a vertex. Curvatures are positive where the surface curves away from its normal (a
  * sphere with outward normals has two positive ones); k1 >= k2. Edge has the first quantity only. */
 typedef enum PelCurvatureQuantity {
     /* |k1 + k2| / 2, 1/radius of the best sphere; edge: its own estimate. For LUTs */
@@ -490,7 +522,8 @@ typedef enum PelProfileKind {
     PEL_PROFILE_GAUSSIANS = 1,
     PEL_PROFILE_BURLEY = 2,
     PEL_PROFILE_DIPOLE = 3,
-    PEL_PROFILE_TABLE = 4
+    PEL_PROFILE_TABLE = 4,
+    PEL_PROFILE_SKIN_LAYERS = 5
 } PelProfileKind;
 
 /* weight * exp(-d^2 / 2 variance) / (2 pi variance): energy per area at distance d. The line spread has the
@@ -537,6 +570,57 @@ PEL_API PelError pelProfileCreateDipole(const float absorption[3], const float r
  * exactly, including its corners. */
 PEL_API PelError pelProfileCreateTable(const float* distances, const float* values, uint32_t count,
                                        PelProfile* profile);
+/* What human skin is made of: an epidermis over a dermis without end, both of index 1.4. Ranges and defaults:
+ * docs/guide/skin.md; formulas and sources: docs/mathematics.md, section 15. */
+typedef struct PelSkin {
+    uint32_t structSize;
+    float melanin;         /* share of the epidermis' volume that is melanosomes */
+    float eumelanin;       /* share of the melanin that is eumelanin, the rest is pheomelanin */
+    float blood;           /* share of the dermis' volume that is blood */
+    float oxygenation;     /* share of the haemoglobin that carries oxygen */
+    float epidermis;       /* mm, its thickness */
+    float scattering;      /* 1/mm, the reduced scattering coefficient at 500 nm */
+    float scatteringPower; /* b of (wavelength / 500 nm)^-b, by which it changes */
+    float water;           /* share of the dermis' volume */
+    float carotene;        /* mg per litre of epidermis */
+    float bilirubin;       /* mg per litre of dermis */
+} PelSkin;
+
+/* What follows from a PelSkin, per channel of linear sRGB under D65. */
+typedef struct PelSkinInfo {
+    uint32_t structSize;
+    float albedo[3];                 /* of diffuse light, without what the surface itself reflects; 0 to 1 */
+    float meanFreePath[3];           /* mm, in the dermis, weighed by the light that leaves */
+    float singleScatteringAlbedo[3]; /* of the dermis, weighed alike */
+    float meanDistance[3];           /* mm, between where light enters and leaves */
+    /* greatest difference between the profile's sum of Gaussians and the computed one, as a share of the
+     * channel's light, over all frequencies */
+    float profileError[3];
+    float lab[3];        /* CIE L*a*b* of the albedo, D65 */
+    float typologyAngle; /* degrees, ITA = atan((L* - 50) / b*) */
+} PelSkinInfo;
+
+/* Albedo and lengths of skin. `skin` may be NULL in all these: the defaults. Errors:
+ * PEL_ERROR_INVALID_ARGUMENT for a field out of range, by name. The first call of a process takes some tenths
+ * of a second, later ones 0.2 ms. */
+PEL_API PelError pelSkinGetInfo(const PelSkin* skin, PelSkinInfo* info);
+/* Share of diffuse light that skin sends back at `count` wavelengths, 380 to 720 nm, without what the surface
+ * reflects. */
+PEL_API PelError pelSkinReflectance(const PelSkin* skin, const float* nanometres, uint32_t count,
+                                    float* reflectance);
+/* A profile in mm: 14 Gaussians. Radius: as for Burley's. */
+PEL_API PelError pelProfileCreateSkinLayers(const PelSkin* skin, PelProfile* profile);
+/* Maps: for `count` values of melanin and blood, with the other fields of `skin`, RGB albedos (3 * count) and
+ * lengths relative to the profile of `skin` (count), for the second component of PEL_SLOT_SCATTER_WEIGHT;
+ * either may be NULL. NaN counts as the value of `skin`; others are clamped. PEL_SLOT_SKIN takes the maps
+ * themselves. */
+PEL_API PelError pelSkinAlbedo(const PelSkin* skin, const float* melanin, const float* blood, uint64_t count,
+                               float* albedo, float* radius);
+/* The inverse: for `count` linear RGB albedos the melanin and blood whose albedo is nearest by CIEDE2000, and
+ * that distance (NULL: not wanted). Above about 1 it can be seen: no such skin has this colour. NaN counts as
+ * 0. */
+PEL_API PelError pelSkinFromAlbedo(const PelSkin* skin, const float* albedo, uint64_t count, float* melanin,
+                                   float* blood, float* difference);
 /* A material of the library, in mm: "skin", "marble", ... Errors: PEL_ERROR_INVALID_ARGUMENT for an unknown
  * name; the message lists the known ones. */
 PEL_API PelError pelProfileCreateNamed(const char* name, PelProfile* profile);
@@ -776,9 +860,9 @@ typedef enum PelImageSlot {
      * materials that do not scatter by tables (PelMaterial.scattering); not set: made from lights,
      * PEL_LIGHT_WIDE_SHADOW or shadow maps, and the ambient */
     PEL_SLOT_IRRADIANCE = 20,
-    /* one or two components, 0 to 1. First: how much of the scattered light a pixel takes, the rest is its
-     * own irradiance; 0: no scattering. Second: times the profile's radius. Both are clamped; NaN is 0. Not
-     * set: 1 */
+    /* one or two components. First, 0 to 1: how much of the scattered light a pixel takes, the rest is its
+     * own irradiance; 0: no scattering. Second, 0 to 4: times the profile's radius. Both are clamped; NaN is
+     * 0. Not set: 1 */
     PEL_SLOT_SCATTER_WEIGHT = 21,
     /* RGB, as PEL_SLOT_IRRADIANCE: of the other side of a thin sheet (PelMaterial.thinThickness). Not set:
      * made from lights and ambient */
@@ -790,7 +874,12 @@ typedef enum PelImageSlot {
      * surface is convex, negative in hollows. Read by PelMaterial.curvatureGain. Not set: measured from
      * positions or depth, and from normals */
     PEL_SLOT_MEAN_CURVATURE = 24,
-    PEL_SLOT_COUNT = 25
+    /* two or three components: PelSkin.melanin, PelSkin.blood, PelSkin.oxygenation. Read by materials whose
+     * profile is of pelProfileCreateSkinLayers, which has the other fields: there albedo and radius follow
+     * from it, and the albedo image is not read. Clamped to the ranges; NaN, and a component that is missing:
+     * that of the profile */
+    PEL_SLOT_SKIN = 25,
+    PEL_SLOT_COUNT = 26
 } PelImageSlot;
 
 /* The images of one light. */
@@ -1101,7 +1190,37 @@ typedef struct PelShaderStats {
     uint64_t pixelsCaustic; /* of those: that read the caustic table, summed over lights */
     /* shaded by a variant with code for eyes. With a material image: those that hold an eye */
     uint64_t tilesEye;
+    /* 1: what is committed stands in for materials whose programs are being built
+     * (PelShaderOptions.buildInBackground) */
+    uint64_t standsIn;
+    /* with PelShaderOptions.timeBudget: the error that auto aims at in place of targetError, and what to
+     * expect of the frame: milliseconds beyond plain lighting, by times that are the 90th percentile of the
+     * record's scenes, and RMS error against light, a share of white. 0 without a budget or without materials
+     * of auto */
+    double takenTargetError;
+    double expectedMilliseconds;
+    double expectedError;
+    uint64_t tuned; /* 1: they come from this device's record, 0: from the built-in guess */
 } PelShaderStats;
+
+/* What a pass of a shader did in one execution. */
+typedef struct PelPassStats {
+    uint32_t structSize;
+    uint32_t launches;
+    double milliseconds; /* of the device; 0 on a queue without profiling */
+    uint64_t bytes;      /* of device memory that the pass holds now */
+    uint64_t tiles;      /* of 16 x 16 pixels over which it was launched, over bands; 0: not over tiles */
+    uint64_t execution;  /* which: 1 is the shader's first */
+    char name[24];       /* that of its kernel file where it has one, such as "irradiance" */
+} PelPassStats;
+
+/* Device memory of a pass of a shader. */
+typedef struct PelPassMemory {
+    uint32_t structSize;
+    char name[28];   /* as in PelPassStats; the last is "constants" */
+    uint64_t held;   /* bytes, now */
+    uint64_t needed; /* bytes that it will hold once the state that is set is committed; 0: not needed then */
+} PelPassMemory;
 
 /* How the shading kernel finds its tiles. All give the same bits. */
 typedef enum PelTileLists {
@@ -1145,6 +1264,18 @@ typedef struct PelShaderOptions {
      * surface and values go on smoothly (docs/guide/shading.md, "Between pixels"); thickness between nodes of
      * a grid in the shadow map, where that is as exact (the same page, "Cells of taps") */
     uint32_t everyPixel;
+    /* 1: pelShaderCommit does not wait for programs that are neither in memory nor on disk. They are built
+     * while the caller goes on, and until the first execution after that the materials shade by
+     * PEL_SCATTERING_NONE, without specular light, light through thin parts, normal maps and eyes
+     * (PelShaderStats.standsIn; docs/guide/devices.md, "The first picture"). Errors of the build are those of
+     * the execution or commit that finds them. 0 */
+    uint32_t buildInBackground;
+    /* milliseconds of the device that materials of PEL_SCATTERING_AUTO may take beyond plain lighting; 0: as
+     * many as targetError needs. pelShaderCommit then counts their pixels in the material image (all of the
+     * frame if it shows none yet), and takes the method and the error, not below targetError, that are
+     * nearest to light among those that fit by the device's record: a file that PELLUCID_TUNING names, or a
+     * guess (docs/guide/shading.md, "Time budget"). PelShaderStats says what was taken; 0 */
+    float timeBudget;
 } PelShaderOptions;
 
 PEL_API PelError pelShaderCreate(PelDevice device, PelShader* shader);
@@ -1178,7 +1309,8 @@ PEL_API PelError pelShaderSetScatteredTexture(PelShader shader, uint32_t id, con
 PEL_API PelError pelShaderSetEye(PelShader shader, uint32_t id, const PelEye* eye, PelLut caustics);
 /* The albedo of the iris of material `id`, which must be an eye: a square image whose inscribed circle is the
  * iris' rim, as one sees it who faces the eye, row 0 at PelEye.up; a colour format; bilinear. Read at the
- * first execution after a commit. NULL removes it: fibres are drawn by PelEye.irisSeed. */
+ * first execution after the commit that follows this call. NULL removes it: fibres are drawn by
+ * PelEye.irisSeed. */
 PEL_API PelError pelShaderSetIrisTexture(PelShader shader, uint32_t id, const PelImageDesc* texture);
 /* The surroundings that eyes reflect: radiance / pi, six faces as in pelShaderSetAmbientCube, as sharp as the
  * film of tears should show them. Bilinear; negative values count as 0. Read at each execution. NULL removes
@@ -1214,6 +1346,14 @@ PEL_API PelError pelShaderGetMaterial(PelShader shader, uint32_t id, PelMaterial
 PEL_API PelError pelShaderGetWarnings(PelShader shader, const char** warnings);
 /* Waits for the last execution. */
 PEL_API PelError pelShaderGetStats(PelShader shader, PelShaderStats* stats);
+/* The passes that launched something in the newest execution that has finished, in their order. Does not
+ * wait. passes[0].structSize is the size of each. `count`: room in `passes`, 24 suffice; receives how many
+ * there are, 0 while no execution has finished. Errors: PEL_ERROR_INVALID_ARGUMENT for too little room. */
+PEL_API PelError pelShaderGetPasses(PelShader shader, PelPassStats* passes, uint32_t* count);
+/* Which passes hold device memory beside the caller's images, or will after a commit of what is set. Nothing
+ * is committed and no image allocated; tables of profiles and eyes are made where they are missing. Arrays as
+ * in pelShaderGetPasses. Errors: those of pelShaderCommit. */
+PEL_API PelError pelShaderGetMemory(PelShader shader, PelPassMemory* passes, uint32_t* count);
 
 /* ---- Reference --------------------- */
 
@@ -1432,6 +1572,18 @@ typedef enum PelProgramGroup {
     PEL_PROGRAMS_CURVATURE = 1 << 2       /* of meshes by every estimator, smoothing, UV scale */
 } PelProgramGroup;
 
+/* The arguments of a pelScatterExecute, of whose images only the formats and packing matter. */
+typedef struct PelScatterWork {
+    uint32_t structSize;
+    PelScatter scatter;
+    const PelScatterParams* params;
+    const PelImageDesc* irradiance;
+    const PelImageDesc* positions;
+    const PelImageDesc* depth;
+    const PelImageDesc* ids;
+    const PelImageDesc* out;
+} PelScatterWork;
+
 typedef struct PelWarmUp {
     uint32_t structSize;
     uint32_t groups; /* PelProgramGroup bits; 0: none */
@@ -1439,8 +1591,11 @@ typedef struct PelWarmUp {
      * them, and only the formats and packing of images matter: 16 x 1 pixels can represent a frame */
     const PelShader* shaders;
     uint32_t numShaders;
-    /* that build at the same time; 0: one per core, at most one per program. PoCL builds one by one */
+    /* that build at the same time; 0: one per core, at most one per program. PoCL builds one by one in a
+     * process, so that others do it, at most 4 by default (docs/guide/devices.md, "Compiled programs") */
     uint32_t threads;
+    const PelScatterWork* scatters; /* numScatters; nothing is written to their images */
+    uint32_t numScatters;
 } PelWarmUp;
 
 /* Builds the programs that the described work will need, so that the first commit and the first execution do

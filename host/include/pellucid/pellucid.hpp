@@ -1,6 +1,7 @@
 // C++ over pellucid.h: handles that count themselves, exceptions for errors. Header only; no binary interface
 // of its own. The C header documents every call; the names here are the same without the prefix.
-#pragma once
+#ifndef PELLUCID_HPP
+#define PELLUCID_HPP
 #include <pellucid/pellucid.h>
 
 #include <array>
@@ -47,6 +48,7 @@ class Handle {
     H get() const& { return h_; }
     H get() const&& = delete;
     explicit operator bool() const { return h_ != nullptr; }
+    void setName(const std::string& name) const { check(pelSetName(h_, name.c_str())); }
 
   protected:
     H* out() {
@@ -80,6 +82,7 @@ class Device : public Handle<PelDevice, pelDeviceRetain, pelDeviceRelease> {
   public:
     // The standard device, or the one that `selector` names; see pelDeviceCreate.
     explicit Device(const std::string& selector = "") { check(pelDeviceCreate(selector.c_str(), out())); }
+    explicit Device(const PelDeviceDesc& desc) { check(pelDeviceCreateWith(&desc, out())); }
     // None, to be assigned later.
     explicit Device(std::nullptr_t) {}
     static Device fromCl(void* context, void* deviceId, void* queue) {
@@ -290,6 +293,12 @@ inline void surfaceIntegral(const Device& device, const PelSurfaceIntegralDesc& 
     check(pelSurfaceIntegral(device.get(), &desc, submit));
 }
 
+inline PelSkinInfo skinInfo(const PelSkin& skin) {
+    PelSkinInfo info = pelSkinInfoDefaults();
+    check(pelSkinGetInfo(&skin, &info));
+    return info;
+}
+
 class Profile : public Handle<PelProfile, pelProfileRetain, pelProfileRelease> {
   public:
     using Handle::Handle;
@@ -303,6 +312,9 @@ class Profile : public Handle<PelProfile, pelProfileRetain, pelProfileRelease> {
     }
     static Profile burleyDistance(const float (&distance)[3]) {
         return made<Profile>(pelProfileCreateBurleyDistance, distance);
+    }
+    static Profile skinLayers(const PelSkin& skin) {
+        return made<Profile>(pelProfileCreateSkinLayers, &skin);
     }
     // A material of the library.
     static Profile named(const std::string& name) {
@@ -365,6 +377,25 @@ class Scatter : public Handle<PelScatter, pelScatterRetain, pelScatterRelease> {
                  const PelSubmit* submit = nullptr) {
         check(pelScatterExecute(h_, &params, irradiance.get(), positions.get(), depth.get(), ids.get(),
                                 scattered.get(), submit));
+    }
+    // Builds the programs of such an execution before it (pelWarmUpPrograms). Returns how many were missing.
+    uint32_t warmUp(const Device& device, const PelScatterParams& params, const ImageRef& irradiance,
+                    const ImageRef& positions, const ImageRef& depth, const ImageRef& ids,
+                    const ImageRef& scattered) const {
+        PelScatterWork scatter = pelScatterWorkDefaults();
+        scatter.scatter = h_;
+        scatter.params = &params;
+        scatter.irradiance = irradiance.get();
+        scatter.positions = positions.get();
+        scatter.depth = depth.get();
+        scatter.ids = ids.get();
+        scatter.out = scattered.get();
+        PelWarmUp work = pelWarmUpDefaults();
+        work.scatters = &scatter;
+        work.numScatters = 1;
+        uint32_t built = 0;
+        check(pelWarmUpPrograms(device.get(), &work, &built));
+        return built;
     }
     PelScatterStats stats() const { return filled(pelScatterGetStats, pelScatterStatsDefaults()); }
 };
@@ -522,8 +553,18 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
     }
     std::string warnings() const { return filled<const char*>(pelShaderGetWarnings, ""); }
     PelShaderStats stats() const { return filled(pelShaderGetStats, pelShaderStatsDefaults()); }
+    std::vector<PelPassStats> passes() const { return listed(pelShaderGetPasses, pelPassStatsDefaults()); }
+    std::vector<PelPassMemory> memory() const { return listed(pelShaderGetMemory, pelPassMemoryDefaults()); }
 
   private:
+    template <class T>
+    std::vector<T> listed(PelError (*get)(PelShader, T*, uint32_t*), const T& each) const {
+        std::vector<T> all(24, each);
+        uint32_t count = uint32_t(all.size());
+        check(get(h_, all.data(), &count));
+        all.resize(count);
+        return all;
+    }
     Shader& done(PelError code) {
         check(code);
         return *this;
@@ -547,3 +588,5 @@ inline uint32_t warmUpPrograms(const Device& device, uint32_t groups, const std:
 }
 
 }  // namespace pellucid
+
+#endif  // PELLUCID_HPP

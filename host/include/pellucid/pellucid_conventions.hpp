@@ -1,5 +1,6 @@
 // pellucid_conventions.h with exceptions.
-#pragma once
+#ifndef PELLUCID_CONVENTIONS_HPP
+#define PELLUCID_CONVENTIONS_HPP
 #include <pellucid/pellucid_conventions.h>
 
 #include <pellucid/pellucid.hpp>
@@ -47,3 +48,5 @@ PelLight lightFromViewProjection(const Matrix& viewProjection, const PelConventi
 }
 
 }  // namespace pellucid
+
+#endif  // PELLUCID_CONVENTIONS_HPP

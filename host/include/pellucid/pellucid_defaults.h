@@ -35,6 +35,7 @@
 /* clang-format off */
 PEL_DEFAULTS_(DeviceInfo, )
 PEL_DEFAULTS_(DeviceStats, )
+PEL_DEFAULTS_(DeviceDesc, s.profiling = 2;)
 PEL_DEFAULTS_(ImageDesc, )
 PEL_DEFAULTS_(MeshReport, )
 PEL_DEFAULTS_(MeshOrientation, )
@@ -117,6 +118,8 @@ static inline PelShadowLutDesc pelShadowLutDescFilled(PelShadowLutDesc s, const 
     return s;
 }
 PEL_DEFAULTS_(SpecularLutDesc, PEL_EACH_SPECULAR_LUT_FIELD(PEL_DEFAULT_))
+PEL_DEFAULTS_(Skin, PEL_EACH_SKIN_FIELD(PEL_DEFAULT_))
+PEL_DEFAULTS_(SkinInfo, )
 PEL_DEFAULTS_(Eye, PEL_EACH_EYE_FIELD(PEL_DEFAULT_))
 PEL_DEFAULTS_(EyeLutDesc, PEL_EACH_EYE_LUT_FIELD(PEL_DEFAULT_))
 /* The table that belongs to an eye. */
@@ -171,11 +174,14 @@ static inline PelCamera pelCameraDefaults(void) {
     return s;
 }
 PEL_DEFAULTS_(ShaderStats, )
+PEL_DEFAULTS_(PassStats, )
+PEL_DEFAULTS_(PassMemory, )
 PEL_DEFAULTS_(ShaderOptions, PEL_EACH_OPTION_FIELD(PEL_DEFAULT_))
 PEL_DEFAULTS_(SurfaceIntegralDesc,
     s.millimetresPerUnit = 1.0f;
     s.tolerance = 1e-3f;)
 PEL_DEFAULTS_(WarmUp, )
+PEL_DEFAULTS_(ScatterWork, )
 /* clang-format on */
 
 #undef PEL_ZEROED_

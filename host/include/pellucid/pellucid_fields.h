@@ -16,8 +16,7 @@
  *
  * From these rows follow the defaults (pellucid_defaults.h), the checks and their messages
  * (host/fields/field_ranges.h), the keys of scene files (host/io/scene/scene_keys.h), the sliders of the
- * viewer and the tables of the guide. A new field is its documented declaration in pellucid.h, a row here,
- * and the code that reads it. */
+ * viewer and the tables of the guide. CONTRIBUTING.md, "A new field", lists what a field needs. */
 #ifndef PELLUCID_FIELDS_H
 #define PELLUCID_FIELDS_H
 /* clang-format off */
@@ -139,15 +138,24 @@
       0.02, 0.0005), \
       "what methods that leave out small contributions may be off, as a share of white") \
     X(FLOAT, millimetresPerUnit, 1, PEL_TINY, PEL_HUGE, PEL_NONE, "mm", "unit_mm", PEL_NO_SLIDER, \
-      "of a unit of positions") \
+      "of a unit of positions: profiles are in millimetres, every other length in the scene's unit") \
     X(FREE_UINT, blurNormals, 0, 0, 1, PEL_NONE, "", "blur_normals", PEL_NO_SLIDER, \
-      "1: without a `normal_blurred` channel, normals are blurred on screen over the diffusion radius") \
+      "1: without a `normal_blurred` channel, normals are blurred on screen over the diffusion radius " \
+      "([shading.md](shading.md))") \
     X(FREE_UINT, rotateTaps, 0, 0, 1, PEL_NONE, "", "rotate_taps", PEL_NO_SLIDER, \
-      "1: the disk of thickness taps is rotated from pixel to pixel") \
+      "1: the disk of thickness taps is rotated from pixel to pixel " \
+      "([shading.md](shading.md#rotated-disk-of-taps))") \
     X(FREE_UINT, everyPixel, 0, 0, 1, PEL_NONE, "", "every_pixel", PEL_NO_SLIDER, \
-      "1: wide shadows and thickness are computed at every pixel, without interpolation") \
+      "1: wide shadows that are made here, and thickness by taps, are computed at every pixel, none " \
+      "between others ([shading.md](shading.md#between-pixels))") \
     X(FREE_UINT, frameIndex, 0, 0, PEL_FINITE, PEL_NONE, "", "frame_index", PEL_NO_SLIDER, \
-      "each number gives another random placement of scattering taps, for hosts that average frames")
+      "each number gives another random placement of scattering taps, for hosts that average frames") \
+    X(FREE_UINT, buildInBackground, 0, 0, 1, PEL_NONE, "", "build_in_background", PEL_NO_SLIDER, \
+      "1: programs that show frame after frame do not wait for kernels that must be built, and shade by " \
+      "\"none\" until then ([devices.md](devices.md#the-first-picture)); those that write a picture wait") \
+    X(FLOAT, timeBudget, 0, 0, PEL_FINITE, PEL_NONE, "", "time_budget", PEL_NO_SLIDER, \
+      "milliseconds that `auto` may take beyond plain lighting, by what is known of the device; 0: no " \
+      "limit ([shading.md](shading.md#time-budget))")
 
 #define PEL_EACH_SCATTER_PARAM_FIELD(X) \
     X(FLOAT, targetError, 2e-3f, 0, PEL_FINITE, PEL_NONE, "", "target_error", PEL_NO_SLIDER, \
@@ -161,9 +169,9 @@
     X(FLOAT, diffusionRadius, 0, PEL_ABOVE_0, PEL_FINITE, 0, "length", "diffusion_radius", PEL_NO_SLIDER, \
       "0: the profile's own, in mm") \
     X(FLOAT, radiusMin, 0, PEL_ABOVE_0, PEL_FINITE, 0, "length", "radius_min", PEL_NO_SLIDER, \
-      "radius of curvature; 0: a quarter of the diffusion radius") \
+      "smallest radius of curvature; 0: a quarter of the diffusion radius") \
     X(FLOAT, radiusMax, 0, PEL_ABOVE_0, PEL_FINITE, 0, "length", "radius_max", PEL_NO_SLIDER, \
-      "radius of curvature; 0: a thousand diffusion radii")
+      "largest radius of curvature; 0: a thousand diffusion radii")
 
 #define PEL_EACH_SHADOW_LUT_FIELD(X) \
     X(UINT, width, 128, 1, 16384, PEL_NONE, "", "width", PEL_NO_SLIDER, "texels") \
@@ -171,16 +179,40 @@
     X(FLOAT, diffusionRadius, 0, PEL_ABOVE_0, PEL_FINITE, 0, "length", "diffusion_radius", PEL_NO_SLIDER, \
       "0: the profile's own, in mm") \
     X(FLOAT, widthMin, 0, PEL_ABOVE_0, PEL_FINITE, 0, "length", "width_min", PEL_NO_SLIDER, \
-      "penumbra; 0: the filter that follows from the profile") \
+      "narrowest penumbra; 0: the filter that follows from the profile") \
     X(FLOAT, widthMax, 0, PEL_ABOVE_0, PEL_FINITE, 0, "length", "width_max", PEL_NO_SLIDER, \
-      "penumbra; 0: a thousand times `width_min`") \
-    X(FLOAT, sharpening, 10, 1, PEL_FINITE, PEL_NONE, "", "sharpening", PEL_NO_SLIDER, "of the filter") \
+      "widest penumbra; 0: a thousand times the narrowest") \
+    X(FLOAT, sharpening, 10, 1, PEL_FINITE, PEL_NONE, "", "sharpening", PEL_NO_SLIDER, \
+      "how much narrower the shadow gets, from 1") \
     X(UINT, closedEnds, 1, 0, 1, PEL_NONE, "", "closed_ends", PEL_NO_SLIDER, \
       "1: each row is rescaled to run from 0 to 1")
 
 #define PEL_EACH_SPECULAR_LUT_FIELD(X) \
     X(UINT, width, 512, 1, 16384, PEL_NONE, "", "width", PEL_NO_SLIDER, "texels") \
     X(UINT, height, 512, 1, 16384, PEL_NONE, "", "height", PEL_NO_SLIDER, "texels")
+
+/* Defaults and ranges: Jacques, Optical properties of biological tissues: a review, 2013 (scattering of skin,
+ * table 1, and its range there; melanosomes 1.3 to 43 % of the epidermis; blood); extremes of pathology. */
+#define PEL_EACH_SKIN_FIELD(X) \
+    X(FLOAT, melanin, 0.05f, 0, 0.5f, PEL_NONE, "", "melanin", PEL_SLIDER("Melanin", 0, 0.5, 0.005), \
+      "share of the epidermis' volume: pale 0.01 to 0.06, brown 0.1 to 0.16, very dark 0.18 to 0.43") \
+    X(FLOAT, eumelanin, 1, 0, 1, PEL_NONE, "", "eumelanin", PEL_SLIDER("Eumelanin", 0, 1, 0.01), \
+      "share of the melanin; the rest is pheomelanin, which is redder") \
+    X(FLOAT, blood, 0.02f, 0, 0.2f, PEL_NONE, "", "blood", PEL_SLIDER("Blood", 0, 0.2, 0.002), \
+      "share of the dermis' volume: 0.002 to 0.07, more in lips and blushes") \
+    X(FLOAT, oxygenation, 0.75f, 0, 1, PEL_NONE, "", "oxygenation", PEL_SLIDER("Oxygenation", 0, 1, 0.01), \
+      "share of the haemoglobin that carries oxygen") \
+    X(FLOAT, epidermis, 0.06f, 0.02f, 0.5f, PEL_NONE, "mm", "epidermis", \
+      PEL_SLIDER("Epidermis, mm", 0.02, 0.5, 0.01), "its thickness: face 0.05 to 0.1, palms up to 0.5") \
+    X(FLOAT, scattering, 4.6f, 2, 10, PEL_NONE, "", "scattering", PEL_NO_SLIDER, \
+      "reduced scattering coefficient at 500 nm, 1/mm; measured 2.97 to 6.87") \
+    X(FLOAT, scatteringPower, 1.421f, 0.5f, 2.5f, PEL_NONE, "", "scattering_power", PEL_NO_SLIDER, \
+      "b of (wavelength / 500 nm)^-b, measured 0.7 to 2.45") \
+    X(FLOAT, water, 0.65f, 0, 1, PEL_NONE, "", "water", PEL_NO_SLIDER, "share of the dermis' volume") \
+    X(FLOAT, carotene, 0, 0, 100, PEL_NONE, "", "carotene", PEL_NO_SLIDER, \
+      "mg per litre of epidermis: 0 to 1, much more after carrots") \
+    X(FLOAT, bilirubin, 0, 0, 300, PEL_NONE, "", "bilirubin", PEL_NO_SLIDER, \
+      "mg per litre of dermis: 0 to 10, in jaundice up to 300, in a bruise of some days")
 
 /* Of PelEye and of PelEyeLutDesc. */
 #define PEL_EACH_EYE_SHAPE_FIELD(X) \

@@ -1,9 +1,6 @@
 // OpenEXR files, by the OpenEXR library itself: the format of G-buffers is on the way of every frame.
 #pragma once
-#include <functional>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "io/image/image_file.h"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "io/file_error.h"
 #include "io/input_file.h"
 
 namespace pellucid::io {
@@ -40,7 +39,7 @@ class Check {
     void run() {
         if (file_.size() < ExrAttributes::start) damaged("it ends in its header");
         const auto flags = numberAt<uint32_t>(file_, 4);
-        if ((flags & 0xff) != 2) damaged("it is of version " + std::to_string(flags & 0xff) + ", not 2");
+        if ((flags & 0xff) != 2) damaged(concat("it is of version ", flags & 0xff, ", not 2"));
         if (flags & deepFlag) throw FileError(path_, "holds deep pixels; flatten it first");
         size_t at = ExrAttributes::start;
         do {
@@ -81,14 +80,13 @@ class Check {
                 // None, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
                 constexpr int rows[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
                 const auto method = uint8_t(a->value[0]);
-                if (method >= std::size(rows))
-                    damaged("its compression " + std::to_string(method) + " is not known");
+                if (method >= std::size(rows)) damaged(concat("its compression ", method, " is not known"));
                 part.rowsPerChunk = rows[method];
             } else if (a->name == "chunkCount") {
                 need("int", 4);
                 const auto chunks = numberAt<int32_t>(a->value, 0);
                 if (chunks < 1 || size_t(chunks) > file_.size() / placeOfChunk)
-                    damaged("its attribute chunkCount is " + std::to_string(chunks));
+                    damaged(concat("its attribute chunkCount is ", chunks));
             } else if (a->name == "type" && a->value.starts_with("deep")) {
                 throw FileError(path_, "holds deep pixels; flatten it first");
             }
@@ -112,8 +110,7 @@ class Check {
                     "has the channel '" + std::string(list.substr(at, end - at)) +
                         "' in another resolution than the picture; write all channels for every pixel");
             if (count == mostChannels)
-                throw FileError(path_,
-                                "has more than " + std::to_string(mostChannels) + " channels in one part");
+                throw FileError(path_, concat("has more than ", mostChannels, " channels in one part"));
             at = end + 1 + facts;
         }
         damaged("its list of channels");
@@ -126,7 +123,7 @@ class Check {
         constexpr int64_t most = int64_t{1} << 30;  // sums of coordinates stay within an int
         if (w.width < 1 || w.height < 1 ||
             std::any_of(corner, corner + 4, [](int64_t c) { return c < -most || c > most; }))
-            damaged("a window of " + std::to_string(w.width) + " x " + std::to_string(w.height) + " pixels");
+            damaged(concat("a window of ", w.width, " x ", w.height, " pixels"));
         return w;
     }
 
@@ -142,15 +139,12 @@ class Check {
         }
         taken_ += pixels * double(part.channels) * sizeof(float);
         if (taken_ > limit_)
-            throw FileError(path_, std::to_string(part.display.width) + " x " +
-                                       std::to_string(part.display.height) + " pixels (" +
-                                       std::to_string(part.data.width) + " x " +
-                                       std::to_string(part.data.height) + " of them stored) of " +
-                                       std::to_string(part.channels) + " channels take " +
-                                       tooLarge(taken_, uint64_t(limit_)));
+            throw FileError(
+                path_, concat(part.display.width, " x ", part.display.height, " pixels (", part.data.width,
+                              " x ", part.data.height, " of them stored) of ", part.channels,
+                              " channels take ", tooLarge(taken_, uint64_t(limit_))));
         if (chunks * double(placeOfChunk) > double(file_.size()))
-            damaged("it is too short for " + std::to_string(part.data.width) + " x " +
-                    std::to_string(part.data.height) + " pixels");
+            damaged(concat("it is too short for ", part.data.width, " x ", part.data.height, " pixels"));
     }
 
     const std::string& path_;

@@ -7,8 +7,6 @@
 #include <cstring>
 #include <mutex>
 
-#include "io/file_error.h"
-
 namespace pellucid::io {
 namespace {
 

@@ -19,13 +19,9 @@
 #include <atomic>
 #include <cstring>
 #include <exception>
-#include <memory>
 #include <mutex>
-#include <optional>
-#include <stdexcept>
 #include <thread>
 
-#include "io/file_error.h"
 #include "io/image/exr_file.h"
 #include "io/image/image_format.h"
 
@@ -104,10 +100,9 @@ PartPlan planPart(Image& image, const Imf::Header& header, int part, bool severa
     const int width = display.max.x - display.min.x + 1, height = display.max.y - display.min.y + 1;
     if (part == 0) image.width = width, image.height = height;
     if (width != image.width || height != image.height)
-        throw FileError(image.source, "part " + std::to_string(part) + " is " + std::to_string(width) +
-                                          " x " + std::to_string(height) + " pixels, part 0 is " +
-                                          std::to_string(image.width) + " x " + std::to_string(image.height) +
-                                          "; all parts must have one display window");
+        throw FileError(image.source,
+                        concat("part ", part, " is ", width, " x ", height, " pixels, part 0 is ",
+                               image.width, " x ", image.height, "; all parts must have one display window"));
     PartPlan plan;
     plan.data = header.dataWindow();
     plan.first = image.channels.size();

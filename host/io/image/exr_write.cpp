@@ -15,11 +15,9 @@
 
 #include <cstring>
 #include <mutex>
-#include <stdexcept>
 #include <thread>
 
 #include "io/atomic_file.h"
-#include "io/file_error.h"
 #include "io/image/image_file.h"
 
 namespace pellucid::io {

@@ -1,11 +1,11 @@
 // Differences between two pictures, as numbers.
 #pragma once
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
+
+#include "fields/color_difference.h"
 
 namespace pellucid::io {
 
@@ -64,13 +64,6 @@ struct SubsetInputs {
 constexpr float hollow = -0.1f, thin = 4;
 std::vector<uint8_t> subsetsOf(const SubsetInputs& in);
 
-using Lab = std::array<double, 3>;
-
-// CIE L*a*b* of linear sRGB, D65 white; negative components count as 0.
-Lab labFromLinear(const std::array<double, 3>& rgb);
-
-// CIEDE2000 (CIE 142-2001) with all parametric factors 1, as spelled out by Sharma, Wu & Dalal 2005. About 1
-// can just be seen.
-double deltaE2000(const Lab& one, const Lab& two);
+using pel::deltaE2000, pel::Lab, pel::labFromLinear;
 
 }  // namespace pellucid::io

@@ -1,10 +1,8 @@
 #include "io/image/image_file.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "io/atomic_file.h"
-#include "io/file_error.h"
 #include "io/image/picture_library.h"
 
 namespace pellucid::io {
@@ -66,9 +64,8 @@ void Image::interleave(std::span<const std::string> names, float* values) const 
 void Image::addInterleaved(std::span<const std::string> names, std::span<const float> values,
                            ChannelType type) {
     if (values.size() != names.size() * pixelCount())
-        throw std::invalid_argument("addInterleaved: " + std::to_string(values.size()) + " values for " +
-                                    std::to_string(names.size()) + " channels of " + std::to_string(width) +
-                                    " x " + std::to_string(height));
+        throw std::invalid_argument(concat("addInterleaved: ", values.size(), " values for ", names.size(),
+                                           " channels of ", width, " x ", height));
     for (size_t k = 0; k < names.size(); ++k) {
         Channel c{names[k], type, std::vector<float>(pixelCount())};
         for (size_t i = 0; i < c.pixels.size(); ++i) c.pixels[i] = values[i * names.size() + k];
@@ -107,7 +104,8 @@ void writeImage8(const std::string& path, int width, int height, int channels,
     if (pixels.size() !=
         static_cast<size_t>(width) * static_cast<size_t>(height) * static_cast<size_t>(channels))
         throw std::invalid_argument("writeImage8: the number of bytes does not fit the size");
-    writeWholeFile(path, pictureLibrary(path).encode(path, width, height, channels, pixels, srgb));
+    writeWholeFile(path,
+                   pictureLibraryFor(extension, path).encode(path, width, height, channels, pixels, srgb));
 }
 
 MipChain mipChain(int width, int height, std::vector<float> rgb) {

@@ -1,11 +1,7 @@
 // Images of named float channels: multi-part, multi-layer EXR in; EXR, 8-bit formats and NPY out.
 #pragma once
-#include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <span>
-#include <string>
-#include <utility>
 #include <variant>
 #include <vector>
 

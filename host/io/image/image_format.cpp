@@ -1,8 +1,5 @@
 #include "io/image/image_format.h"
 
-#include <array>
-
-#include "io/file_error.h"
 #include "io/input_file.h"
 
 namespace pellucid::io {
@@ -134,8 +131,7 @@ void checkImageSize(const std::string& path, double width, double height, double
         throw FileError(path, std::string("is damaged: it announces ") + size);
     const double bytes = width * height * channels * sizeof(float);
     if (bytes > double(limit))
-        throw FileError(path, std::string(size) + " of " + std::to_string(int(channels)) + " channels take " +
-                                  tooLarge(bytes, limit));
+        throw FileError(path, concat(size, " of ", int(channels), " channels take ", tooLarge(bytes, limit)));
 }
 
 ImageFormat imageFormat(const std::string& path, std::string bytes, uint64_t limit) {

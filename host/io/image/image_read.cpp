@@ -1,11 +1,6 @@
 // Decodes images in memory after imageFormat() has checked them.
-#include <utility>
-
-#include "io/file_error.h"
 #include "io/image/exr_file.h"
-#include "io/image/image_file.h"
 #include "io/image/picture_library.h"
-#include "io/input_file.h"
 
 namespace pellucid::io {
 
@@ -17,7 +12,7 @@ Image decodeImage(const std::string& path, std::string bytes, const std::functio
     if (format.reader == std::string_view("openexr"))
         decodeExr(image, format.bytes, check, limit, [&](Image& all) { return ownPlaces(all, names); });
     else
-        pictureLibrary(path).decode(image, format, check, limit);
+        pictureLibraryFor(format.reader, path).decode(image, format, check, limit);
     return image;
 }
 
@@ -37,7 +32,7 @@ Image readChannelsTo(const std::string& path, const PlaceChannels& places) {
         decodeExr(image, format.bytes, {}, inputLimit(), places);
         return image;
     }
-    pictureLibrary(path).decode(image, format, {}, inputLimit());
+    pictureLibraryFor(format.reader, path).decode(image, format, {}, inputLimit());
     std::vector<std::vector<float>> pixels;
     for (Channel& c : image.channels) pixels.push_back(std::exchange(c.pixels, {}));
     const std::vector<Place> to = places(image);

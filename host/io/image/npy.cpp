@@ -2,16 +2,11 @@
 #include <Imath/half.h>
 #include <bit>
 #include <charconv>
-#include <cstdint>
 #include <cstring>
-#include <functional>
 #include <numeric>
-#include <stdexcept>
 
 #include "io/atomic_file.h"
-#include "io/file_error.h"
 #include "io/image/image_file.h"
-#include "io/input_file.h"
 
 namespace pellucid::io {
 namespace {
@@ -46,7 +41,7 @@ NpyArray readNpy(const std::string& path) {
     const auto byte = [&](size_t i) { return size_t(static_cast<unsigned char>(file[i])); };
     const size_t version = byte(6), preamble = version == 1 ? 10 : 12;
     if (version < 1 || version > 2)
-        throw FileError(path, "is a .npy file of version " + std::to_string(version) + "; 1 and 2 are known");
+        throw FileError(path, concat("is a .npy file of version ", version, "; 1 and 2 are known"));
     size_t length = byte(8) | byte(9) << 8;
     if (version == 2) length |= byte(10) << 16 | byte(11) << 24;
     if (length > file.size() - preamble) throw FileError(path, "is cut off in its header");
@@ -77,8 +72,7 @@ NpyArray readNpy(const std::string& path) {
     }
     const size_t there = file.size() - preamble - length;
     if (there != count * bytes)
-        throw FileError(path, "holds " + std::to_string(there) + " bytes of values; its shape needs " +
-                                  std::to_string(count * bytes));
+        throw FileError(path, concat("holds ", there, " bytes of values; its shape needs ", count * bytes));
     if (count > inputLimit() / sizeof(float))
         throw FileError(path, tooLarge(double(count) * sizeof(float), inputLimit()));
     array.values.resize(count);
@@ -97,9 +91,9 @@ static_assert(std::endian::native == std::endian::little, "arrays are written as
 void write(const std::string& path, const char* descr, std::span<const size_t> shape, size_t count,
            const void* bytes, size_t elementBytes) {
     if (std::accumulate(shape.begin(), shape.end(), size_t{1}, std::multiplies<>()) != count)
-        throw std::invalid_argument("writeNpy: the shape does not hold " + std::to_string(count) + " values");
+        throw std::invalid_argument(concat("writeNpy: the shape does not hold ", count, " values"));
     std::string header = std::string("{'descr': '") + descr + "', 'fortran_order': False, 'shape': (";
-    for (size_t extent : shape) header += std::to_string(extent) + ", ";
+    for (size_t extent : shape) header += concat(extent, ", ");
     header += "), }";
     constexpr size_t preamble = 10, alignment = 64;
     header.append(alignment - 1 - (preamble + header.size()) % alignment, ' ');

@@ -1,6 +1,5 @@
 // Small pictures of 8-bit sRGB pixels: contact sheets with labels, and colour bars.
 #pragma once
-#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>

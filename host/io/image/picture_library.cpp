@@ -4,7 +4,6 @@
 
 #include <cstring>
 
-#include "io/file_error.h"
 #include "system/process.h"
 
 namespace pellucid::io {
@@ -50,9 +49,14 @@ const PictureLibrary& pictureLibrary(const std::string& path) {
     static const Loaded loaded = load();
     if (!loaded.library)
         throw FileError(path, "needs " PELLUCID_PICTURES ", which cannot be loaded (" + loaded.why +
-                                  "); EXR and NPY files can be read and written without it");
+                                  "); EXR, NPY and PNG files can be read and written without it");
     return *loaded.library;
 }
 
 #endif
+
+const PictureLibrary& pictureLibraryFor(std::string_view kind, const std::string& path) {
+    return kind == "png" ? pngPictures : pictureLibrary(path);
+}
+
 }  // namespace pellucid::io

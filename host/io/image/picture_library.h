@@ -1,13 +1,8 @@
-// What OpenImageIO does for us: PNG, JPEG, TGA and BMP files, and text in pictures. It brings some 250
-// shared libraries, which take a quarter of a second to load. So the code that calls it is a module of its
-// own (host/io/image/pictures), which is loaded when such a file or a label is first needed; programs that
-// read and write EXR and NPY files never load it.
+// Pictures of 8 and 16 bits: PNG by libpng; JPEG, TGA and BMP files and text by OpenImageIO. That brings
+// some 250 shared libraries, which take a quarter of a second to load. So the code that calls it is a
+// module of its own (host/io/image/pictures), which is loaded when such a file or a label is first needed;
+// programs that read and write EXR, NPY and PNG files never load it.
 #pragma once
-#include <cstdint>
-#include <functional>
-#include <span>
-#include <string>
-
 #include "io/image/image_file.h"
 #include "io/image/image_format.h"
 
@@ -28,11 +23,14 @@ struct PictureLibrary {
     int (*textWidth)(const std::string& text, int size);  // pixels
 };
 
-// PNG files alone, by libpng; other files are a FileError.
+// PNG files alone, by libpng; other files are a FileError. Draws no text.
 extern const PictureLibrary pngPictures;
 
-// Loads the module the first time; in builds without OpenImageIO it is pngPictures. Throws FileError, which
+// The module, loaded the first time; in builds without OpenImageIO it is pngPictures. Throws FileError, which
 // names `path`, if it cannot be loaded.
 const PictureLibrary& pictureLibrary(const std::string& path);
+
+// pngPictures where `kind`, an extension or a format's reader, is png, else pictureLibrary(path).
+const PictureLibrary& pictureLibraryFor(std::string_view kind, const std::string& path);
 
 }  // namespace pellucid::io

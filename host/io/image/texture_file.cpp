@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "io/atomic_file.h"
+#include "io/concat.h"
 
 namespace pellucid::io {
 namespace {
@@ -59,9 +60,8 @@ void check(const Texture& t) {
     const size_t across = (t.width + f.blockSide - 1) / f.blockSide,
                  down = (t.height + f.blockSide - 1) / f.blockSide;
     if (t.bytes.size() != across * down * f.blockBytes)
-        throw std::invalid_argument(
-            "a texture of " + std::to_string(t.width) + "x" + std::to_string(t.height) + " takes " +
-            std::to_string(across * down * f.blockBytes) + " bytes, not " + std::to_string(t.bytes.size()));
+        throw std::invalid_argument(concat("a texture of ", t.width, "x", t.height, " takes ",
+                                           across * down * f.blockBytes, " bytes, not ", t.bytes.size()));
 }
 
 // The data format descriptor [Khronos Data Format Specification 1.3]: one basic block with four float

@@ -1,7 +1,6 @@
 #include "io/image/tone_map.h"
 
 #include <algorithm>
-#include <array>
 #include <cfloat>
 #include <cmath>
 

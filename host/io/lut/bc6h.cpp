@@ -73,14 +73,12 @@ std::vector<uint16_t> decodeBc6h(uint32_t width, uint32_t height, std::span<cons
             std::memcpy(bytes.data(), &blocks[(size_t(y / 4) * across + x / 4) * 16], 16);
             const auto block = bc6h::unpack(bytes);
             if (!block) continue;
-            const bc6h::Mode& m = bc6h::mode(block->mode);
-            const int texel = int(y % 4 * 4 + x % 4);
-            const size_t e = m.subsets == 2 && bc6h::inSecond(block->partition, texel) ? 2 : 0;
-            const int weight = bc6h::weights(m.subsets)[block->index[size_t(texel)]];
+            const auto& [first, second] = block->ends;
+            const int bits = bc6h::modes[block->mode].bits,
+                      weight = bc6h::weights[block->index[y % 4 * 4 + x % 4]];
             for (size_t c = 0; c < 3; ++c)
-                texels[(size_t(y) * width + x) * 3 + c] = bc6h::halfOf(
-                    bc6h::interpolated(bc6h::unquantised(block->ends[e][c], m.bits),
-                                       bc6h::unquantised(block->ends[e + 1][c], m.bits), weight));
+                texels[(size_t(y) * width + x) * 3 + c] = bc6h::halfOf(bc6h::interpolated(
+                    bc6h::unquantised(first[c], bits), bc6h::unquantised(second[c], bits), weight));
         }
     return texels;
 }

@@ -2,11 +2,6 @@
 #pragma once
 #include <pellucid/pellucid.h>
 
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "io/choice_keys.h"
 #include "io/image/image_file.h"
 

@@ -2,7 +2,6 @@
 
 #include <bit>
 #include <cstring>
-#include <stdexcept>
 
 #include "io/content_hash.h"
 #include "io/image/image_format.h"

@@ -1,16 +1,10 @@
 #include "io/lut/lut_file.h"
 
-#include <cstdint>
 #include <cstring>
-#include <map>
 #include <sstream>
-#include <stdexcept>
 
 #include "io/atomic_file.h"
-#include "io/file_error.h"
-#include "io/image/image_file.h"
 #include "io/image/texture_file.h"
-#include "io/input_file.h"
 #include "io/lut/lut_describe.h"
 
 namespace pellucid::io {
@@ -54,7 +48,7 @@ std::vector<uint8_t> withAlpha(const std::vector<uint16_t>& rgbHalves) {
 }
 
 std::map<std::string, std::string> keyValues(const Image& image) {
-    std::map<std::string, std::string> pairs{{"KTXwriter", "pellucid " + std::to_string(pelVersion())}};
+    std::map<std::string, std::string> pairs{{"KTXwriter", concat("pellucid ", pelVersion())}};
     for (const auto& [name, value] : image.attributes) {
         std::ostringstream text;
         text.imbue(std::locale::classic());
@@ -196,8 +190,8 @@ PelLutInfo lutInfoOf(const Image& image) {
     const auto needText = [&](const char* name) { return need(name, static_cast<std::string*>(nullptr)); };
     const int format = need("pellucid:format", static_cast<int*>(nullptr));
     if (format != lutFormatVersion)
-        throw FileError(path, "is written in format " + std::to_string(format) +
-                                  "; this program reads format " + std::to_string(lutFormatVersion));
+        throw FileError(
+            path, concat("is written in format ", format, "; this program reads format ", lutFormatVersion));
     info.kind = PelLutKind(indexOf(path, "pellucid:kind", needText("pellucid:kind"), lutKinds));
     if (info.kind != PEL_LUT_SPECULAR) {
         const std::string profile = needText("pellucid:profile");
@@ -222,8 +216,8 @@ PelLutInfo lutInfoOf(const Image& image) {
     if (info.kind == PEL_LUT_EYE) {
         const int depth = need("pellucid:depth", static_cast<int*>(nullptr));
         if (depth < 1 || image.height % depth)
-            throw FileError(path, "attribute \"pellucid:depth\" is " + std::to_string(depth) +
-                                      ", which does not divide the height, " + std::to_string(image.height));
+            throw FileError(path, concat("attribute \"pellucid:depth\" is ", depth,
+                                         ", which does not divide the height, ", image.height));
         info.eye.width = uint32_t(image.width);
         info.eye.height = uint32_t(image.height / depth);
         info.eye.depth = uint32_t(depth);

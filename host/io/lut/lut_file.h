@@ -4,7 +4,6 @@
 #include <optional>
 #include <pellucid/pellucid.hpp>
 #include <string>
-#include <vector>
 
 #include "io/lut/bc6h.h"
 

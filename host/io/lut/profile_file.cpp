@@ -1,7 +1,8 @@
 #include "io/lut/profile_file.h"
 
+#include <algorithm>
+
 #include "io/choice_keys.h"
-#include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/toml_reader.h"
 
@@ -82,10 +83,25 @@ Profile table(TomlReader& reader, float unit) {
     return Profile::table(distances, values);
 }
 
+#define KEY(type, name, value, min, max, special, unit, key, ...) key,
+constexpr const char* skinKeys[] = {PEL_EACH_SKIN_FIELD(KEY)};
+#undef KEY
+
+Profile skinLayers(TomlReader& reader) {
+    PelSkin skin = pelSkinDefaults();
+#define READ(type, name, value, min, max, special, unit, key, ...) \
+    reader.number(key, skin.name, {float(min), float(max), float(special)});
+    PEL_EACH_SKIN_FIELD(READ)
+#undef READ
+    return Profile::skinLayers(skin);
+}
+
 Profile shapeOf(TomlReader& reader, PelProfileKind kind, float unit) {
     switch (kind) {
         case PEL_PROFILE_SKIN:
             return Profile::skin();
+        case PEL_PROFILE_SKIN_LAYERS:
+            return skinLayers(reader);
         case PEL_PROFILE_GAUSSIANS:
             return gaussians(reader, unit);
         case PEL_PROFILE_BURLEY:
@@ -111,9 +127,13 @@ ProfileFile parseProfile(const std::string& file, const std::string& text) {
     reader.text("source", result.source);
     PelProfileKind kind = PEL_PROFILE_SKIN;
     reader.choice("kind", kind, profileKinds);
+    // Skin that says what it is made of is computed.
+    if (kind == PEL_PROFILE_SKIN &&
+        std::ranges::any_of(skinKeys, [&](const char* key) { return reader.has(key); }))
+        kind = PEL_PROFILE_SKIN_LAYERS;
     result.kind = profileKinds[kind];
     uint32_t unit = 0;
-    if (kind != PEL_PROFILE_SKIN) need(reader, "unit", result.kind);
+    if (kind != PEL_PROFILE_SKIN && kind != PEL_PROFILE_SKIN_LAYERS) need(reader, "unit", result.kind);
     reader.choice("unit", unit, units);
     try {
         result.profile = shapeOf(reader, kind, millimetres[unit]);

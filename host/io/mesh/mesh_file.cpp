@@ -6,7 +6,6 @@
 #include <map>
 #include <pellucid/pellucid.hpp>
 
-#include "io/file_error.h"
 #include "io/image/color_map.h"
 #include "io/input_file.h"
 #include "io/mesh/mesh_text.h"
@@ -15,7 +14,7 @@ namespace pellucid::io {
 namespace {
 
 std::string counted(size_t count, const std::string& one, const std::string& several) {
-    return std::to_string(count) + " " + (count == 1 ? one : several);
+    return concat(count, " ", (count == 1 ? one : several));
 }
 
 void checkVertices(const std::string& path, const RawMesh& raw) {
@@ -23,8 +22,8 @@ void checkVertices(const std::string& path, const RawMesh& raw) {
         if (!std::isfinite(raw.positions[i]))
             throw FileError(
                 path,
-                "vertex " + std::to_string(i / 3) +
-                    " (counted from 0) has a position that is NaN or infinite; positions must be finite");
+                concat("vertex ", i / 3,
+                       " (counted from 0) has a position that is NaN or infinite; positions must be finite"));
     }
 }
 
@@ -33,10 +32,10 @@ void checkCorners(const std::string& path, const RawMesh& raw) {
     for (size_t f = 0; f + 1 < raw.faceStart.size(); ++f) {
         for (size_t c = raw.faceStart[f]; c < raw.faceStart[f + 1]; ++c) {
             if (raw.corners[c] >= 0 && raw.corners[c] < vertices) continue;
-            throw FileError(path, "face " + std::to_string(f) + " (counted from 0) refers to vertex " +
-                                      std::to_string(raw.corners[c]) + ", but the file has " +
-                                      std::to_string(vertices) + (vertices == 1 ? " vertex" : " vertices") +
-                                      "; 0 to " + std::to_string(vertices - 1) + " would be right");
+            throw FileError(path,
+                            concat("face ", f, " (counted from 0) refers to vertex ", raw.corners[c],
+                                   ", but the file has ", vertices, (vertices == 1 ? " vertex" : " vertices"),
+                                   "; 0 to ", vertices - 1, " would be right"));
         }
     }
 }

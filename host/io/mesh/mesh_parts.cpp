@@ -6,7 +6,6 @@
 #include <array>
 #include <map>
 
-#include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/mesh/mesh_text.h"
 #include "io/mesh/quiet_open_mesh.h"
@@ -66,9 +65,10 @@ PolyMesh polygonsOf(const RawMesh& raw, const std::vector<uint32_t>& groups, uin
         faces.push_back(std::move(face));
         if (!mesh.add_face(corners).is_valid())
             throw FileError(
-                path, "cannot be subdivided: face " + std::to_string(f) +
-                          " (counted from 0) has a vertex twice, makes an edge of more than two faces, or "
-                          "faces the other way than its neighbour; mend the mesh, or do without subdivision");
+                path,
+                concat("cannot be subdivided: face ", f,
+                       " (counted from 0) has a vertex twice, makes an edge of more than two faces, or "
+                       "faces the other way than its neighbour; mend the mesh, or do without subdivision"));
     }
     return mesh;
 }

@@ -1,8 +1,5 @@
 // Polygon meshes with named parts, subdivided: the heads of the demo.
 #pragma once
-#include <string>
-#include <vector>
-
 #include "io/mesh/mesh_file.h"
 
 namespace pellucid::io {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <map>
 #include <optional>
@@ -21,9 +20,8 @@ void readPosition(const TextScan& scan, size_t firstWord, std::vector<float>& po
 }
 
 std::string outOfRange(long long index, long long first, size_t count, std::string_view what) {
-    return std::string(what) + " index " + std::to_string(index) + " is out of range: the file has " +
-           std::to_string(count) + ", so " + std::to_string(first) + " to " +
-           std::to_string(static_cast<long long>(count) - 1 + first) + " would be right";
+    return concat(what, " index ", index, " is out of range: the file has ", count, ", so ", first, " to ",
+                  static_cast<long long>(count) - 1 + first, " would be right");
 }
 
 // Ends a face that consists of the corners since the last face. Drops it and returns false if a vertex occurs
@@ -132,8 +130,8 @@ std::optional<RawMesh> readBinaryStl(const std::string& path, const std::string&
             float p[3];
             std::memcpy(p, text.data() + stlHeader + stlFacet * f + 12 * (k + 1), sizeof p);
             if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))
-                throw FileError(path, "facet " + std::to_string(f) +
-                                          " (counted from 0) has a coordinate that is NaN or infinite");
+                throw FileError(
+                    path, concat("facet ", f, " (counted from 0) has a coordinate that is NaN or infinite"));
             vertices.corner(p);
         }
         endFace(mesh);
@@ -172,8 +170,7 @@ RawMesh readOff(const std::string& path, const std::string& text) {
 
     for (long long v = 0; v < vertices; ++v) {
         if (!scan.nextLine())
-            scan.fail("ends early: " + std::to_string(vertices) + " vertices announced, " +
-                      std::to_string(v) + " found");
+            scan.fail(concat("ends early: ", vertices, " vertices announced, ", v, " found"));
         readPosition(scan, 0, mesh.positions);
         if (normals)
             for (size_t i = 3; i < 6; ++i) mesh.normals.push_back(scan.number(i, "normal"));
@@ -186,13 +183,10 @@ RawMesh readOff(const std::string& path, const std::string& text) {
         }
     }
     for (long long f = 0; f < faces; ++f) {
-        if (!scan.nextLine())
-            scan.fail("ends early: " + std::to_string(faces) + " faces announced, " + std::to_string(f) +
-                      " found");
+        if (!scan.nextLine()) scan.fail(concat("ends early: ", faces, " faces announced, ", f, " found"));
         const long long corners = scan.integer(scan.words()[0], "number of corners");
         if (corners < 1 || static_cast<size_t>(corners) >= scan.words().size())
-            scan.fail("the face announces " + std::to_string(corners) + " corners and lists " +
-                      std::to_string(scan.words().size() - 1));
+            scan.fail(concat("the face announces ", corners, " corners and lists ", scan.words().size() - 1));
         for (size_t i = 1; i <= static_cast<size_t>(corners); ++i) {
             const long long index = scan.integer(scan.words()[i], "vertex");
             if (index < 0 || index >= vertices)
@@ -234,9 +228,9 @@ RawMesh readStl(const std::string& path, const std::string& text) {
     StlVertices vertices(mesh);
     TextScan scan(path, text);
     if (!scan.nextLine() || scan.words()[0] != "solid")
-        throw FileError(path, "is not an STL file: it neither starts with 'solid' nor has the " +
-                                  std::to_string(stlHeader) + " + 50 x facets bytes of a binary one (" +
-                                  std::to_string(text.size()) + " bytes: cut off?)");
+        throw FileError(path,
+                        concat("is not an STL file: it neither starts with 'solid' nor has the ", stlHeader,
+                               " + 50 x facets bytes of a binary one (", text.size(), " bytes: cut off?)"));
     size_t inFacet = 0;
     bool ended = false;
     while (scan.nextLine()) {
@@ -249,8 +243,7 @@ RawMesh readStl(const std::string& path, const std::string& text) {
             ++inFacet;
         }
         if (word == "endfacet") {
-            if (inFacet != 3)
-                scan.fail("a facet has " + std::to_string(inFacet) + " vertices; 3 would be right");
+            if (inFacet != 3) scan.fail(concat("a facet has ", inFacet, " vertices; 3 would be right"));
             endFace(mesh);
         }
         ended = word == "endsolid";

@@ -1,11 +1,9 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Subdivider/Uniform/LoopT.hh>
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <numeric>
-#include <stdexcept>
 
 #include "io/atomic_file.h"
 #include "io/file_error.h"
@@ -97,10 +95,10 @@ void loopSubdivide(MeshData& mesh, int levels) {
         if (face.is_valid()) continue;
         throw FileError(
             mesh.source,
-            "cannot be subdivided: triangle " + std::to_string(t) + " (counted from 0) " +
-                (repeated ? "has a vertex twice"
-                          : "makes an edge of more than two triangles, or of two that face opposite ways") +
-                "; mend the mesh, or do without subdivision");
+            concat("cannot be subdivided: triangle ", t, " (counted from 0) ",
+                   (repeated ? "has a vertex twice"
+                             : "makes an edge of more than two triangles, or of two that face opposite ways"),
+                   "; mend the mesh, or do without subdivision"));
     }
 
     for (int level = 0; level < levels; ++level) {
@@ -156,17 +154,16 @@ static_assert(std::endian::native == std::endian::little, "the PLY below is writ
 void writePly(const std::string& path, const MeshData& mesh, std::span<const float> quality, float low,
               float high) {
     if (quality.size() != mesh.vertexCount())
-        throw std::invalid_argument("writePly: " + std::to_string(quality.size()) + " values for " +
-                                    std::to_string(mesh.vertexCount()) + " vertices; one each is needed");
+        throw std::invalid_argument(concat("writePly: ", quality.size(), " values for ", mesh.vertexCount(),
+                                           " vertices; one each is needed"));
     const bool normals = !mesh.normals.empty();
-    std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " +
-                      std::to_string(mesh.vertexCount()) +
-                      "\nproperty float x\nproperty float y\nproperty float z\n";
+    std::string out = concat("ply\nformat binary_little_endian 1.0\nelement vertex ", mesh.vertexCount(),
+                             "\nproperty float x\nproperty float y\nproperty float z\n");
     if (normals) out += "property float nx\nproperty float ny\nproperty float nz\n";
-    out +=
+    out += concat(
         "property float quality\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement "
-        "face " +
-        std::to_string(mesh.triangleCount()) + "\nproperty list uchar int vertex_indices\nend_header\n";
+        "face ",
+        mesh.triangleCount(), "\nproperty list uchar int vertex_indices\nend_header\n");
     const auto append = [&out](const void* bytes, size_t count) {
         out.append(static_cast<const char*>(bytes), count);
     };

@@ -1,7 +1,6 @@
 // Reads PLY files [Turk 1994]. OpenMesh's reader fails, for example, at lists in vertices.
 #include <algorithm>
 #include <bit>
-#include <cstdint>
 
 #include "io/mesh/mesh_text.h"
 #include "io/text_scan.h"
@@ -202,22 +201,20 @@ class AsciiBody {
 
     void begin(const Element& e, long long i) {
         if (!scan_.nextLine())
-            scan_.fail("ends early: " + std::to_string(e.count) + " of element " + e.name + " announced, " +
-                       std::to_string(i) + " found");
+            scan_.fail(concat("ends early: ", e.count, " of element ", e.name, " announced, ", i, " found"));
         word_ = 0;
     }
     void end(const Element& e) const {
         if (word_ != scan_.words().size())
-            scan_.fail("has " + std::to_string(scan_.words().size()) + " values; the header announces " +
-                       std::to_string(word_) + " for each " + e.name);
+            scan_.fail(concat("has ", scan_.words().size(), " values; the header announces ", word_,
+                              " for each ", e.name));
     }
     size_t length(const Property& p) {
         const long long length = scan_.integer(word(), "length of " + p.name);
         ++word_;
         const size_t left = scan_.words().size() - word_;
         if (length < 0 || static_cast<size_t>(length) > left)
-            scan_.fail("the list " + p.name + " announces " + std::to_string(length) + " values and has " +
-                       std::to_string(left));
+            scan_.fail(concat("the list ", p.name, " announces ", length, " values and has ", left));
         return static_cast<size_t>(length);
     }
     double number(const Property& p) {

@@ -8,14 +8,12 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
 
 #include "io/content_hash.h"
-#include "io/file_error.h"
 #include "io/input_file.h"
 
 #ifndef O_PATH

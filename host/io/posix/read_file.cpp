@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include "io/file_error.h"
 #include "io/input_file.h"
 
 namespace pellucid::io {

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <set>
 
-#include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/scene/scene_keys.h"
 #include "io/toml_reader.h"
@@ -87,26 +86,24 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
     std::set<uint32_t> ids;
     for (const SceneMaterial& m : scene.materials) {
         if (!ids.insert(m.id).second)
-            throw FileError(scene.source, "material id " + std::to_string(m.id) + " is used twice", m.line);
+            throw FileError(scene.source, concat("material id ", m.id, " is used twice"), m.line);
         if (m.material.thicknessTaps != 0 && m.material.thicknessTaps != 8 &&
             m.material.thicknessTaps != 16 && m.material.thicknessTaps != 32)
-            throw FileError(scene.source,
-                            "'thickness_taps' is " + std::to_string(m.material.thicknessTaps) +
-                                "; 0, 8, 16 or 32 would be right",
-                            m.line);
+            throw FileError(
+                scene.source,
+                concat("'thickness_taps' is ", m.material.thicknessTaps, "; 0, 8, 16 or 32 would be right"),
+                m.line);
         if (!m.normalMap.empty())
             for (const auto& [slot, key] : {std::pair{PEL_SLOT_UV, "uv"}, {PEL_SLOT_TANGENT, "tangent"}})
                 if (scene.channels[slot].empty())
-                    channels.fail(
-                        key, "is missing; the normal map of material " + std::to_string(m.id) + " needs it");
+                    channels.fail(key, concat("is missing; the normal map of material ", m.id, " needs it"));
         if (m.material.scatterTaps > 0 && m.material.scatterTaps < 8)
-            throw FileError(scene.source,
-                            "'scatter_taps' is " + std::to_string(m.material.scatterTaps) +
-                                "; 0, or 8 to 256 would be right",
-                            m.line);
+            throw FileError(
+                scene.source,
+                concat("'scatter_taps' is ", m.material.scatterTaps, "; 0, or 8 to 256 would be right"),
+                m.line);
         if (!m.scatteredTexture.empty() && scene.channels[PEL_SLOT_UV].empty())
-            channels.fail(
-                "uv", "is missing; the scattered texture of material " + std::to_string(m.id) + " needs it");
+            channels.fail("uv", concat("is missing; the scattered texture of material ", m.id, " needs it"));
         for (PelLutKind kind : {PEL_LUT_CURVATURE, PEL_LUT_SHADOW}) {
             const std::string& name = kind == PEL_LUT_CURVATURE ? m.curvatureLut : m.shadowLut;
             if (name.empty() || scene.lut(name, kind)) continue;
@@ -116,9 +113,8 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
             }
             const std::string table = kind == PEL_LUT_CURVATURE ? "curvature_lut" : "shadow_lut";
             throw FileError(scene.source,
-                            "material " + std::to_string(m.id) + " asks for the " + table + " '" + name +
-                                "'; there is " +
-                                (list.empty() ? "no [[" + table + "]] table" : "only: " + list),
+                            concat("material ", m.id, " asks for the ", table, " '", name, "'; there is ",
+                                   (list.empty() ? "no [[" + table + "]] table" : "only: " + list)),
                             m.line);
         }
     }
@@ -130,8 +126,8 @@ void checkEyes(const SceneFile& scene, const TomlReader& channels) {
         const auto isIts = [&](const SceneMaterial& m) { return m.id == eye.material; };
         if (std::none_of(scene.materials.begin(), scene.materials.end(), isIts))
             throw FileError(scene.source,
-                            "the eye of material " + std::to_string(eye.material) +
-                                " has no such material: a [[material]] of that id is its sclera",
+                            concat("the eye of material ", eye.material,
+                                   " has no such material: a [[material]] of that id is its sclera"),
                             eye.line);
         if (scene.channels[PEL_SLOT_POSITION].empty() && scene.channels[PEL_SLOT_DEPTH].empty())
             channels.fail("position", "is missing, and so is depth; eyes need one of them");

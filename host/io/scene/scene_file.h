@@ -3,12 +3,10 @@
 // pellucid.h.
 #pragma once
 #include <array>
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "io/lut/lut_preset.h"
-#include "pellucid/pellucid.h"
 
 namespace pellucid::io {
 

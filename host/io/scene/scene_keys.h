@@ -3,8 +3,6 @@
 //   integer(key, uint32_t&, Range)   text(key, string&)   texts(key, vector<string>&, most, least)
 //   choice(key, enum&, names)   table(key, isPresent, function)
 #pragma once
-#include <string_view>
-
 #include "fields/field_ranges.h"
 #include "io/choice_keys.h"
 #include "io/scene/scene_file.h"
@@ -52,8 +50,9 @@ void outputFileKeys(Visitor& v, Scene& scene) {
 template <class Visitor, class Scene>
 void channelKeys(Visitor& v, Scene& scene) {
     for (const SlotKey& k : slotKeys) {
-        // The radius in its second channel is optional.
-        const size_t least = k.slot == PEL_SLOT_SCATTER_WEIGHT ? 1 : k.components;
+        // The last channel, of radius or oxygenation, is optional.
+        const bool optional = k.slot == PEL_SLOT_SCATTER_WEIGHT || k.slot == PEL_SLOT_SKIN;
+        const size_t least = k.components - (optional ? 1 : 0);
         v.texts(k.key, scene.channels[k.slot], k.components, least);
     }
 }

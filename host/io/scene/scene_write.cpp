@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <span>
-#include <sstream>
 
 #include "io/atomic_file.h"
-#include "io/scene/scene_file.h"
 #include "io/scene/scene_keys.h"
 #include "io/shortest.h"
 

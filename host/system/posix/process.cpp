@@ -5,6 +5,7 @@
 #include <spawn.h>
 #include <sys/file.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -23,6 +24,8 @@
 #include <crt_externs.h>  // libraries have no `environ` there
 #include <mach-o/dyld.h>
 #define environ (*_NSGetEnviron())
+#define MSG_NOSIGNAL 0
+#define SOCK_CLOEXEC 0
 #else
 extern char** environ;
 #endif
@@ -106,6 +109,11 @@ bool prepareStreams() {
     return true;
 }
 
+std::FILE* keepOutput() {
+    const int kept = ::fcntl(1, F_DUPFD_CLOEXEC, 3);
+    return kept >= 0 && ::dup2(2, 1) == 1 ? ::fdopen(kept, "w") : nullptr;
+}
+
 std::string becomeProgram(const std::vector<std::string>& words) {
     std::vector<char*> argv;
     for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
@@ -114,35 +122,60 @@ std::string becomeProgram(const std::vector<std::string>& words) {
     return std::strerror(errno);
 }
 
-Child::Child(const std::vector<std::string>& words, const std::vector<std::string>& variables) {
-    std::vector<char*> argv, environment;
+Child::Child(const std::vector<std::string>& words) {
+    std::vector<char*> argv;
     for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-    for (const std::string& entry : variables) environment.push_back(const_cast<char*>(entry.c_str()));
-    for (char** entry = environ; entry && *entry; ++entry) {
-        const std::string name(*entry, std::strcspn(*entry, "=") + 1);
-        if (std::ranges::none_of(variables, [&](const std::string& v) { return v.starts_with(name); }))
-            environment.push_back(*entry);
-    }
     argv.push_back(nullptr);
-    environment.push_back(nullptr);
+    int ends[2];
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return;
+    for (const int end : ends) ::fcntl(end, F_SETFD, FD_CLOEXEC);  // where there is no such flag
     posix_spawn_file_actions_t streams;
     ::posix_spawn_file_actions_init(&streams);
-    for (int fd = 0; fd < 3; ++fd) ::posix_spawn_file_actions_addopen(&streams, fd, "/dev/null", O_RDWR, 0);
+    for (int fd = 0; fd < 2; ++fd) ::posix_spawn_file_actions_adddup2(&streams, ends[1], fd);
+    ::posix_spawn_file_actions_addopen(&streams, 2, "/dev/null", O_WRONLY, 0);
     pid_t child = 0;
-    if (::posix_spawn(&child, argv[0], &streams, nullptr, argv.data(), environment.data()) == 0)
-        process_ = child;
+    if (::posix_spawn(&child, argv[0], &streams, nullptr, argv.data(), environ) == 0) process_ = child;
     ::posix_spawn_file_actions_destroy(&streams);
+    ::close(ends[1]);
+    connection_ = ends[0];
+#ifdef SO_NOSIGPIPE
+    const int on = 1;
+    ::setsockopt(connection_, SOL_SOCKET, SO_NOSIGPIPE, &on, sizeof on);
+#endif
 }
 
 Child::~Child() {
-    if (process_) ::kill(pid_t(process_), SIGKILL);
-    wait();
-}
-
-void Child::wait() {
+    if (connection_ >= 0) ::close(connection_);
     while (process_ && ::waitpid(pid_t(process_), nullptr, 0) < 0 && errno == EINTR) {
     }
-    process_ = 0;
+}
+
+void Child::end() {
+    if (process_) ::kill(pid_t(process_), SIGKILL);
+}
+
+bool Child::write(const void* bytes, size_t count) {
+    const auto* at = static_cast<const char*>(bytes);
+    while (count > 0) {
+        const ssize_t sent = ::send(connection_, at, count, MSG_NOSIGNAL);
+        if (sent < 0 && errno == EINTR) continue;
+        if (sent <= 0) return false;
+        at += sent;
+        count -= size_t(sent);
+    }
+    return true;
+}
+
+bool Child::read(void* bytes, size_t count) {
+    auto* at = static_cast<char*>(bytes);
+    while (count > 0) {
+        const ssize_t got = ::recv(connection_, at, count, 0);
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) return false;
+        at += got;
+        count -= size_t(got);
+    }
+    return true;
 }
 
 size_t filesLeft() {

@@ -6,11 +6,8 @@
 #include <algorithm>
 #include <climits>
 #include <filesystem>
-#include <vector>
 
-#include "io/file_error.h"
 #include "io/image/picture_library.h"
-#include "io/input_file.h"
 
 namespace pellucid::io {
 namespace {

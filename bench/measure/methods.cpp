@@ -1,0 +1,488 @@
+// What the methods of scattering cost on the frozen scenes, and how far they are from light.
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include "io/choice_keys.h"
+#include "io/image/image_file.h"
+#include "io/image/tone_map.h"
+#include "io/input_file.h"
+#include "measure.h"
+#include "scenes.h"
+#include "timing.h"
+
+namespace pellucid::bench {
+namespace {
+
+using namespace lit_scenes;
+using Json = nlohmann::ordered_json;
+
+struct Setting {
+    std::string method, setting;
+    ShadeRequest request;
+    int mapSize = 0;              // 0: the scene's
+    bool quick = false;           // with --quick too
+    bool shown = false;           // the setting of this method that pictures, frames and clips have
+    double budget = 0;            // of time, ns per pixel of skin; 0: none
+    int texture = 0;              // texels a side of the texture that is scattered; 0: none
+    const char* tunes = nullptr;  // its name in records for PelShaderOptions.timeBudget
+
+    std::string name() const { return method + (setting.empty() ? "" : ", " + setting); }
+};
+
+// New methods are added here. All make their own shadows from the light's map.
+std::vector<Setting> settings() {
+    std::vector<Setting> all;
+    const auto add = [&](const char* method, const std::string& setting, PelScattering scattering) -> auto& {
+        all.push_back({method, setting, {}});
+        all.back().request.scattering = scattering;
+        all.back().request.gain = 1;
+        all.back().request.count = false;
+        return all.back();
+    };
+    const auto text = [](double v, const char* unit) {
+        char buffer[32];
+        std::snprintf(buffer, sizeof buffer, "%g %s", v, unit);
+        return std::string(buffer);
+    };
+    Setting& plain = add("Lambert", "", PEL_SCATTERING_NONE);
+    plain.quick = plain.shown = true;
+    plain.tunes = "none";
+    for (const uint32_t size : {16u, 64u, 256u}) {
+        Setting& s = add("pre-integrated", text(size, "texels"), PEL_SCATTERING_PREINTEGRATED);
+        s.request.tableSize = size;
+        s.quick = s.shown = size == 64;
+        if (s.quick) s.tunes = "preintegrated";
+    }
+    add("pre-integrated", "64 texels, every pixel", PEL_SCATTERING_PREINTEGRATED).request.everyPixel = true;
+    all.back().request.tableSize = 64;
+    for (const uint32_t size : {128u, 512u}) {
+        Setting& s = add("FaceWorks", text(size, "texels"), PEL_SCATTERING_PREINTEGRATED);
+        s.request.tableSize = size;
+        s.request.faceworks = true;
+        s.quick = s.shown = size == 512;
+    }
+    for (const uint32_t taps : {9u, 17u, 25u, 51u, 101u}) {
+        Setting& s = add("separable", "2 x " + text(taps, "taps"), PEL_SCATTERING_SEPARABLE);
+        s.request.scatterTaps = taps;
+        s.quick = taps == 9 || taps == 25, s.shown = taps == 25;
+    }
+    for (const uint32_t taps : {8u, 16u, 32u, 64u, 128u}) {
+        Setting& s = add("disk", text(taps, "taps"), PEL_SCATTERING_SCREEN);
+        s.request.scatterTaps = taps;
+        s.quick = taps == 8 || taps == 32, s.shown = taps == 32;
+    }
+    for (const double target : {0.0, 5e-4, 2e-3, 5e-3, 1e-2, 2e-2}) {
+        Setting& s = add("auto", "error " + text(target, "of white"), PEL_SCATTERING_AUTO);
+        s.request.targetError = float(target);
+        s.shown = s.request.targetError == pelShaderOptionsDefaults().targetError;
+        s.quick = s.shown || target == 1e-2;
+        s.tunes = "auto";
+    }
+    for (const int size : {512, 1024})
+        add("auto", "map of " + text(size, "texels"), PEL_SCATTERING_AUTO).mapSize = size;
+    Setting& light = add("light", "map of 2048 texels", PEL_SCATTERING_LIGHT);
+    light.quick = light.shown = true;
+    light.tunes = "light";
+    for (const int size : {512, 1024})
+        add("light", "map of " + text(size, "texels"), PEL_SCATTERING_LIGHT).mapSize = size;
+    for (const int size : {1024, 2048})
+        add("texture", text(size, "texels a side"), PEL_SCATTERING_TEXTURE).texture = size;
+    for (const double budget : {25.0, 60.0, 150.0, 600.0, 6000.0}) {
+        Setting& s = add("auto", "budget of " + text(budget, "ns a pixel"), PEL_SCATTERING_AUTO);
+        s.budget = budget;
+        s.quick = budget == 60 || budget == 150;
+    }
+    return all;
+}
+
+std::vector<float> valuesAt(const std::vector<float>& rgb, const std::vector<size_t>& pixels) {
+    std::vector<float> some;
+    for (const size_t i : pixels)
+        for (size_t c = 0; c < 3; ++c) some.push_back(sceneAlbedo * rgb[3 * i + c]);
+    return some;
+}
+
+// Into `row`: how far values at the drawn pixels are from light, without the noise of the walks, but for P99
+// and CIEDE2000, in which it is.
+void addErrors(Json& row, const std::vector<float>& values, const Truth& truth,
+               const std::vector<uint8_t>& subsets) {
+    const auto compared = [&](const std::vector<uint8_t>& mask) {
+        return io::compareImages(values, truth.first, mask, nullptr, truth.second);
+    };
+    const io::ImageDifference all = compared({});
+    row["error_rms"] = all.rmseAll;
+    row["rmse"] = all.rmse, row["mean_error"] = all.mean, row["p99"] = all.p99, row["noise"] = all.noise;
+    row["delta_e"] = all.deltaEMean, row["delta_e_p99"] = all.deltaE99;
+    constexpr std::pair<const char*, io::Subset> parts[] = {{"unlit", io::SUBSET_UNLIT},
+                                                            {"terminator", io::SUBSET_TERMINATOR},
+                                                            {"penumbra", io::SUBSET_PENUMBRA},
+                                                            {"rest", io::SUBSET_REST}};
+    for (const auto& [name, bit] : parts) {
+        std::vector<uint8_t> mask;
+        for (const size_t i : truth.pixels) mask.push_back(subsets[i] & bit);
+        const io::ImageDifference part = compared(mask);
+        if (part.pixels >= 20) row["subsets"][name] = {{"pixels", part.pixels}, {"rmse", part.rmse}};
+    }
+}
+
+// Light with a sharp shadow in the texture of a body, scattered there.
+class InTexture {
+  public:
+    InTexture(const Device& device, const sample::Mesh& mesh, const LitScene& s, const Profile& profile,
+              double scale, uint32_t side)
+        : lighting_(device, side, side), scattered_(device, size_t(side) * side * 3 * sizeof(float)) {
+        const auto vertices = uint32_t(mesh.positions.size() / 3);
+        PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
+        desc.width = desc.height = side;
+        desc.numVertices = vertices, desc.numIndices = mesh.triangles.size();
+        desc.indices = mesh.triangles.data(), desc.uvs = mesh.uvs.data();
+        scatter_ = TextureScatter(device, desc);
+        const Buffer positions(device, mesh.positions), normals(device, mesh.normals);
+        scatter_.setPositions(vertexView(positions, vertices));
+        for (const auto& [slot, values] :
+             {std::pair{PEL_SLOT_POSITION, &positions}, {PEL_SLOT_NORMAL_SHADING, &normals}}) {
+            const Buffer image(device, scattered_.bytes());
+            scatter_.draw(vertexView(*values, vertices), slot != PEL_SLOT_POSITION, imageOf(image));
+            lighting_.shader.set(slot, imageOf(image));
+        }
+        lighting_.shader.setMaterial(1, scatter_scene::whiteMaterial(Profile(), PEL_SCATTERING_NONE))
+            .set(std::vector<PelLight>{s.lamps[0].light});
+        lighting_.setMap(PEL_LIGHT_SHADOW_MAP, s.lamps[0].maps[0], s.lamps[0].width, s.lamps[0].height);
+        lighting_.shader.commit();
+        params_.profile = profile.get(), params_.scale = float(scale);
+    }
+    // Returns what it took, milliseconds.
+    double run() {
+        lighting_.shader.execute();
+        scatter_.execute(params_, imageOf(lighting_.out), nullptr, imageOf(scattered_));
+        return lighting_.shader.stats().deviceMilliseconds + scatter_.stats().deviceMilliseconds;
+    }
+    std::vector<float> texture() const { return scattered_.readAll<float>(); }
+    uint64_t bytes() { return scatter_.stats().scratchBytes + 4 * scattered_.bytes(); }
+
+  private:
+    PelImageDesc imageOf(const Buffer& b) const {
+        return imageDesc(b, PEL_FORMAT_RGB32F, lighting_.width, lighting_.width);
+    }
+    scatter_scene::ShownImages lighting_;
+    Buffer scattered_;
+    TextureScatter scatter_;
+    PelTextureScatterParams params_ = pelTextureScatterParamsDefaults();
+};
+
+// A method at work on a scene, and its times, in milliseconds.
+struct Contender {
+    Setting setting;
+    Shot shot;
+    std::shared_ptr<InTexture> texture{};
+    std::vector<double> device{}, wall{};
+    std::map<std::string, std::vector<double>> passes{};  // by name
+};
+
+class Methods {
+  public:
+    explicit Methods(const Request& request) : request_(request), device_(request.device) {}
+
+    Json measure() {
+        for (const FrozenScene& scene : frozenScenes())
+            if (scene.quick || !request_.quick) measureScene(scene);
+        measureClips();
+        return {{"scenes", scenes_}, {"operations", rows_}, {"pictures", pictures_}};
+    }
+
+  private:
+    // Lambert comes with every other, for the times beyond it.
+    bool wanted(const std::string& scene, const Setting& s) const {
+        return (s.quick || !request_.quick) && request_.wants(scene + ": " + s.name());
+    }
+    bool wanted(const std::string& scene) const {
+        return std::ranges::any_of(settings(), [&](const Setting& s) { return wanted(scene, s); });
+    }
+    void say(const std::string& text) const { request_.event({{"say", text}}); }
+
+    // Runs `work` as a case that may fail alone, or be left out.
+    template <class Work>
+    void attempt(const std::string& name, const char* group, const Work& work) {
+        if (std::ranges::find(request_.without, name) != request_.without.end()) return;
+        request_.event({{"begin", name}, {"group", group}});
+        try {
+            work();
+        } catch (const std::exception& e) {
+            rows_.push_back({{"name", name}, {"group", group}, {"failed", e.what()}});
+        }
+    }
+
+    // All contenders in turns, in another order each time, so that a machine that drifts slows all.
+    void run(std::vector<Contender>& contenders, const std::string& scene, const char* group, int rounds) {
+        std::mt19937 random(1);
+        for (int round = 0; round < rounds; ++round) {
+            std::ranges::shuffle(contenders, random);
+            for (Contender& c : contenders) {
+                request_.event({{"begin", scene + ": " + c.setting.name()}, {"group", group}});
+                const double start = milliseconds(), before = c.texture ? c.texture->run() : 0;
+                c.shot.shader.execute();
+                c.wall.push_back(milliseconds() - start);
+                c.device.push_back(before + c.shot.shader.stats().deviceMilliseconds);
+                if (c.texture) c.passes["in the texture"].push_back(before);
+                for (const PelPassStats& pass : c.shot.shader.passes())
+                    c.passes[pass.name].push_back(pass.milliseconds);
+            }
+        }
+    }
+
+    // Times and sizes of a contender; `plain`: of Lambert.
+    static Json rowOf(const Contender& c, const std::string& scene, const char* group, const LitScene& s,
+                      double plain) {
+        const PelShaderStats stats = c.shot.shader.stats();
+        const auto skin = double(s.places.size()), frame = double(s.width) * s.height;
+        // Position, normal and result, and what tables need beside them; ids; the shadow map.
+        double bytes = skin * (c.setting.request.tableSize ? 52 : 36) + frame;
+        for (const scatter_scene::Lamp& lamp : s.lamps) bytes += 4.0 * lamp.width * lamp.height;
+        Json passes = Json::array();
+        for (const auto& [pass, times] : c.passes)
+            passes.push_back({{"name", pass}, {"ms", median(times)}, {"mad_ms", medianDeviation(times)}});
+        Json row = {{"name", scene + ": " + c.setting.name()},
+                    {"group", group},
+                    {"scene", scene},
+                    {"method", c.setting.method},
+                    {"setting", c.setting.setting},
+                    {"what", std::to_string(s.width) + "x" + std::to_string(s.height)},
+                    {"items", skin},
+                    {"unit", "pixels of skin"},
+                    {"samples", c.device.size()},
+                    {"median_ms", median(c.device)},
+                    {"mad_ms", medianDeviation(c.device)},
+                    {"wall_ms", median(c.wall)},
+                    {"added_ms", std::isfinite(plain) ? Json(median(c.device) - plain) : Json()},
+                    {"launches", stats.launches},
+                    {"memory_bytes", stats.scratchBytes + (c.texture ? c.texture->bytes() : 0)},
+                    {"bytes", bytes},
+                    {"arithmetic_share", Json()},
+                    {"passes", passes}};
+        if (c.setting.tunes) {
+            row["tunes"] = c.setting.tunes;
+            row["target_error"] = c.setting.tunes == std::string("auto") ? c.setting.request.targetError : 0;
+        }
+        if (c.setting.budget > 0) {
+            const PelScattering took = c.shot.shader.material(1).scattering;
+            row.update({{"group", "budgets"},
+                        {"budget_ms", 1e-6 * c.setting.budget * skin},
+                        {"took", took == PEL_SCATTERING_SCREEN ? "auto" : io::scatterings[took]},
+                        {"took_target_error", stats.takenTargetError},
+                        {"expected_ms", stats.expectedMilliseconds},
+                        {"expected_error", stats.expectedError}});
+        }
+        return row;
+    }
+    static double timeOfPlain(const std::vector<Contender>& contenders) {
+        for (const Contender& c : contenders)
+            if (c.setting.method == "Lambert") return median(c.device);
+        return NAN;
+    }
+
+    void measureScene(const FrozenScene& scene) {
+        std::optional<Stage> stage;
+        for (const double scale : radiusScales) {
+            const std::string name = scene.name + ("-" + std::to_string(int(scale)));
+            if (!wanted(name)) continue;
+            attempt(name, "methods", [&] {
+                say(name + ": " + scene.title);
+                if (!stage) stage.emplace(device_, scene.body(request_.data + "/heads/head_female.obj"), 1);
+                measureLook(scene, *stage, name, scale);
+            });
+        }
+        if (scene.name != frozenScenes()[0].name || !request_.only.empty() || !stage) return;
+        measureShares(scene, *stage);
+        if (request_.quick) return;
+        for (const auto& [name, width, height] : {std::tuple{"1080p", 1920, 1080}, {"4K", 3840, 2160}})
+            attempt(name, "frames",
+                    [&, name = name, w = width, h = height] { measureFrame(scene, *stage, name, w, h); });
+    }
+
+    void measureLook(const FrozenScene& scene, const Stage& stage, const std::string& name, double scale) {
+        SceneRequest request = scene.request;
+        request.profileScale = scale;
+        LitScene s = stage.look(request, profile_);
+        const Truth truth = readTruth(request_.data + "/bench", name, s);
+        Json about = {{"name", name},
+                      {"title", scene.title},
+                      {"scale", scale},
+                      {"width", s.width},
+                      {"height", s.height},
+                      {"pixels", s.places.size()},
+                      {"compared", truth.pixels.size()}};
+        addErrors(about["surface_integral"], truth.surface, truth, s.subsets);
+        scenes_.push_back(about);
+        std::vector<Contender> contenders;
+        std::map<std::string, Json> errors;
+        const std::vector<scatter_scene::Lamp> lamps = s.lamps;
+        for (const Setting& setting : settings()) {
+            if (!wanted(name, setting) && (setting.method != "Lambert" || !request_.only.size())) continue;
+            if (setting.texture && s.gbuffer.uv.data.empty()) continue;
+            attempt(name + ": " + setting.name(), "methods", [&] {
+                s.lamps = setting.mapSize ? stage.lampsOf(s.lighting, setting.mapSize) : lamps;
+                ShadeRequest how = setting.request;
+                how.materials = scene.materials;
+                how.timeBudget = float(1e-6 * setting.budget * double(s.places.size()));
+                std::shared_ptr<InTexture> texture;
+                if (setting.texture) {
+                    const Body body = scene.body(request_.data + "/heads/head_female.obj");
+                    texture = std::make_shared<InTexture>(device_, body.mesh, s, profile_, scale,
+                                                          uint32_t(setting.texture));
+                    texture->run();
+                    how.texture = texture->texture();
+                }
+                contenders.push_back({setting, shoot(device_, s, profile_, scale, how), texture});
+                Shot& shot = contenders.back().shot;
+                addErrors(errors[setting.name()], valuesAt(shot.light, truth.pixels), truth, s.subsets);
+                if (setting.shown && scale > 1) addPicture(name, setting, s, shot.light);
+                shot.light = {};
+            });
+        }
+        run(contenders, name, "methods", request_.quick ? 3 : 5);
+        const double plain = timeOfPlain(contenders);
+        std::ranges::sort(contenders, {}, [](const Contender& c) { return c.setting.name(); });
+        for (const Contender& c : contenders) {
+            rows_.push_back(rowOf(c, name, "methods", s, plain));
+            rows_.back().update(errors[c.setting.name()]);
+        }
+    }
+
+    // The shown methods at the usual radius, of a frame in which `share` percent of the skin are left.
+    void measureShares(const FrozenScene& scene, const Stage& stage) {
+        LitScene s = stage.look(scene.request, profile_);
+        std::vector<size_t> skin;
+        for (size_t i = 0; i < s.covered.size(); ++i)
+            if (s.covered[i]) skin.push_back(i);
+        for (const int share : {100, 50, 10, 0}) {
+            while (skin.size() > s.places.size() * size_t(share) / 100)
+                s.gbuffer.material[skin.back()] = 0, skin.pop_back();
+            const std::string name = std::to_string(share) + " % of the skin";
+            attempt(name, "shares", [&] { measureShown(s, name, "shares", request_.quick ? 3 : 7); });
+        }
+    }
+    void measureFrame(const FrozenScene& scene, const Stage& stage, const char* name, int width, int height) {
+        SceneRequest request = scene.request;
+        request.width = width, request.size = height;
+        say(std::string(name) + ": " + scene.title);
+        measureShown(stage.look(request, profile_), name, "frames", 3);
+    }
+    void measureShown(const LitScene& s, const std::string& name, const char* group, int rounds) {
+        std::vector<Contender> contenders;
+        for (const Setting& setting : settings())
+            if (setting.shown)
+                contenders.push_back({setting, shoot(device_, s, profile_, 1, setting.request)});
+        run(contenders, name, group, rounds);
+        const double plain = timeOfPlain(contenders);
+        std::ranges::sort(contenders, {}, [](const Contender& c) { return c.setting.name(); });
+        for (const Contender& c : contenders) rows_.push_back(rowOf(c, name, group, s, plain));
+    }
+
+    // How much more, or less, a method changes from frame to frame than light does.
+    void measureClips() {
+        std::optional<Stage> stage;
+        for (const FrozenClip& clip : frozenClips) {
+            std::vector<LitScene> frames;
+            std::optional<ClipTruth> truth;
+            for (const Setting& setting : settings()) {
+                if (!setting.shown || !wanted(clip.name, setting)) continue;
+                if (request_.quick && (setting.method == "light" || clip.cameraStep > 0)) continue;
+                attempt(clip.name + (": " + setting.name()), "clips", [&] {
+                    if (!stage)
+                        stage.emplace(device_,
+                                      frozenScenes()[0].body(request_.data + "/heads/head_female.obj"), 1);
+                    for (int k = int(frames.size()); k < clipFrames; ++k)
+                        frames.push_back(stage->look(clipRequest(clip, k), profile_));
+                    if (!truth) truth = readClip(request_.data + "/bench", clip, frames);
+                    say(std::string(clip.name) + ": " + setting.name());
+                    measureClip(clip, setting, frames, *truth);
+                });
+            }
+        }
+    }
+    void measureClip(const FrozenClip& clip, const Setting& setting, const std::vector<LitScene>& frames,
+                     const ClipTruth& truth) {
+        double largest = 0, sum = 0, count = 0;
+        std::vector<float> before;
+        for (size_t k = 0; k < frames.size(); ++k) {
+            const std::vector<float> now =
+                shoot(device_, frames[k], profile_, clipScale, setting.request).light;
+            for (size_t p = 0; k > 0 && p < truth.pixels[k].size(); ++p) {
+                const size_t from = truth.pixels[k - 1][p], to = truth.pixels[k][p];
+                if (from == SIZE_MAX || to == SIZE_MAX) continue;
+                for (size_t c = 0; c < 3; ++c) {
+                    const double own = sceneAlbedo * (double(now[3 * to + c]) - before[3 * from + c]),
+                                 light = double(truth.light[k][3 * p + c]) - truth.light[k - 1][3 * p + c];
+                    largest = std::max(largest, std::abs(own - light));
+                    sum += std::abs(own - light), ++count;
+                }
+            }
+            before = now;
+        }
+        rows_.push_back({{"name", clip.name + (": " + setting.name())},
+                         {"group", "clips"},
+                         {"scene", clip.name},
+                         {"method", setting.method},
+                         {"setting", setting.setting},
+                         {"what", clip.title},
+                         {"frames", frames.size()},
+                         {"error_max", largest},
+                         {"error_mean", sum / count}});
+    }
+
+    // The part of a picture where methods differ, as the bytes of a PNG file in base 64.
+    void addPicture(const std::string& name, const Setting& setting, const LitScene& s,
+                    const std::vector<float>& light) {
+        constexpr struct {
+            const char* scene;
+            double x, y, width;  // middle and width, as parts of the picture
+            float exposure;
+        } parts[] = {{"side-4", 0.46, 0.56, 0.5, 1}, {"ear-4", 0.61, 0.52, 0.36, 2.5f}};
+        for (const auto& part : parts) {
+            if (name != part.scene) continue;
+            const int side = int(part.width * s.width), x0 = int(part.x * s.width) - side / 2,
+                      y0 = int(part.y * s.height) - side / 2;
+            std::vector<float> crop;
+            for (int y = y0; y < y0 + side; ++y)
+                for (int c = 0; c < 3 * side; ++c)
+                    crop.push_back(sceneAlbedo *
+                                   light[3 * (size_t(y) * size_t(s.width) + size_t(x0)) + size_t(c)]);
+            const std::string path = (std::filesystem::temp_directory_path() /
+                                      ("pellucid-bench-" + std::to_string(::getpid()) + ".png"))
+                                         .string();
+            io::writeImage8(path, side, side, 3, io::toSrgb8(crop, io::ToneMap{part.exposure}));
+            pictures_.push_back({{"scene", name},
+                                 {"method", setting.name()},
+                                 {"exposure", part.exposure},
+                                 {"png", base64(io::readWholeFile(path, io::textLimit))}});
+            std::filesystem::remove(path);
+        }
+    }
+
+    static std::string base64(const std::string& bytes) {
+        constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+        std::string text;
+        for (size_t i = 0; i < bytes.size(); i += 3) {
+            uint32_t group = 0;
+            for (size_t k = 0; k < 3; ++k)
+                group = group << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0u);
+            for (size_t k = 0; k < 4; ++k)
+                text += i + k > bytes.size() ? '=' : digits[group >> (18 - 6 * k) & 63];
+        }
+        return text;
+    }
+
+    const Request& request_;
+    Device device_;
+    Profile profile_ = usualProfile();
+    Json scenes_ = Json::array(), rows_ = Json::array(), pictures_ = Json::array();
+};
+
+}  // namespace
+
+Json measureMethods(const Request& request) {
+    return Methods(request).measure();
+}
+
+}  // namespace pellucid::bench

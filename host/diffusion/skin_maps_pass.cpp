@@ -1,0 +1,111 @@
+// The shader's pass of maps of skin (PEL_SLOT_SKIN): albedo for the slot of the plan, and the radius of each
+// pixel.
+#include <algorithm>
+#include <cstring>
+
+#include "core/launch_policy.h"
+#include "diffusion/passes.h"
+#include "diffusion/scatter_material.h"
+#include "diffusion/sent_constants.h"
+#include "fields/field_ranges.h"
+#include "lut/skin.h"
+#include "shading/launch_ranges.h"
+#include "shading/shading_constants.h"
+#include "shared/skin_maps.h"
+
+namespace pel {
+namespace {
+
+class SkinMapsPass final : public Pass {
+  public:
+    static bool needed(const ShaderPlan& plan) { return usesSkinMaps(plan.state); }
+
+    PassScratch scratch(const ShaderPlan&) const override { return {4 * sizeof(float), 0, 0, true}; }
+
+    void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
+        auto& images = plan.state.images;
+        const ImageView& frame = images[PEL_SLOT_RADIANCE];
+        const size_t plane = size_t(frame.width) * frame.height * sizeof(float);
+        resize(albedo_, device, 3 * plane);
+        resize(radii_, device, plane);
+        skin_ = images[PEL_SLOT_SKIN], ids_ = images[PEL_SLOT_MATERIAL], given_ = images[PEL_SLOT_ALBEDO];
+        weight_ = ScatterImages();
+        weight_.takeRadii(images[PEL_SLOT_SCATTER_WEIGHT]);
+        images[PEL_SLOT_ALBEDO] = scratchImage(albedo_, frame, PEL_FORMAT_PLANAR_RGB32F);
+        plan.radii = scratchImage(radii_, frame, PEL_FORMAT_R32F);
+    }
+    size_t bytes() const override {
+        return (albedo_ ? albedo_->bytes() + radii_->bytes() : 0) + tables_.bytes();
+    }
+
+    std::vector<cl::ProgramKey> programs(const Device&, const ShaderPlan&) const override {
+        return {{{"shading/skin_maps.cl"},
+                 {{"PEL_WIDTH", 1},
+                  {"PEL_FORMAT_SKIN", formatCode(skin_, 1)},
+                  {"PEL_OXYGENATIONS", oxygenations()},
+                  {"PEL_FORMAT_MATERIAL", formatCode(ids_, 1)},
+                  {"PEL_FORMAT_ALBEDO", formatCode(given_, 1)},
+                  {"PEL_FORMAT_RADIUS", formatCode(weight_.radii, 1)},
+                  {"PEL_RADIUS_COMPONENT", weight_.radiusComponent}}}};
+    }
+
+    size_t upload(Device& device, ShaderPlan& plan) override {
+        PelSkinMaps maps{};
+        std::vector<PelSkin> skins;
+        const ImageView& frame = plan.state.images[PEL_SLOT_RADIANCE];
+        maps.width = frame.width, maps.height = frame.height;
+        maps.most[0] = range::skin::melanin.max, maps.most[1] = range::skin::blood.max;
+        maps.skin = describeImage(skin_);
+        maps.ids = describeImage(ids_);
+        maps.albedo = describeImage(given_);
+        maps.radii = describeImage(weight_.radii);
+        maps.outAlbedo = describeImage(plan.state.images[PEL_SLOT_ALBEDO]);
+        maps.outRadii = describeImage(plan.radii);
+        for (const auto& [id, material] : plan.state.materials) {
+            PelSkinMapsMaterial& to = maps.materials[id];
+            to.set = 1;
+            std::copy_n(material.params.albedo, 3, to.albedo);
+            if (!takesSkinMaps(material)) continue;
+            const PelSkin& skin = *material.profile->pigments();
+            const auto alike = [&](const PelSkin& other) { return !std::memcmp(&other, &skin, sizeof skin); };
+            const auto at = std::ranges::find_if(skins, alike);
+            to.table = uint32_t(at - skins.begin()) + 1;
+            if (at == skins.end()) skins.push_back(skin);
+            to.own[0] = skin.melanin, to.own[1] = skin.blood, to.own[2] = skin.oxygenation;
+        }
+        constants_.send(device, maps);
+        const bool same = skins.size() == skins_.size() && oxygenations() == tabulated_ &&
+                          !std::memcmp(skins.data(), skins_.data(), skins.size() * sizeof(PelSkin));
+        if (same) return sizeof maps;
+        std::vector<float> values;
+        for (const PelSkin& skin : skins) {
+            const std::vector<float> table = skinTable(skin, oxygenations());
+            values.insert(values.end(), table.begin(), table.end());
+        }
+        skins_ = std::move(skins), tabulated_ = oxygenations();
+        return sizeof maps + tables_.update(device, values.data(), values.size() * sizeof(float));
+    }
+
+    void enqueueFrame(PassWork& work) override {
+        const ImageView& frame = work.plan.state.images[PEL_SLOT_RADIANCE];
+        work.launch(program(), "skin_maps", itemRange(work.device, size_t(frame.width) * frame.height),
+                    constants_, tables_, skin_, ids_, given_, weight_.radii, *albedo_, *radii_);
+    }
+
+  private:
+    int oxygenations() const { return skin_.info().components > 2 ? PEL_SKIN_OXYGENATIONS : 1; }
+
+    Ref<Buffer> albedo_, radii_;
+    ImageView skin_, ids_, given_;  // given_: the caller's albedo
+    ScatterImages weight_;
+    SentConstants<PelSkinMaps> constants_;
+    std::vector<PelSkin> skins_;
+    int tabulated_ = 0;
+    CachedUpload tables_;
+};
+
+}  // namespace
+
+constinit const PassKind skinMapsPass = passKind<SkinMapsPass>("skin_maps");
+
+}  // namespace pel

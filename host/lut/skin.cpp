@@ -1,0 +1,463 @@
+#include "lut/skin.h"
+
+#include "core/check_range.h"
+#include "core/struct_size.h"
+#include "core/threads.h"
+#include "fields/color_difference.h"
+#include "lut/skin_spectra.h"
+#include "lut/skin_transport.h"
+#include "shared/skin_maps.h"
+
+namespace pel {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// ---- Coefficients, 1/mm
+
+struct Coefficients {
+    double epidermis, dermis, scattering;
+};
+
+// Jacques, Optical properties of biological tissues: a review, 2013: melanosomes, scattering. Skin without
+// blood and melanin: Jacques, Skin Optics, OMLC News, January 1998, after Saidi 1992. Pheomelanin: Donner and
+// Jensen, A Spectral BSSRDF for Shading Human Skin, 2006. Blood holds 150 g of haemoglobin a litre (Prahl).
+Coefficients coefficients(const PelSkin& skin, const SkinSpectrum& at) {
+    const double nm = at.nanometres, ratio = nm / 500, perCm = 0.1, ln10 = std::numbers::ln10;
+    const double eumelanin = perCm * 519 * std::pow(ratio, -3.0), pheomelanin = 2.9e14 * std::pow(nm, -4.75);
+    const double bare = perCm * (0.244 + 85.3 * std::exp(-(nm - 154) / 66.2));
+    const double haemoglobin =
+        at.oxyhaemoglobin * double(skin.oxygenation) + at.haemoglobin * (1 - double(skin.oxygenation));
+    const double melanin = skin.melanin, blood = skin.blood;
+    return {melanin * (skin.eumelanin * eumelanin + (1 - double(skin.eumelanin)) * pheomelanin) +
+                (1 - melanin) * bare + perCm * ln10 * at.carotene * skin.carotene * 1e-3 / 537,
+            perCm * ln10 * (blood * haemoglobin * 150 / 64500 + at.bilirubin * skin.bilirubin * 1e-3 / 585) +
+                (1 - blood) * bare + skin.water * double(at.water) * 1e-3,
+            skin.scattering * std::pow(ratio, -double(skin.scatteringPower))};
+}
+
+// Share of a wavelength in each channel of linear sRGB (IEC 61966-2-1) under D65; a channel adds up to 1.
+const std::array<Rgb, skinWavelengths>& channels() {
+    static const auto all = [] {
+        std::array<Rgb, skinWavelengths> w{};
+        Rgb sum{};
+        for (int i = 0; i < skinWavelengths; ++i) {
+            const SkinSpectrum& s = skinSpectra[i];
+            w[i] = {3.2404542 * s.x - 1.5371385 * s.y - 0.4985314 * s.z,
+                    -0.9692660 * s.x + 1.8760108 * s.y + 0.0415560 * s.z,
+                    0.0556434 * s.x - 0.2040259 * s.y + 1.0572252 * s.z};
+            for (int c = 0; c < 3; ++c) sum[c] += w[i][c] *= s.d65;
+        }
+        for (Rgb& row : w)
+            for (int c = 0; c < 3; ++c) row[c] /= sum[c];
+        return w;
+    }();
+    return all;
+}
+
+// ---- skinReflected as a polynomial
+
+// Evenly spaced nodes of a variable in which the logarithm of the reflectance is smooth.
+struct Axis {
+    int nodes;
+    double low, high;
+    double node(int i) const { return low + (high - low) * i / (nodes - 1); }
+    // Cubic interpolation at x: the first of four nodes, and their weights.
+    int weights(double x, double (&w)[4]) const {
+        const double at = (std::clamp(x, low, high) - low) / (high - low) * (nodes - 1);
+        const int first = std::clamp(int(at) - 1, 0, nodes - 4);
+        const double p = at - first, q = p - 1, r = p - 2, s = p - 3;
+        w[0] = -q * r * s / 6;
+        w[1] = p * r * s / 2;
+        w[2] = -p * q * s / 2;
+        w[3] = p * q * r / 6;
+        return first;
+    }
+};
+
+// The variables: of the thickness, of the absorption along it, and of the lower layer's.
+constexpr double thicknessUnit = 0.5, opticalUnit = 0.2;
+double rootOf(double absorption) {
+    return std::sqrt(absorption / (1 + absorption));
+}
+
+constexpr double lowestFrequency = 0.01, highestFrequency = 30;
+constexpr int frequencies = 16;  // the first is 0, the others are evenly spaced in the logarithm
+double frequency(int i) {
+    return i == 0 ? 0
+                  : lowestFrequency *
+                        std::pow(highestFrequency / lowestFrequency, (i - 1.0) / (frequencies - 2));
+}
+using Spectrum = std::array<float, frequencies>;  // the logarithm of skinReflected at each frequency
+
+class Table {
+  public:
+    static const Table& get() {
+        static const Table table;
+        return table;
+    }
+    Spectrum at(const SkinLayers& layers) const {
+        double t[4], u[4], l[4];
+        const int first = thickness_.weights(std::log1p(layers.thickness / thicknessUnit), t),
+                  second =
+                      upper_.weights(std::log1p(layers.thickness * layers.upperAbsorption / opticalUnit), u),
+                  third = lower_.weights(rootOf(layers.lowerAbsorption), l);
+        Spectrum sum{};
+        for (int a = 0; a < 4; ++a)
+            for (int b = 0; b < 4; ++b)
+                for (int c = 0; c < 4; ++c) {
+                    const float weight = float(t[a] * u[b] * l[c]);
+                    const Spectrum& row =
+                        rows_[(size_t(first + a) * upper_.nodes + second + b) * lower_.nodes + third + c];
+                    for (int k = 0; k < frequencies; ++k) sum[k] += weight * row[k];
+                }
+        return sum;
+    }
+
+  private:
+    Table() {
+        rows_.resize(size_t(thickness_.nodes) * upper_.nodes * lower_.nodes);
+        inParts(rows_.size(), partsOf(rows_.size(), 16), [&](size_t, size_t begin, size_t end) {
+            for (size_t r = begin; r < end; ++r) {
+                const int a = int(r) / (upper_.nodes * lower_.nodes),
+                          b = int(r) / lower_.nodes % upper_.nodes, c = int(r) % lower_.nodes;
+                const double thickness = thicknessUnit * std::expm1(thickness_.node(a)),
+                             root = lower_.node(c) * lower_.node(c);
+                const SkinLayers layers{thickness, opticalUnit * std::expm1(upper_.node(b)) / thickness,
+                                        root / (1 - root)};
+                for (int k = 0; k < frequencies; ++k)
+                    rows_[r][k] = float(std::log(skinReflected(layers, frequency(k))));
+            }
+        });
+    }
+    // Of thicknesses from 0.02 to 8 and absorption along them from 0 to 300.
+    const Axis thickness_{7, std::log1p(0.02 / thicknessUnit), std::log1p(8 / thicknessUnit)},
+        upper_{14, 0, std::log1p(300 / opticalUnit)}, lower_{9, 0.03, 0.985};
+    std::vector<Spectrum> rows_;
+};
+
+// ---- From spectra to channels
+
+// Widths of the Gaussians, mm, and frequencies of the fit, 1/mm.
+constexpr int terms = 14, fitted = 28;
+double variance(int i) {
+    return std::pow(0.005 * std::pow(15 / 0.005, i / (terms - 1.0)), 2);
+}
+double fittedFrequency(int j) {
+    return 0.02 * std::pow(150 / 0.02, j / (fitted - 1.0));
+}
+
+struct Computed {
+    Rgb albedo{}, freePath{}, scattered{};  // the latter two: means over the light that leaves
+    std::array<Rgb, fitted> spectrum{};     // of the profile, at fittedFrequency
+    std::array<double, skinWavelengths> reflectance{};
+};
+
+Computed compute(const PelSkin& skin, bool radial) {
+    constexpr double perLog = (frequencies - 2) / 8.0063675676502459;  // log(highest / lowest)
+    static const auto logFrequency = [] {
+        std::array<double, fitted> logs;
+        for (int j = 0; j < fitted; ++j) logs[j] = std::log(fittedFrequency(j));
+        return logs;
+    }();
+    Computed out;
+    Rgb light{};
+    for (int i = 0; i < skinWavelengths; ++i) {
+        const Coefficients c = coefficients(skin, skinSpectra[i]);
+        const SkinLayers layers{skin.epidermis * c.scattering, c.epidermis / c.scattering,
+                                c.dermis / c.scattering};
+        const Spectrum values = Table::get().at(layers);
+        const Rgb& weight = channels()[i];
+        out.reflectance[i] = std::exp(values[0]);
+        for (int n = 0; n < 3; ++n) {
+            out.albedo[n] += weight[n] * out.reflectance[i];
+            const double share = std::max(0.0, weight[n]) * out.reflectance[i];
+            light[n] += share;
+            out.freePath[n] += share / (c.dermis + c.scattering);
+            out.scattered[n] += share * c.scattering / (c.dermis + c.scattering);
+        }
+        if (!radial) continue;
+        const double shift = std::log(c.scattering * lowestFrequency);
+        for (int j = 0; j < fitted; ++j) {
+            // Cubic [Catmull-Rom] in the logarithm of the frequency; quadratic in it below the first.
+            const double at = (logFrequency[j] - shift) * perLog;
+            double value = values[0] + (values[1] - values[0]) * std::exp(2 * std::min(0.0, at) / perLog);
+            if (at > 0) {
+                const int cell = std::min(int(at), frequencies - 3);
+                const double x = std::min(at - cell, 1.0);
+                const auto node = [&](int q) {
+                    return double(values[std::clamp(cell + q, 0, frequencies - 2) + 1]);
+                };
+                const double p = node(-1), q = node(0), r = node(1), s = node(2);
+                value = q + x / 2 * (r - p + x * (2 * p - 5 * q + 4 * r - s + x * (3 * (q - r) + s - p)));
+            }
+            value = std::exp(value);
+            for (int n = 0; n < 3; ++n) out.spectrum[j][n] += std::max(0.0, weight[n]) * value;
+        }
+    }
+    for (int n = 0; n < 3; ++n) {
+        out.freePath[n] /= light[n];
+        out.scattered[n] /= light[n];
+        // What is out of the gamut of sRGB counts as nothing.
+        out.albedo[n] = std::clamp(out.albedo[n], 1e-4, 1.0);
+        for (Rgb& value : out.spectrum) value[n] /= light[n];
+    }
+    return out;
+}
+
+struct Fit {
+    std::vector<GaussianTerm> gaussians;
+    Rgb error{}, meanDistance{};
+};
+
+// exp(-k^2 v / 2) of each Gaussian at each frequency, and the products of two Gaussians over all.
+struct Basis {
+    std::array<std::array<double, fitted>, terms> at;
+    std::array<std::array<double, terms>, terms> products{};
+    Basis() {
+        for (int i = 0; i < terms; ++i)
+            for (int j = 0; j < fitted; ++j)
+                at[i][j] = std::exp(-std::pow(fittedFrequency(j), 2) * variance(i) / 2);
+        for (int i = 0; i < terms; ++i)
+            for (int n = 0; n < terms; ++n)
+                for (int j = 0; j < fitted; ++j) products[i][n] += at[i][j] * at[n][j];
+    }
+};
+
+// Weights of 0 or more of fixed Gaussians, by cyclic descent on their squared error over the frequencies.
+Fit fit(const Computed& computed) {
+    static const Basis basis;
+    Fit out;
+    for (int i = 0; i < terms; ++i) out.gaussians.push_back({variance(i), {}});
+    for (int c = 0; c < 3; ++c) {
+        std::array<double, terms> weights{}, slope{};  // slope: of half the squared error
+        for (int i = 0; i < terms; ++i)
+            for (int j = 0; j < fitted; ++j) slope[i] -= basis.at[i][j] * computed.spectrum[j][c];
+        for (int sweep = 0; sweep < 200; ++sweep)
+            for (int i = 0; i < terms; ++i) {
+                const double next = std::max(0.0, weights[i] - slope[i] / basis.products[i][i]),
+                             change = next - weights[i];
+                weights[i] = next;
+                for (int n = 0; n < terms; ++n) slope[n] += change * basis.products[i][n];
+            }
+        double sum = 0;
+        for (double w : weights) sum += w;
+        for (int i = 0; i < terms; ++i) {
+            const double w = weights[i] / sum;
+            out.gaussians[i].weight[c] = w;
+            out.meanDistance[c] += w * std::sqrt(pi * variance(i) / 2);
+        }
+        for (int j = 0; j < fitted; ++j) {
+            double value = 0;
+            for (int i = 0; i < terms; ++i) value += out.gaussians[i].weight[c] * basis.at[i][j];
+            out.error[c] = std::max(out.error[c], std::abs(value - computed.spectrum[j][c]));
+        }
+    }
+    return out;
+}
+
+// ---- Maps
+
+// Tables over the square roots of melanin and blood, over their ranges, for one set of other fields.
+struct Maps {
+    static constexpr int fine = PEL_SKIN_SIDE, coarse = 17;
+    PelSkin skin;
+    std::vector<Rgb> logAlbedo, lab;  // fine
+    std::vector<double> logDistance;  // coarse: mean over the channels
+
+    static PelSkin at(PelSkin skin, double x, double y) {
+        skin.melanin = float(range::skin::melanin.max * x * x);
+        skin.blood = float(range::skin::blood.max * y * y);
+        return skin;
+    }
+    static double logDistanceOf(const PelSkin& skin) {
+        const Rgb d = fit(compute(skin, true)).meanDistance;
+        return (std::log(d[0]) + std::log(d[1]) + std::log(d[2])) / 3;
+    }
+    explicit Maps(const PelSkin& from)
+        : skin(from), logAlbedo(fine * fine), lab(fine * fine), logDistance(coarse * coarse) {
+        const auto each = [&](int side, const auto& work) {
+            inParts(size_t(side * side), partsOf(size_t(side * side), 64), [&](size_t, size_t i, size_t end) {
+                for (const double last = side - 1; i < end; ++i)
+                    work(i, at(skin, double(i % side) / last, double(i / side) / last));
+            });
+        };
+        each(fine, [&](size_t i, const PelSkin& here) {
+            const Rgb albedo = compute(here, false).albedo;
+            logAlbedo[i] = {std::log(albedo[0]), std::log(albedo[1]), std::log(albedo[2])};
+            lab[i] = labFromLinear(albedo);
+        });
+        each(coarse, [&](size_t i, const PelSkin& here) { logDistance[i] = logDistanceOf(here); });
+    }
+    // Of the skin used last: callers come with one picture in many pieces.
+    static std::shared_ptr<const Maps> of(PelSkin skin) {
+        static std::mutex mutex;
+        static std::shared_ptr<const Maps> last;
+        skin.melanin = skin.blood = 0;
+        const std::lock_guard lock(mutex);
+        if (!last || std::memcmp(&last->skin, &skin, sizeof skin) != 0) last = std::make_shared<Maps>(skin);
+        return last;
+    }
+};
+
+struct Place {  // in a table of `side` * `side`
+    size_t first;
+    double x, y;
+    Place(int side, double u, double v) {
+        const double a = u * (side - 1), b = v * (side - 1);
+        const int i = std::min(int(a), side - 2), j = std::min(int(b), side - 2);
+        first = size_t(j) * side + i;
+        x = a - i;
+        y = b - j;
+    }
+    double mix(double a, double b, double c, double d) const {
+        return (1 - y) * ((1 - x) * a + x * b) + y * ((1 - x) * c + x * d);
+    }
+};
+
+double distanceAt(const Maps& maps, double u, double v) {  // its logarithm
+    const Place p(Maps::coarse, u, v);
+    const double *a = &maps.logDistance[p.first], *b = a + Maps::coarse;
+    return p.mix(a[0], a[1], b[0], b[1]);
+}
+
+Rgb mixed(const std::vector<Rgb>& table, double u, double v) {
+    const Place p(Maps::fine, u, v);
+    const Rgb *a = &table[p.first], *b = a + Maps::fine;
+    return {p.mix(a[0][0], a[1][0], b[0][0], b[1][0]), p.mix(a[0][1], a[1][1], b[0][1], b[1][1]),
+            p.mix(a[0][2], a[1][2], b[0][2], b[1][2])};
+}
+
+}  // namespace
+
+PelSkin readSkin(const PelSkin* skin) {
+    constexpr const char* structure = "PelSkin";
+    const PelSkin fields = readStructOr(skin, pelSkinDefaults(), structure);
+    PEL_EACH_SKIN_FIELD(PEL_CHECK_RANGE)
+    return fields;
+}
+
+PelSkinInfo skinInfo(const PelSkin& skin) {
+    PelSkinInfo info = pelSkinInfoDefaults();
+    const Computed computed = compute(skin, true);
+    const Fit gaussians = fit(computed);
+    const Lab lab = labFromLinear(computed.albedo);
+    for (int c = 0; c < 3; ++c) {
+        info.albedo[c] = float(computed.albedo[c]);
+        info.meanFreePath[c] = float(computed.freePath[c]);
+        info.singleScatteringAlbedo[c] = float(computed.scattered[c]);
+        info.meanDistance[c] = float(gaussians.meanDistance[c]);
+        info.profileError[c] = float(gaussians.error[c]);
+        info.lab[c] = float(lab[c]);
+    }
+    info.typologyAngle = float(std::atan2(lab[0] - 50, lab[2]) * 180 / pi);
+    return info;
+}
+
+void skinReflectance(const PelSkin& skin, std::span<const float> nanometres, float* reflectance) {
+    const auto values = compute(skin, false).reflectance;
+    const float first = skinSpectra[0].nanometres, step = skinSpectra[1].nanometres - first;
+    for (size_t i = 0; i < nanometres.size(); ++i) {
+        const double at = (nanometres[i] - first) / step;
+        if (!(at >= 0 && at <= skinWavelengths - 1))
+            invalidArgument("wavelength ", i, " is ", nanometres[i], " nm; it must be from ", first, " to ",
+                            skinSpectra[skinWavelengths - 1].nanometres);
+        const int cell = std::min(int(at), skinWavelengths - 2);
+        reflectance[i] = float(values[cell] + (values[cell + 1] - values[cell]) * (at - cell));
+    }
+}
+
+Ref<Profile> skinLayersProfile(const PelSkin& skin) {
+    auto shape = std::make_unique<GaussianShape>(fit(compute(skin, true)).gaussians);
+    const Rgb width = shape->width();
+    auto profile =
+        make<Profile>(PEL_PROFILE_SKIN_LAYERS, std::max({width[0], width[1], width[2]}), std::move(shape));
+    profile->setPigments(skin);
+    return profile;
+}
+
+void skinAlbedo(const PelSkin& skin, const float* melanin, const float* blood, size_t count, float* albedo,
+                float* radius) {
+    const auto maps = Maps::of(skin);
+    const double own = radius ? Maps::logDistanceOf(skin) : 0;
+    const auto root = [](float value, float instead, const FieldRange& range) {
+        return std::sqrt(std::clamp(std::isnan(value) ? instead : value, range.min, range.max) / range.max);
+    };
+    for (size_t i = 0; i < count; ++i) {
+        const double u = root(melanin[i], skin.melanin, range::skin::melanin),
+                     v = root(blood[i], skin.blood, range::skin::blood);
+        if (albedo) {
+            const Rgb log = mixed(maps->logAlbedo, u, v);
+            for (int c = 0; c < 3; ++c) albedo[3 * i + c] = float(std::exp(log[c]));
+        }
+        if (radius) {
+            radius[i] = float(std::exp(distanceAt(*maps, u, v) - own));
+        }
+    }
+}
+
+std::vector<float> skinTable(const PelSkin& skin, int oxygenations) {
+    const double own = Maps::logDistanceOf(skin), last = Maps::fine - 1;
+    std::vector<float> table;
+    for (int o = 0; o < oxygenations; ++o) {
+        PelSkin at = skin;
+        if (oxygenations > 1) at.oxygenation = float(o) / float(oxygenations - 1);
+        const Maps maps(at);
+        for (int i = 0; i < Maps::fine * Maps::fine; ++i) {
+            for (const double log : maps.logAlbedo[size_t(i)]) table.push_back(float(std::exp(log / 2)));
+            const int row = i / Maps::fine, column = i % Maps::fine;
+            table.push_back(float(std::exp(distanceAt(maps, column / last, row / last) - own)));
+        }
+    }
+    return table;
+}
+
+void skinFromAlbedo(const PelSkin& skin, const float* albedo, size_t count, float* melanin, float* blood,
+                    float* difference) {
+    const auto maps = Maps::of(skin);
+    for (size_t i = 0; i < count; ++i) {
+        Rgb wanted;
+        for (int c = 0; c < 3; ++c) wanted[c] = std::clamp(albedo[3 * i + c], 0.0f, 1.0f);
+        for (double& value : wanted) value = std::isnan(value) ? 0 : value;
+        const Lab lab = labFromLinear(wanted);
+        // The nearest of a few nodes, then ever smaller steps in eight directions: by differences of
+        // lightness, chroma and hue in units of CIEDE2000 at the wanted colour, and in the end by CIEDE2000.
+        const double chroma = std::hypot(lab[1], lab[2]), l50 = (lab[0] - 50) * (lab[0] - 50),
+                     sL = 1 + 0.015 * l50 / std::sqrt(20 + l50), sC = 1 + 0.045 * chroma,
+                     sH = 1 + 0.015 * chroma;
+        const auto rough = [&](const Lab& other) {
+            const double l = other[0] - lab[0], a = other[1] - lab[1], b = other[2] - lab[2],
+                         c = std::hypot(other[1], other[2]) - chroma;
+            return std::pow(l / sL, 2) + std::pow(c / sC, 2) +
+                   std::max(0.0, a * a + b * b - c * c) / (sH * sH);
+        };
+        double u = 0, v = 0, best = INFINITY;
+        constexpr int last = Maps::fine - 1, every = 4;
+        for (int y = 0; y <= last; y += every)
+            for (int x = 0; x <= last; x += every)
+                if (const double e = rough(maps->lab[size_t(y) * Maps::fine + x]); e < best)
+                    best = e, u = double(x) / last, v = double(y) / last;
+        const auto descend = [&](double step, double end, const auto& error) {
+            best = error(mixed(maps->lab, u, v));
+            for (; step > end; step /= 2)
+                for (bool moved = true; moved;) {
+                    moved = false;
+                    const double fromU = u, fromV = v;
+                    for (int d = 0; d < 9; ++d) {
+                        const double x = std::clamp(fromU + (d % 3 - 1) * step, 0.0, 1.0),
+                                     y = std::clamp(fromV + (d / 3 - 1) * step, 0.0, 1.0);
+                        const double e = error(mixed(maps->lab, x, y));
+                        if (e < best) best = e, u = x, v = y, moved = true;
+                    }
+                }
+        };
+        descend(1.0 / 32, 1.0 / 2000, rough);
+        descend(1.0 / 512, 1e-4, [&](const Lab& other) { return deltaE2000(lab, other); });
+        const PelSkin found = Maps::at(skin, u, v);
+        melanin[i] = found.melanin;
+        blood[i] = found.blood;
+        if (difference) difference[i] = float(best);
+    }
+}
+
+}  // namespace pel

@@ -1,0 +1,208 @@
+// Programs that are built while the caller goes on (PelShaderOptions.buildInBackground), by other processes
+// where the driver is PoCL: what stands in, what takes over and when, and what goes wrong.
+#include <sys/wait.h>
+#include <unistd.h>
+#include "test.h"
+
+#include "shading/pass_scene.h"
+
+using namespace shade_test;
+using pellucid::Device;
+using pellucid::Shader;
+namespace fs = std::filesystem;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto patience = std::chrono::minutes(5);
+
+// No program of another process or run: PoCL's folder and the library's are new. Before OpenCL is used.
+struct NewCaches {
+    char folder[32] = "/tmp/pellucid-new-XXXXXX";
+    NewCaches() {
+        if (::mkdtemp(folder)) ::setenv("XDG_CACHE_HOME", folder, 1);
+        ::unsetenv("POCL_CACHE_DIR");
+        ::unsetenv("PELLUCID_CACHE_DIR");
+    }
+    ~NewCaches() { fs::remove_all(folder); }
+} caches;
+
+bool onPocl(const Device& on) {
+    return on.info().platform == std::string("Portable Computing Language");
+}
+
+// By tables that follow from the profile, and specular light: none of them are in what stands in.
+Frame tableFrame() {
+    Frame f = reliefFrame(1, 90, 40, 0.4f);
+    f.lights.resize(1);
+    f.lights[0].params.toLight[0] = 0.6f, f.lights[0].params.toLight[2] = 0.8f;
+    f.slots[PEL_SLOT_CURVATURE] = f.slots[PEL_SLOT_MATERIAL];
+    f.camera.position[2] = 300;
+    static const pellucid::Profile skin = pellucid::Profile::skin();
+    for (auto& [id, m] : f.materials) {
+        m = pelMaterialDefaults();
+        m.scattering = PEL_SCATTERING_PREINTEGRATED;
+        m.profile = skin.get();
+        m.specular = 0.3f * float(id);
+    }
+    f.options = pelShaderOptionsDefaults();
+    f.options.buildInBackground = 1;
+    return f;
+}
+
+Frame plain(Frame f) {
+    f.options.buildInBackground = 0;
+    for (auto& [id, m] : f.materials) {
+        m.scattering = PEL_SCATTERING_NONE;
+        m.specular = 0;
+    }
+    return f;
+}
+
+struct Running {
+    Shader shader;
+    Buffer target;
+    Running(const Device& on, const Frame& f) : shader(on) {
+        setFrame(on, shader, f, {});
+        target = setTarget(on, shader, f);
+    }
+    std::vector<float> picture() {
+        shader.execute();
+        return target.readAll<float>();
+    }
+    // Frame after frame until the method itself has shaded one.
+    std::vector<float> last(bool committing = false) {
+        const auto begin = Clock::now();
+        for (std::vector<float> seen;; std::this_thread::sleep_for(std::chrono::milliseconds(20))) {
+            if (committing) shader.commit();
+            seen = picture();
+            if (!shader.stats().standsIn) return seen;
+            if (Clock::now() - begin > patience) return {};
+        }
+    }
+};
+
+std::vector<float> waitedFor(const Device& on, Frame f) {
+    f.options.buildInBackground = 0;
+    return shade(on, f, {});
+}
+
+// Whether this process has children left.
+bool hasChildren() {
+    return ::waitpid(-1, nullptr, WNOHANG) >= 0 || errno != ECHILD;
+}
+
+TEST(Background, NoneStandsInUntilTheMethodTakesOver) {
+    const Device own("");
+    const Frame f = tableFrame();
+    Running running(own, f);
+    running.shader.commit();
+    PelShaderStats stats = running.shader.stats();
+    ASSERT_EQ(stats.standsIn, 1u);
+    EXPECT_FALSE(stats.features & (PEL_FEATURE_SPECULAR | PEL_FEATURE_DIRECT_SCATTER));
+    EXPECT_NE(running.shader.warnings().find("\"none\""), std::string::npos) << running.shader.warnings();
+    const auto first = running.picture();
+    const bool stood = running.shader.stats().standsIn;
+    const auto last = running.last();
+    stats = running.shader.stats();
+    EXPECT_EQ(stats.standsIn, 0u);
+    EXPECT_TRUE(stats.features & PEL_FEATURE_SPECULAR && stats.features & PEL_FEATURE_DIRECT_SCATTER);
+    EXPECT_EQ(running.shader.warnings().find("\"none\""), std::string::npos);
+    const auto truth = waitedFor(own, f), lambert = shade(own, plain(f), {});
+    EXPECT_EQ(last, truth);
+    EXPECT_TRUE(stood);
+    EXPECT_EQ(first, lambert);
+    EXPECT_NE(first, last);
+    // Now that all is in memory nothing stands in, and on disk for other devices as well.
+    Running again(own, f);
+    again.shader.commit();
+    EXPECT_EQ(again.shader.stats().standsIn, 0u);
+    EXPECT_EQ(again.picture(), truth);
+    const Device other("");
+    if (!onPocl(other)) return;
+    Running there(other, f);
+    there.shader.commit();
+    EXPECT_EQ(there.shader.stats().standsIn, 0u);
+    EXPECT_EQ(there.picture(), truth);
+}
+
+// In these, PoCL has compiled the programs before, but this library kept none.
+class BackgroundAgain : public testing::Test {
+  protected:
+    void set(const char* name, const std::string& value) { ::setenv(name, value.c_str(), 1); }
+    void SetUp() override { set("PELLUCID_CACHE", "off"); }
+    void TearDown() override {
+        for (const char* name : {"PELLUCID_CACHE", "PELLUCID_CACHE_DIR", "PELLUCID_BUILD_HELPER"})
+            ::unsetenv(name);
+    }
+    void expectTakeover() const {
+        const Device own("");
+        const Frame f = tableFrame();
+        Running running(own, f);
+        running.shader.commit();
+        EXPECT_EQ(running.shader.stats().standsIn, 1u);
+        EXPECT_EQ(running.last(), waitedFor(own, f));
+    }
+};
+
+TEST_F(BackgroundAgain, WithoutHelpersThisProcessBuilds) {
+    for (const char* program : {"off", "/no/such/program", "/bin/false"}) {
+        SCOPED_TRACE(program);
+        set("PELLUCID_BUILD_HELPER", program);
+        expectTakeover();
+    }
+}
+
+TEST_F(BackgroundAgain, AFolderThatCannotBeWrittenIsNoError) {
+    ::unsetenv("PELLUCID_CACHE");
+    set("PELLUCID_CACHE_DIR", "/proc/no-folder");
+    expectTakeover();
+}
+
+TEST_F(BackgroundAgain, SettingsMayChangeMeanwhile) {
+    const Device own("");
+    Frame f = tableFrame();
+    Running running(own, f);
+    running.shader.commit();
+    for (auto& [id, m] : f.materials) m.albedo[0] = 0.2f;
+    f.lights[0].params.color[1] = 0.3f;
+    setFrame(own, running.shader, f, {});
+    EXPECT_THROW(running.picture(), pellucid::Error) << "not committed";
+    running.shader.commit();
+    EXPECT_EQ(running.last(true), waitedFor(own, f));
+    // Other programs: built in turn.
+    f.options.blurNormals = 1;
+    setFrame(own, running.shader, f, {});
+    running.shader.commit();
+    EXPECT_EQ(running.shader.stats().standsIn, 1u);
+    EXPECT_EQ(running.last(), waitedFor(own, f));
+}
+
+TEST_F(BackgroundAgain, EndsWithItsShader) {
+    const Frame f = tableFrame();
+    {
+        const Device own("");
+        Running running(own, f);
+        running.shader.commit();
+    }
+    EXPECT_FALSE(hasChildren());
+    const Device own("");
+    Running running(own, f);
+    running.shader.commit();
+    PelShaderOptions options = f.options;
+    options.buildInBackground = 0;  // from now on it waits
+    running.shader.set(options).commit();
+    EXPECT_EQ(running.shader.stats().standsIn, 0u);
+    EXPECT_EQ(running.picture(), waitedFor(own, f));
+    EXPECT_FALSE(hasChildren());
+}
+
+TEST_F(BackgroundAgain, RefusesWhatACommitRefuses) {
+    const Device own("");
+    Frame f = tableFrame();
+    Running running(own, f);
+    running.shader.clear(PEL_SLOT_NORMAL_SHADING);
+    expectRefused("shading normal image is needed", [&] { running.shader.commit(); });
+}
+
+}  // namespace

@@ -1,0 +1,154 @@
+// PelShaderOptions.timeBudget: what auto takes by a record of the device, and damaged records.
+#include "diffusion/lit_scenes.h"
+#include "test.h"
+
+using namespace lit_scenes;
+
+namespace {
+
+struct Row {
+    const char* name;
+    PelScattering method;
+    double target, perPixel, perFrame, error;
+};
+constexpr Row rows[] = {{"none", PEL_SCATTERING_NONE, 0, 0, 1, 0.05},
+                        {"preintegrated", PEL_SCATTERING_PREINTEGRATED, 0, 20, 1, 0.03},
+                        {"auto", PEL_SCATTERING_AUTO, 0.02, 60, 2, 0.012},
+                        {"auto", PEL_SCATTERING_AUTO, 0.004, 100, 2, 0.010},
+                        {"auto", PEL_SCATTERING_AUTO, 0.003, 150, 2, 0.0099},  // no nearer to speak of
+                        {"light", PEL_SCATTERING_LIGHT, 0, 4000, 5, 0.004}};
+
+class TimeBudget : public ::testing::Test {
+  protected:
+    void SetUp() override { ::setenv("PELLUCID_TUNING", path_.c_str(), 1); }
+    void TearDown() override {
+        ::unsetenv("PELLUCID_TUNING");
+        std::remove(path_.c_str());
+    }
+    void write(const std::string& text) { std::ofstream(path_, std::ios::binary) << text; }
+    void writeRecord(const std::string& device) {
+        std::string text = "pellucid tuning 1\r\n\n# for a test\ndevice another, one\nauto 0 0 0 0\n";
+        text += "device " + device + "\n";
+        for (const Row& r : rows) {
+            char line[128];
+            std::snprintf(line, sizeof line, "%s %g %g %g %g\n", r.name, r.target, r.perPixel, r.perFrame,
+                          r.error);
+            text += line;
+        }
+        write(text);
+    }
+    Shot shot(const LitScene& scene, PelScattering method, float target, float budget = 0) {
+        ShadeRequest request;
+        request.scattering = method, request.targetError = target, request.timeBudget = budget;
+        return shoot(scatter_scene::device(), scene, profile_, 1, request);
+    }
+    LitScene scene(double ambient = 0) {
+        SceneRequest request;
+        request.size = 64, request.mapSize = 128, request.ambient = ambient;
+        return Stage(scatter_scene::device(), ball(10, 60), 1).look(request, profile_);
+    }
+    const std::string path_ = (std::filesystem::temp_directory_path() /
+                               ("pellucid-tuning-" + std::to_string(::getpid()) + ".txt"))
+                                  .string(),
+                      device_ = std::string(scatter_scene::device().info().name) + ", " +
+                                scatter_scene::device().info().platform;
+    const Profile profile_ = Profile::skin();
+};
+
+}  // namespace
+
+TEST_F(TimeBudget, TakesWhatIsNearestToLightOfWhatFits) {
+    writeRecord(device_);
+    const LitScene lit = scene();
+    const double skin = double(lit.places.size()), frame = double(lit.width) * lit.height;
+    ASSERT_GT(skin, 0.2 * frame);
+    ASSERT_LT(skin, 0.9 * frame);
+    const auto expected = [&](const Row& r, double pixels) {
+        return 1e-6 * (r.perPixel * pixels + r.perFrame * frame);
+    };
+    for (const Row& r : rows) {
+        SCOPED_TRACE(r.name + std::to_string(r.target));
+        const Row& taken = r.target == 0.003 ? rows[3] : r;
+        const Shot by = shot(lit, PEL_SCATTERING_AUTO, 0.003f, float(1.001 * expected(r, skin)));
+        EXPECT_NEAR(by.stats.expectedMilliseconds, expected(taken, skin), 1e-9);
+        EXPECT_EQ(by.stats.expectedError, taken.error);
+        EXPECT_EQ(by.stats.takenTargetError, taken.target > 0 ? float(taken.target) : 0.003f);
+        EXPECT_EQ(by.stats.tuned, 1u);
+        const auto as = taken.method == PEL_SCATTERING_AUTO ? PEL_SCATTERING_SCREEN : taken.method;
+        EXPECT_EQ(by.shader.material(1).scattering, as);
+        EXPECT_EQ(by.light, shot(lit, taken.method, float(by.stats.takenTargetError)).light);
+        EXPECT_EQ(by.shader.warnings(), "");
+    }
+    const Shot short_ = shot(lit, PEL_SCATTERING_AUTO, 0.003f, 1e-6f);
+    EXPECT_EQ(short_.stats.pixelsByChoice[PEL_SCATTERING_NONE], lit.places.size());
+    EXPECT_NE(short_.shader.warnings().find("timeBudget is 1e-06"), std::string::npos)
+        << short_.shader.warnings();
+    // Errors below targetError are not aimed at; maps do not hold ambient light.
+    const auto least = [&](const LitScene& s) { return shot(s, PEL_SCATTERING_AUTO, 0.05f, 1e3f).stats; };
+    EXPECT_EQ(least(lit).expectedError, rows[5].error);
+    const PelShaderStats around = least(scene(0.2));
+    EXPECT_EQ(around.expectedError, rows[3].error);
+    EXPECT_EQ(around.takenTargetError, 0.05f);
+    // The frame is not drawn yet.
+    LitScene empty = lit;
+    std::ranges::fill(empty.gbuffer.material, uint8_t(0));
+    EXPECT_NEAR(shot(empty, PEL_SCATTERING_AUTO, 0.003f, 1e3f).stats.expectedMilliseconds,
+                expected(rows[5], frame), 1e-9);
+    // Other methods, and no budget.
+    for (const PelShaderStats& stats : {shot(lit, PEL_SCATTERING_SCREEN, 0.003f, 1e-6f).stats,
+                                        shot(lit, PEL_SCATTERING_AUTO, 0.003f).stats}) {
+        EXPECT_EQ(stats.expectedMilliseconds, 0);
+        EXPECT_EQ(stats.takenTargetError, 0);
+        EXPECT_GT(stats.pixelsScattered, 0u);
+    }
+}
+
+TEST_F(TimeBudget, GuessesWithoutARecord) {
+    const LitScene lit = scene();
+    double last = INFINITY;
+    for (const float budget : {1e-6f, 1e6f}) {
+        writeRecord("a device that is not here");
+        const PelShaderStats of = shot(lit, PEL_SCATTERING_AUTO, 0.002f, budget).stats;
+        EXPECT_EQ(of.tuned, 0u);
+        EXPECT_LT(of.expectedError, last);
+        last = of.expectedError;
+        ::unsetenv("PELLUCID_TUNING");
+        EXPECT_EQ(shot(lit, PEL_SCATTERING_AUTO, 0.002f, budget).stats.expectedError, last);
+        SetUp();
+    }
+}
+
+TEST_F(TimeBudget, RefusesDamagedRecordsByName) {
+    const std::string head = "pellucid tuning 1\ndevice " + device_ + "\n";
+    const struct {
+        std::string text;
+        const char* said;
+    } bad[] = {{"", "cannot be read"},
+               {"pellucid tuning 2\n", "line 1: \"pellucid tuning 1\" must be here"},
+               {std::string(64, '\0'), "line 1"},
+               {head + "auto 0.1 1\n", "line 3: a method and four numbers"},
+               {head + "auto 0.1 1 1 0.1 7\n", "line 3: a method and four numbers"},
+               {head + "auto nan 1 1 0.1\n", "line 3: a method and four numbers"},
+               {head + "auto 0.1 1e999 1 0.1\n", "line 3: a method and four numbers"},
+               {head + "auto 0.1 -1 1 0.1\n", "line 3: -1 is not between"},
+               {head + "auto 2 1 1 0.1\n", "line 3: errors are shares"},
+               {head + "\n\nsmooth 0 1 1 0.1\n", "line 5: \"smooth\" is none of"},
+               {head + "texture 0 1 1 0.1\n", "\"texture\" is none of"},
+               {std::string((1 << 20) + 1, '#'), "more than 1048576 bytes"},
+               {[&] {
+                    std::string many = head;
+                    for (int i = 0; i < 65; ++i) many += "none 0 0 0 0.1\n";
+                    return many;
+                }(),
+                "more than 64 settings"}};
+    const LitScene lit = scene();
+    for (const auto& [text, said] : bad) {
+        write(text);
+        expectRefused({"PELLUCID_TUNING: ", path_.c_str(), said},
+                      [&] { shot(lit, PEL_SCATTERING_AUTO, 0.002f, 1); });
+        shot(lit, PEL_SCATTERING_AUTO, 0.002f);  // without a budget nobody reads it
+    }
+    for (const float budget : {NAN, -1.0f, INFINITY})
+        expectRefused({"PelShaderOptions.timeBudget"},
+                      [&] { shot(lit, PEL_SCATTERING_AUTO, 0.002f, budget); });
+}

@@ -1,0 +1,211 @@
+// Skin by what it is made of, against random walks in its layers and against measured colours of skin.
+#include "test.h"
+
+#include "fields/color_difference.h"
+#include "fields/field_ranges.h"
+#include "reference/skin_walk.h"
+
+namespace {
+
+using pellucid::skinInfo;
+
+PelSkin skinOf(const reference::WalkedSkin& s) {
+    PelSkin skin = pelSkinDefaults();
+    skin.melanin = float(s.melanin);
+    skin.eumelanin = float(s.eumelanin);
+    skin.blood = float(s.blood);
+    skin.oxygenation = float(s.oxygenation);
+    skin.epidermis = float(s.epidermis);
+    skin.scattering = float(s.scattering);
+    skin.scatteringPower = float(s.scatteringPower);
+    skin.water = 0;
+    return skin;
+}
+
+float reflectance(const PelSkin& skin, float nanometres) {
+    float value = -1;
+    pellucid::check(pelSkinReflectance(&skin, &nanometres, 1, &value));
+    return value;
+}
+
+// Pale, brown and very dark; bloodless and as bloody as can be; thin and thick.
+constexpr reference::WalkedSkin skins[] = {
+    {0.01, 1, 0.002, 0.75, 0.06, 4.6, 1.421}, {0.1, 0.5, 0.02, 0.75, 0.06, 4.6, 1.421},
+    {0.4, 1, 0.02, 0.5, 0.06, 4.6, 1.421},    {0, 1, 0.2, 1, 0.02, 2, 0.5},
+    {0.02, 0, 0.05, 0.9, 0.4, 7, 1.5},        {0.5, 1, 0, 0, 0.5, 10, 2.5}};
+
+TEST(Skin, ReflectsWhatARandomWalkDoes) {
+    for (const auto& s : skins)
+        for (const int nm : {390, 420, 500, 540, 580, 630, 720}) {
+            const auto walk = reference::walkSkin(reference::layersOf(s, nm), 1.4, 20000, 7);
+            EXPECT_NEAR(reflectance(skinOf(s), float(nm)), walk.reflectance,
+                        tolerance::skinReflectance + 3 * walk.error)
+                << nm << " nm, melanin " << s.melanin << ", blood " << s.blood;
+        }
+}
+
+TEST(Skin, ChannelsAndDistancesAreThoseOfARandomWalk) {
+    for (const auto& s : {skins[0], skins[1], skins[4]}) {
+        const auto walk = reference::walkChannels(s, 6000);
+        const PelSkinInfo info = skinInfo(skinOf(s));
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR(info.albedo[c], walk.albedo[c], tolerance::skinAlbedo) << c << ", " << s.melanin;
+            EXPECT_NEAR(info.meanDistance[c] / walk.meanDistance[c], 1, tolerance::skinDistance)
+                << c << ", melanin " << s.melanin;
+            EXPECT_LT(info.profileError[c], tolerance::skinProfile);
+        }
+    }
+}
+
+TEST(Skin, MoreMelaninOrBloodIsDarker) {
+    PelSkin skin = pelSkinDefaults();
+    float before[2][9];
+    for (auto& row : before) std::fill(row, row + 9, 1.0f);
+    for (int i = 0; i <= 40; ++i)
+        for (const int which : {0, 1}) {
+            skin = pelSkinDefaults();
+            (which ? skin.blood : skin.melanin) = float(i) / 40 * (which ? 0.2f : 0.5f);
+            const PelSkinInfo info = skinInfo(skin);
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_GT(info.albedo[c], 0);
+                EXPECT_LT(info.albedo[c], before[which][c]) << which << ' ' << i << ' ' << c;
+                before[which][c] = info.albedo[c];
+            }
+        }
+}
+
+// Without pigment skin sends back most of what its surface lets in (94 %), and more where it scatters more.
+TEST(Skin, NoLightIsMade) {
+    PelSkin skin = pelSkinDefaults();
+    skin.melanin = skin.blood = skin.water = 0;
+    float before = 0;
+    for (const float scattering : {2.0f, 4.0f, 7.0f, 10.0f}) {
+        skin.scattering = scattering;
+        const float r = reflectance(skin, 720);
+        EXPECT_GT(r, before);
+        EXPECT_LT(r, 0.94f);
+        before = r;
+    }
+    EXPECT_GT(before, 0.6f);  // what bare tissue absorbs is missing
+}
+
+TEST(Skin, OxygenatedBloodShowsItsTwoBands) {
+    PelSkin skin = pelSkinDefaults();
+    skin.oxygenation = 1;
+    EXPECT_LT(reflectance(skin, 540), reflectance(skin, 520));
+    EXPECT_LT(reflectance(skin, 540), reflectance(skin, 560));
+    EXPECT_LT(reflectance(skin, 575), reflectance(skin, 560));
+    EXPECT_LT(reflectance(skin, 575), reflectance(skin, 600));
+    skin.oxygenation = 0;  // one band, at 555 nm
+    EXPECT_LT(reflectance(skin, 555), reflectance(skin, 540));
+    EXPECT_LT(reflectance(skin, 555), reflectance(skin, 575));
+}
+
+TEST(Skin, MapsComeBack) {
+    std::vector<float> melanin, blood;
+    for (int i = 0; i <= 12; ++i)
+        for (int j = 0; j <= 12; ++j) {
+            melanin.push_back(0.5f * float(i * i) / 144);
+            blood.push_back(0.2f * float(j * j) / 144);
+        }
+    const PelSkin skin = pelSkinDefaults();
+    const size_t n = melanin.size();
+    std::vector<float> albedo(3 * n), radius(n), m(n), b(n), difference(n);
+    pellucid::check(pelSkinAlbedo(&skin, melanin.data(), blood.data(), n, albedo.data(), radius.data()));
+    pellucid::check(pelSkinFromAlbedo(&skin, albedo.data(), n, m.data(), b.data(), difference.data()));
+    for (size_t i = 0; i < n; ++i) {
+        EXPECT_LT(difference[i], tolerance::skinRoundTrip) << melanin[i] << ' ' << blood[i];
+        // The table is between its nodes what skin is.
+        PelSkin exact = skin;
+        exact.melanin = melanin[i];
+        exact.blood = blood[i];
+        const PelSkinInfo info = skinInfo(exact);
+        const auto lab = [](const float* rgb) { return pel::labFromLinear({rgb[0], rgb[1], rgb[2]}); };
+        EXPECT_LT(pel::deltaE2000(lab(info.albedo), lab(&albedo[3 * i])), tolerance::skinRoundTrip);
+        EXPECT_GT(radius[i], 0);
+    }
+    const float green[] = {0.1f, 0.6f, 0.1f}, nothing[] = {NAN, -1, 2};
+    pellucid::check(pelSkinFromAlbedo(&skin, green, 1, m.data(), b.data(), difference.data()));
+    EXPECT_GT(difference[0], 10);  // no such skin
+    pellucid::check(pelSkinFromAlbedo(&skin, nothing, 1, m.data(), b.data(), difference.data()));
+    EXPECT_TRUE(std::isfinite(m[0]) && std::isfinite(b[0]) && std::isfinite(difference[0]));
+}
+
+// Mean L*a*b* under D65. Cheeks and inner arms of Caucasian, Chinese, Kurdish and Thai people: Xiao et al.,
+// Characterising the variations in ethnic skin colours, Skin Research and Technology 23, 2017. Indian and
+// African upper and lower arms: Alaluf et al., Ethnic variation in melanin content and composition, Pigment
+// Cell Research 15, 2002 (10 degree observer).
+TEST(Skin, HasTheColoursOfMeasuredSkin) {
+    const pel::Lab measured[] = {{59.6, 11.8, 14.6}, {63.0, 5.6, 14.0},     {58.9, 11.4, 14.2},
+                                 {60.9, 7.0, 15.0},  {58.0, 11.7, 15.8},    {60.6, 6.5, 16.4},
+                                 {60.7, 10.5, 17.2}, {61.9, 7.1, 17.4},     {53.7, 10.3, 17.9},
+                                 {49.2, 10.2, 18.4}, {43.71, 12.89, 17.15}, {38.14, 12.66, 15.04}};
+    const PelSkin skin = pelSkinDefaults();
+    for (const pel::Lab& lab : measured) {
+        const double y = (lab[0] + 16) / 116, all[] = {y + lab[1] / 500, y, y - lab[2] / 200};
+        double xyz[3];
+        for (int i = 0; i < 3; ++i)
+            xyz[i] = (i == 0   ? 0.95047
+                      : i == 1 ? 1
+                               : 1.08883) *
+                     (all[i] > 6.0 / 29 ? std::pow(all[i], 3) : 108.0 / 841 * (all[i] - 4.0 / 29));
+        const float rgb[] = {float(3.2404542 * xyz[0] - 1.5371385 * xyz[1] - 0.4985314 * xyz[2]),
+                             float(-0.969266 * xyz[0] + 1.8760108 * xyz[1] + 0.041556 * xyz[2]),
+                             float(0.0556434 * xyz[0] - 0.2040259 * xyz[1] + 1.0572252 * xyz[2])};
+        float melanin, blood, difference;
+        pellucid::check(pelSkinFromAlbedo(&skin, rgb, 1, &melanin, &blood, &difference));
+        EXPECT_LT(difference, tolerance::skinMeasured)
+            << "L* " << lab[0] << ": melanin " << melanin << ", blood " << blood;
+    }
+}
+
+// The classes of skin colour by their angles: Chardon, Cretois, Hourseau 1991.
+TEST(Skin, ReachesAllClassesOfColour) {
+    PelSkin skin = pelSkinDefaults();
+    skin.blood = 0.005f;
+    skin.melanin = 0.005f;
+    EXPECT_GT(skinInfo(skin).typologyAngle, 55);  // very light
+    skin.melanin = 0.4f;
+    EXPECT_LT(skinInfo(skin).typologyAngle, -30);  // dark
+}
+
+TEST(Skin, RefusesWhatIsOutOfRangeByName) {
+    PelSkinInfo info = pelSkinInfoDefaults();
+    const auto refused = [&](PelSkin skin, const char* name) {
+        EXPECT_EQ(pelSkinGetInfo(&skin, &info), PEL_ERROR_INVALID_ARGUMENT) << name;
+        EXPECT_NE(std::string(pelGetErrorMessage()).find("PelSkin." + std::string(name)), std::string::npos)
+            << pelGetErrorMessage();
+    };
+#define CHECK(type, name, value, min, max, ...)                                                     \
+    for (const float bad : {std::nextafter(float(min), -1.0f), std::nextafter(float(max), 1e9f),    \
+                            std::numeric_limits<float>::quiet_NaN(), INFINITY}) {                   \
+        PelSkin skin = pelSkinDefaults();                                                           \
+        skin.name = bad;                                                                            \
+        refused(skin, #name);                                                                       \
+    }                                                                                               \
+    for (const float extreme : {float(min), float(max)}) {                                          \
+        PelSkin skin = pelSkinDefaults();                                                           \
+        skin.name = extreme;                                                                        \
+        const PelSkinInfo finite = skinInfo(skin);                                                  \
+        for (int c = 0; c < 3; ++c)                                                                 \
+            EXPECT_TRUE(finite.albedo[c] > 0 && finite.albedo[c] < 1 && finite.meanDistance[c] > 0) \
+                << #name;                                                                           \
+    }
+    PEL_EACH_SKIN_FIELD(CHECK)
+#undef CHECK
+    const PelSkin skin = pelSkinDefaults();
+    const float beyond = 721;
+    float value;
+    EXPECT_EQ(pelSkinReflectance(&skin, &beyond, 1, &value), PEL_ERROR_INVALID_ARGUMENT);
+}
+
+TEST(Skin, IsAProfile) {
+    const pellucid::Profile profile = pellucid::Profile::skinLayers(pelSkinDefaults());
+    const PelProfileInfo info = profile.info();
+    EXPECT_EQ(info.kind, PEL_PROFILE_SKIN_LAYERS);
+    EXPECT_GT(info.width[0], info.width[1]);
+    EXPECT_GT(info.width[1], info.width[2]);
+    for (const double value : profile.radial({0.01, 0.1, 1, 5})) EXPECT_GE(value, 0);
+}
+
+}  // namespace

@@ -1,0 +1,31 @@
+// What all tests use beside tools.h: tolerances and refusals.
+#pragma once
+#include <gtest/gtest.h>
+
+#include "tolerances.h"
+#include "tools.h"
+
+// `call` returns an error or throws one; its message holds all of `words`.
+template <class Call>
+void expectRefused(const std::vector<const char*>& words, const Call& call,
+                   PelError expected = PEL_ERROR_INVALID_ARGUMENT) {
+    PelError code = PEL_SUCCESS;
+    if constexpr (std::is_same_v<std::invoke_result_t<Call>, PelError>) {
+        code = call();
+    } else {
+        try {
+            call();
+        } catch (const pellucid::Error& e) {
+            code = e.code();
+        }
+    }
+    const std::string message = code == PEL_SUCCESS ? "no error" : pelGetErrorMessage();
+    EXPECT_EQ(code, expected) << message;
+    for (const char* word : words)
+        EXPECT_NE(message.find(word), std::string::npos) << '"' << word << "\" in: " << message;
+}
+
+template <class Call>
+void expectRefused(const char* word, const Call& call) {
+    expectRefused(std::vector{word}, call);
+}
