@@ -211,7 +211,7 @@ TEST_F(BatchCommand, KilledAtAnyMomentLosesWhatWasInFlight) {
     for (int round = 0; round < 5; ++round) {
         random = random * 1664525 + 1013904223;  // [Numerical Recipes]
         const size_t before = files().size(), left = files(true).size(), enough = before + (random >> 26);
-        const pid_t child = fork();
+        const pid_t child = ::fork();
         if (child == 0) {
             if (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr)) _exit(1);
             execl(PELLUCID_COMMAND, PELLUCID_COMMAND, "batch", path("m.toml").c_str(), "-j",
@@ -219,7 +219,8 @@ TEST_F(BatchCommand, KilledAtAnyMomentLosesWhatWasInFlight) {
             _exit(1);
         }
         int status = 0;
-        while (files().size() <= enough && waitpid(child, &status, WNOHANG) == 0) {}
+        while (files().size() <= enough && waitpid(child, &status, WNOHANG) == 0) {
+        }
         kill(child, SIGKILL);
         waitpid(child, &status, 0);
         EXPECT_TRUE(WIFSIGNALED(status)) << "round " << round << " ended before it was killed";
