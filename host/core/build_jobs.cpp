@@ -4,6 +4,8 @@
 #include <exception>
 #include <thread>
 
+#include "cl/kernel_files.h"
+
 namespace pel {
 namespace {
 
@@ -28,6 +30,14 @@ unsigned buildersFor(const Device& device, uint32_t threads) {
     if (threads) return threads;
     const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
     return platform == "Portable Computing Language" ? std::min(cores, mostHelpers) : cores;
+}
+
+void addProgramJobs(const Ref<Device>& device, std::vector<cl::ProgramKey> keys, BuildJobs& jobs) {
+    std::ranges::stable_sort(keys, std::ranges::greater(),
+                             [](const cl::ProgramKey& key) { return cl::kernelSource(key.files).size(); });
+    for (auto key = keys.begin(); key != keys.end(); ++key)
+        if (std::find(keys.begin(), key, *key) == key)
+            jobs.push_back([device, key = *key] { device->programs().get(key); });
 }
 
 void runJobs(Device& device, const BuildJobs& jobs, unsigned threads, cl::BuildHelpers& helpers,

@@ -253,8 +253,7 @@ void Scatter::addBuildJobs(const PelScatterParams& params, const ScatterImages& 
                             small(images.ids), small(images.out)};
     std::vector<cl::ProgramKey> keys;
     copy->run(params, all, &keys);
-    for (cl::ProgramKey& key : keys)
-        jobs.push_back([device = device_, key = std::move(key)] { device->programs().get(key); });
+    addProgramJobs(device_, std::move(keys), jobs);
     jobs.push_back([copy, params, all] {
         copy->execute(params, all);
         copy->device_->finish();

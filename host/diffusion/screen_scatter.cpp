@@ -26,7 +26,7 @@ namespace {
 // Samples of sums by levels are nearer than the light that they stand for, so that they gain less.
 constexpr double nearerByLevels = 0.925;
 
-enum Program { PIXELS, CLASSIFY };
+enum Program { PYRAMIDS, SUMS, CLASSIFY };
 }  // namespace
 
 void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
@@ -153,70 +153,74 @@ void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const
 std::vector<cl::ProgramKey> ScreenScatter::programs(const ScatterImages& images) const {
     const uint32_t lanes = device_->info().mathWidth;
     const auto code = [&](const ImageView& view) { return formatCode(view, lanes); };
-    cl::ProgramKey pixels{{"diffusion/surface.cl", "diffusion/reduce.cl", "diffusion/scatter_level.cl",
-                           "diffusion/scatter_screen.cl"},
-                          {{"PEL_FORMAT_IRRADIANCE", code(images.irradiance)},
-                           {"PEL_FORMAT_POSITION", code(images.positions)},
-                           {"PEL_FORMAT_DEPTH", images.positions ? 0 : code(images.depth)},
-                           {"PEL_FORMAT_MATERIAL", code(images.ids)},
-                           {"PEL_FORMAT_OUT", code(images.out)},
-                           {"PEL_FORMAT_MEAN_CURVATURE", code(images.curvature)},
-                           {"PEL_HIDDEN", int(fillsHidden())}}};
+    // Two that take about as long to build, so that two processes share the work.
+    cl::ProgramKey pyramids{{"diffusion/surface.cl", "diffusion/reduce.cl"},
+                            {{"PEL_FORMAT_IRRADIANCE", code(images.irradiance)},
+                             {"PEL_FORMAT_POSITION", code(images.positions)},
+                             {"PEL_FORMAT_DEPTH", images.positions ? 0 : code(images.depth)},
+                             {"PEL_FORMAT_MATERIAL", code(images.ids)},
+                             {"PEL_FORMAT_OUT", code(images.out)},
+                             {"PEL_FORMAT_MEAN_CURVATURE", code(images.curvature)},
+                             {"PEL_HIDDEN", int(fillsHidden())}}};
     cl::ProgramKey classify{{"diffusion/classify_scatter.cl"}, {{"PEL_WIDTH", 1}}};
     if (images.radii) {
-        pixels.defines["PEL_FORMAT_RADIUS"] = code(images.radii);
-        pixels.defines["PEL_RADIUS_COMPONENT"] = images.radiusComponent;
-        for (cl::ProgramKey* key : {&pixels, &classify}) key->defines["PEL_RADII"] = 1;
+        pyramids.defines["PEL_FORMAT_RADIUS"] = code(images.radii);
+        pyramids.defines["PEL_RADIUS_COMPONENT"] = images.radiusComponent;
+        for (cl::ProgramKey* key : {&pyramids, &classify}) key->defines["PEL_RADII"] = 1;
     }
-    if (!light_.empty()) light_.addFiles(pixels);
-    return {std::move(pixels), std::move(classify)};
+    cl::ProgramKey sums{{"diffusion/scatter_level.cl", "diffusion/scatter_screen.cl"}, pyramids.defines};
+    if (!light_.empty()) light_.addFiles(pyramids);
+    return {std::move(pyramids), std::move(sums), std::move(classify)};
 }
 
 void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>& events) {
     std::vector<cl::Program> programs;
     for (const cl::ProgramKey& key : this->programs(images)) programs.push_back(device_->programs().get(key));
-    const ScreenMemory screen = memory(programs[PIXELS]);
-    const auto launch = [&](const char* kernel, const cl::Range& range, const auto&... values) {
-        device_->launch(events, programs[PIXELS], kernel, range, constants_, values...);
+    const ScreenMemory screen = memory(programs[PYRAMIDS]);
+    const auto launch = [&](Program program, const char* kernel, const cl::Range& range,
+                            const auto&... values) {
+        device_->launch(events, programs[program], kernel, range, constants_, values...);
     };
     device_->fill(counters_.get(), 0, PEL_LIGHT_COUNTERS * sizeof(cl_uint), 0);
     const cl::Range pixels = vectorRange(*device_, frame_.width, frame_.height);
-    launch("surface_points", pixels, images.irradiance, images.positions ? images.positions : images.depth,
-           images.ids, images.curvature, images.radii, pyramid_, counters_);
-    launch("surface_areas", pixels, pyramid_);
+    launch(PYRAMIDS, "surface_points", pixels, images.irradiance,
+           images.positions ? images.positions : images.depth, images.ids, images.curvature, images.radii,
+           pyramid_, counters_);
+    launch(PYRAMIDS, "surface_areas", pixels, pyramid_);
     for (uint32_t k = 1, count; k < frame_.levels; k += count) {
         count = levelsPerLaunch(*device_, frame_.levels - k);
-        launch("reduce_surface", blockRange(*device_, frame_.level[k].width, frame_.level[k].height, count),
-               pyramid_, k, count);
+        launch(PYRAMIDS, "reduce_surface",
+               blockRange(*device_, frame_.level[k].width, frame_.level[k].height, count), pyramid_, k,
+               count);
     }
     const bool byLevels = device_->info().mathWidth > 1;  // a launch each
     size_t blocks = 0;
     for (uint32_t k = 1; k < frame_.levels; ++k)
         blocks += size_t(frame_.level[k].width) * frame_.level[k].height;
-    if (!byLevels) launch("surface_differences", itemRange(*device_, blocks), pyramid_);
+    if (!byLevels) launch(PYRAMIDS, "surface_differences", itemRange(*device_, blocks), pyramid_);
     const size_t tiles = size_t(frame_.tilesX) * frame_.tilesY;
-    device_->launch(events, programs[CLASSIFY], "classify_scatter", itemRange(*device_, tiles), constants_,
-                    pyramid_, tables_, nodes_, tiles_, counters_);
+    launch(CLASSIFY, "classify_scatter", itemRange(*device_, tiles), pyramid_, tables_, nodes_, tiles_,
+           counters_);
     if (!light_.empty()) light_.enqueuePyramids(images, screen, events);
     // With the texels only, the screen's last step just copies.
     const bool alone = !light_.empty() && lights_.alone;
     if (alone) device_->fill(tiles_.memory().get(), 0, tiles_.bytes(), 0);
     if (!alone && !byLevels) {
-        launch("scatter_bands", itemRange(*device_, blocks), pyramid_, tables_, nodes_, tiles_, sums_,
+        launch(SUMS, "scatter_bands", itemRange(*device_, blocks), pyramid_, tables_, nodes_, tiles_, sums_,
                counters_);
         constexpr uint32_t side = 16;  // blocks of level 1 along that of a group's
-        launch("scatter_sums",
+        launch(SUMS, "scatter_sums",
                groupRange(*device_, size_t((frame_.level[1].width + side - 1) / side) *
                                         ((frame_.level[1].height + side - 1) / side)),
                pyramid_, tiles_, sums_);
     }
     for (uint32_t k = frame_.levels - 1; k > 0 && !alone && byLevels; --k)
-        launch("scatter_level", vectorRange(*device_, frame_.level[k].width, frame_.level[k].height),
+        launch(SUMS, "scatter_level", vectorRange(*device_, frame_.level[k].width, frame_.level[k].height),
                pyramid_, tables_, nodes_, tiles_, k, sums_, counters_);
     if (fillsHidden()) light_.enqueueHidden(screen, events);
-    launch("scatter_screen", groupRange(*device_, groupsFor(*device_, tiles)), pyramid_, tables_, nodes_,
-           tiles_, sums_, fillsHidden() ? light_.hidden() : cl::Memory(), images.irradiance, images.out,
-           counters_);
+    launch(SUMS, "scatter_screen", groupRange(*device_, groupsFor(*device_, tiles)), pyramid_, tables_,
+           nodes_, tiles_, sums_, fillsHidden() ? light_.hidden() : cl::Memory(), images.irradiance,
+           images.out, counters_);
     if (alone) light_.enqueueSums(images, screen, events);
 }
 

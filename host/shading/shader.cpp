@@ -235,13 +235,11 @@ void Shader::addBuildJobs(BuildJobs& jobs) {
         jobs.push_back([self] { prepareEyes(self->device_, self->state_.materials); });
     shader->allocate(shader->state_, 1);
     profileTables_ = shader->profileTables_;
-    std::vector<cl::ProgramKey> keys;  // each once
+    std::vector<cl::ProgramKey> keys;
     shader->passes_.each([&](const Pass& pass) {
-        for (cl::ProgramKey& key : pass.programs(*device_, shader->plan_))
-            if (std::ranges::find(keys, key) == keys.end()) keys.push_back(std::move(key));
+        std::ranges::move(pass.programs(*device_, shader->plan_), std::back_inserter(keys));
     });
-    for (const cl::ProgramKey& key : keys)
-        jobs.push_back([device = device_, key] { device->programs().get(key); });
+    addProgramJobs(device_, std::move(keys), jobs);
     // A job for each pass, for drivers compile kernels when they are launched first. Whichever job comes next
     // launches the next pass: passes read what those before them made.
     struct Launches {
