@@ -167,14 +167,11 @@ constexpr double sampleFacetNormal = 1e-4;
 constexpr double sampleUnit = 1e-6;         // float rounding of values up to 1
 constexpr double samplePixel = 1e-4;        // pixels: float rounding of a position, projected
 constexpr double sampleMatrix = 1e-9;       // double-precision matrices and closed forms
-constexpr double sampleDerivative = 1e-6;   // relative: a central difference of step 1e-5
 constexpr double litSphere = 1e-3;          // area and flux of a sphere's facets: 100 rings leave 6e-4
 constexpr double sampleRandomField = 0.15;  // relative: a sum of 100 waves over a few hundred wavelengths
 constexpr double sampleAlbedoMean = 0.03;   // the mean of few, wide random blotches
 constexpr double sampleWaves = 1e-4;        // single-precision sines with phases up to 100
 constexpr double sampleQuadrature = 1e-5;   // a midpoint rule of 4000 steps over a square root's end
-// texels of 1/200 of the filter: where the edge falls between two of them
-constexpr double sampleWideShadow = 0.003;
 
 // --- what the search of bench/stability may find beyond the ranges of the tests ---
 constexpr double stretchedNormals = 5e-5;  // as normalComponent, triangles 50 times longer than wide

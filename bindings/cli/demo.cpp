@@ -167,7 +167,6 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
     DemoView view = renderDemoView(scene, head, request);
     stages.add(view.name + ": G-buffer (sample host)", view.gbufferMilliseconds);
     stages.add(view.name + ": shadow maps (sample host)", view.shadowMapMilliseconds);
-    stages.add(view.name + ": wide shadow (sample host)", view.wideShadowMilliseconds);
 
     const std::array<io::SceneFile, 3> scenes = scenesOf(view);
     stages.measure(view.name + ": kernels", [&] {

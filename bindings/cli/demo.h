@@ -14,7 +14,7 @@ struct DemoView {
     io::Image gbuffer;
     io::SceneFile scene;
     io::ShadowMaps shadowMaps;
-    double gbufferMilliseconds = 0, shadowMapMilliseconds = 0, wideShadowMilliseconds = 0;
+    double gbufferMilliseconds = 0, shadowMapMilliseconds = 0;
 };
 
 // A lamp round the head.

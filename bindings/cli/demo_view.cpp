@@ -2,8 +2,8 @@
 
 #include "command.h"
 #include "sample/occlusion.h"
+#include "sample/shadow_map.h"
 #include "sample/sky.h"
-#include "sample/wide_shadow.h"
 
 namespace pellucid::cli {
 namespace {
@@ -37,7 +37,7 @@ PelMaterial glossy(float specular, float roughness) {
 
 PelMaterial skin() {
     PelMaterial m = pelMaterialDefaults();
-    // The library's own choice, which the sample host's filter needs as well.
+    // The library's own choice, without a profile too.
     const PelProfileInfo info = Profile::named(profileName).info();
     m.shadowFilterWidth = 3 * std::max({info.width[0], info.width[1], info.width[2]});
     m.specular = 0.35f;
@@ -81,18 +81,11 @@ std::vector<float> wetLine(const sample::GBuffer& g) {
     return wet;
 }
 
-// Shadow map and wide shadow of one lamp.
-void addShadow(DemoView& view, const sample::Scene& mesh, const sample::GBuffer& g, const DemoLight& lamp,
-               const sample::DirectionalLight& direction, float filterWidth, io::SceneLight& light) {
+void addShadow(DemoView& view, const sample::Scene& mesh, const DemoLight& lamp,
+               const sample::DirectionalLight& direction, io::SceneLight& light) {
     sample::ShadowMap map;
     view.shadowMapMilliseconds +=
         milliseconds([&] { map = sample::renderShadowMap(mesh, direction, shadowMapSize); });
-    sample::Image wide;
-    sample::WideShadowOptions filter;
-    filter.filterWidth = filterWidth;
-    view.wideShadowMilliseconds += milliseconds([&] { wide = sample::filterWideShadow(g, map, filter); });
-    light.wideShadow = lamp.name + "Shadow.V";
-    view.gbuffer.channels.push_back({light.wideShadow, io::ChannelType::Float, wide.data});
     std::ranges::copy(map.worldToUvz.toFloats(), light.light.worldToShadow);
     light.light.shadowProjection = PEL_SHADOW_PARALLEL;
     light.light.shadowDepthRange = float(map.depthRange);
@@ -180,9 +173,7 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
         light.light.type = PEL_LIGHT_DIRECTIONAL;
         copy(light.light.toLight, direction.toLight);
         std::ranges::copy(lamp.color, light.light.color);
-        if (lamp.shadow)
-            addShadow(view, mesh, g, lamp, direction, view.scene.materials[0].material.shadowFilterWidth,
-                      light);
+        if (lamp.shadow) addShadow(view, mesh, lamp, direction, light);
         view.scene.lights.push_back(light);
     }
 

@@ -102,10 +102,4 @@ Mesh makeRectangle(double x0, double x1, double y0, double y1, double z) {
     return mesh;
 }
 
-Mesh makePlaneWithOccluder(double halfSide, double height) {
-    Mesh mesh = makeRectangle(-halfSide, halfSide, -halfSide, halfSide, 0);
-    mesh.append(makeRectangle(-halfSide, 0, -2 * halfSide, 2 * halfSide, height));
-    return mesh;
-}
-
 }  // namespace pellucid::sample

@@ -46,8 +46,5 @@ void checkMesh(const MeshView& mesh);
 Mesh makeSphere(double radius, int rings, int segments, Vec3 centre = {});
 // A rectangle in the plane z, facing +z.
 Mesh makeRectangle(double x0, double x1, double y0, double y1, double z);
-// A square of the given half side at z = 0 and, at `height` above it, another one twice that long that covers
-// x < 0: its edge at x = 0 throws a straight shadow.
-Mesh makePlaneWithOccluder(double halfSide, double height);
 
 }  // namespace pellucid::sample

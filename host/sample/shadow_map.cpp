@@ -41,14 +41,6 @@ double ShadowMap::distance(double z) const {
                                                     : 1 / (depthA * z + depthB);
 }
 
-double ShadowMap::zPerLength(double distance) const {
-    return projection == ShadowProjection::Parallel ? 1 / depthRange : -1 / (depthA * distance * distance);
-}
-
-double ShadowMap::lengthPerUv(double distance) const {
-    return projection == ShadowProjection::Parallel ? extent : extent * distance;
-}
-
 ShadowMap renderShadowMap(const Scene& scene, const DirectionalLight& light, int size, double margin) {
     ShadowMap map = emptyMap(ShadowProjection::Parallel, -light.toLight, size);
     Bounds seen;  // along right, down, forward

@@ -31,9 +31,7 @@ struct ShadowMap {
     double depthA = 0;  // 1/mm
     double depthB = 0;  // 1/mm
 
-    double distance(double z) const;            // mm along the axis
-    double zPerLength(double distance) const;   // dz / d distance, 1/mm
-    double lengthPerUv(double distance) const;  // mm across the axis per unit of u or v
+    double distance(double z) const;  // mm along the axis
 };
 
 // The map encloses the scene with `margin` mm to spare on every side. Throws std::invalid_argument for a
