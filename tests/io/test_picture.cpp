@@ -182,6 +182,7 @@ TEST(Picture, ColoursFollowValuesAndMask) {
     EXPECT_EQ(at(p, 1, 0), sequentialColor(0.5f));
     EXPECT_EQ(at(p, 0, 1), sequentialColor(1));
     EXPECT_EQ(at(p, 1, 1), (Srgb8{1, 2, 3}));
+    EXPECT_EQ(at(colored(2, 2, values, 0, 10, mask), 1, 1), (Srgb8{20, 20, 20}));
     const Picture bar = colorBar(200, 0, 0.25, "1/mm", 1);
     EXPECT_EQ(at(bar, 0, 0), sequentialColor(0.5f / 200));
     EXPECT_EQ(at(bar, 199, 0), sequentialColor(199.5f / 200));

@@ -173,6 +173,9 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     EXPECT_EQ(sceneText(again), sceneText(scene));
     EXPECT_EQ(again.channels, scene.channels);
     EXPECT_EQ(again.outputs, scene.outputs);
+    const SceneMaterial& material = again.materials.at(0);
+    EXPECT_EQ(std::tie(material.preset, material.profile, material.normalMap, material.scatteredTexture),
+              std::tie(skin.preset, skin.profile, skin.normalMap, skin.scatteredTexture));
     EXPECT_EQ(again.ambientCube, scene.ambientCube);
     EXPECT_EQ(again.reflectionCube, scene.reflectionCube);
     EXPECT_EQ(again.lights.at(0).shadowMapChannel, sun.shadowMapChannel);
@@ -183,7 +186,7 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     EXPECT_TRUE(same(again.options, scene.options));
     EXPECT_TRUE(same(again.lights[0].light, sun.light));
     EXPECT_TRUE(same(again.lights.at(1).light, scene.lights[1].light));
-    EXPECT_TRUE(same(again.materials.at(0).material, skin.material));
+    EXPECT_TRUE(same(material.material, skin.material));
     EXPECT_TRUE(same(again.eyes[0].eye, eye.eye));
     EXPECT_TRUE(same(again.luts.at(1).info.shadow, table));
 }
