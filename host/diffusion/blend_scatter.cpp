@@ -19,6 +19,7 @@ void BlendScatter::prepare(const std::map<uint32_t, PelBlendMaterial>& materials
     frame.back = describeImage(images.back);
     frame.weight = describeImage(images.weight);
     frame.albedo = describeImage(images.albedo);
+    frame.curvature = describeImage(images.curvature);
     frame.out = describeImage(images.out);
     std::vector<PelBlendMaterial> all{other};
     for (const auto& [id, material] : materials) {
@@ -41,6 +42,7 @@ std::vector<cl::ProgramKey> BlendScatter::programs(const BlendImages& images) co
               {"PEL_FORMAT_BACK", formatCode(images.back, 1)},
               {"PEL_FORMAT_SCATTER_WEIGHT", formatCode(images.weight, 1)},
               {"PEL_FORMAT_ALBEDO", formatCode(images.albedo, 1)},
+              {"PEL_FORMAT_MEAN_CURVATURE", formatCode(images.curvature, 1)},
               {"PEL_FORMAT_OUT", formatCode(images.out, 1)}}}};
 }
 
@@ -54,7 +56,7 @@ void BlendScatter::enqueueFinish(const BlendImages& images, std::vector<cl::Even
     device_->launch(events, device_->programs().get(programs(images)[0]), "finish_scatter",
                     itemRange(*device_, size_t(images.out.width) * images.out.height), frame_, materials_,
                     images.irradiance, images.scattered, images.ids, images.weight, images.albedo,
-                    images.out);
+                    images.curvature, images.out);
 }
 
 Rgb throughSheet(const Profile& profile, double scale, double thickness) {

@@ -9,6 +9,7 @@ namespace pel {
 // Images of one size; images that are not set are empty.
 struct BlendImages {
     ImageView irradiance, scattered, ids, back, weight, albedo, out;
+    ImageView curvature{};  // mean, 1/length
 };
 
 class BlendScatter {

@@ -1,12 +1,9 @@
 // The shader's pass that measures mean curvature for the gain of curved bodies
 // (kernels/diffusion/mean_curvature.cl), where the caller brings none.
-#include "core/launch_policy.h"
+#include "diffusion/mean_curvature.h"
 #include "diffusion/passes.h"
-#include "diffusion/sent_constants.h"
 #include "shading/features.h"
-#include "shading/launch_ranges.h"
 #include "shading/shading_constants.h"
-#include "shared/mean_curvature.h"
 
 namespace pel {
 namespace {
@@ -34,38 +31,24 @@ class CurvaturePass final : public Pass {
         slot = ImageView();
         resize(out_, device, size_t(frame.width) * plan.scratchRows() * sizeof(float));
         slot = scratchImage(out_, frame, PEL_FORMAT_R32F);
-        normals_ =
-            images[images[PEL_SLOT_NORMAL_GEOMETRIC] ? PEL_SLOT_NORMAL_GEOMETRIC : PEL_SLOT_NORMAL_SHADING];
-        positions_ = images[PEL_SLOT_POSITION];
-        depth_ = positions_ ? ImageView() : images[PEL_SLOT_DEPTH];
-        ids_ = images[PEL_SLOT_MATERIAL];
+        curvature_.setImages(
+            {images[images[PEL_SLOT_NORMAL_GEOMETRIC] ? PEL_SLOT_NORMAL_GEOMETRIC : PEL_SLOT_NORMAL_SHADING],
+             images[PEL_SLOT_POSITION], images[PEL_SLOT_POSITION] ? ImageView() : images[PEL_SLOT_DEPTH],
+             images[PEL_SLOT_MATERIAL], slot});
     }
     size_t bytes() const override { return out_ ? out_->bytes() : 0; }
 
-    std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
-        const auto code = [&](const ImageView& view) { return formatCode(view, device.info().mathWidth); };
-        return {{{"diffusion/mean_curvature.cl"},
-                 {{"PEL_FORMAT_NORMAL", code(normals_)},
-                  {"PEL_FORMAT_POSITION", code(positions_)},
-                  {"PEL_FORMAT_DEPTH", code(depth_)},
-                  {"PEL_FORMAT_MATERIAL", code(ids_)},
-                  {"PEL_FORMAT_OUT", code(plan.state.images[PEL_SLOT_MEAN_CURVATURE])}}}};
+    std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan&) const override {
+        return {curvature_.program(device)};
     }
 
     size_t upload(Device& device, ShaderPlan& plan) override {
-        PelMeanCurvature frame{};
-        const ImageView& out = plan.state.images[PEL_SLOT_MEAN_CURVATURE];
-        frame.width = out.width, frame.height = plan.state.images[PEL_SLOT_RADIANCE].height;
-        std::copy_n(plan.state.camera.inverseViewProjection, 16, frame.inverseViewProjection);
-        frame.normal = describeImage(normals_);
-        frame.position = describeImage(positions_ ? positions_ : depth_);
-        frame.ids = describeImage(ids_);
-        frame.out = describeImage(out);
+        std::map<uint32_t, float> windows;
         for (const auto& [id, material] : plan.state.materials)
-            if (hasGain(material)) frame.window[id] = material.gainWindow;
-        constants_.send(device, frame);
+            if (hasGain(material)) windows[id] = material.gainWindow;
         outRow_ = 0;
-        return sizeof frame;
+        return curvature_.send(device, plan.state.images[PEL_SLOT_RADIANCE].height,
+                               plan.state.camera.inverseViewProjection, windows);
     }
 
     void moveScratch(Device& device, const ShaderPlan& plan, const ShadingConstants& constants,
@@ -77,17 +60,14 @@ class CurvaturePass final : public Pass {
     }
 
     void enqueue(PassWork& work) override {
-        const uint32_t width = work.plan.state.images[PEL_SLOT_RADIANCE].width,
-                       rows = (work.rows.end - work.rows.begin) * PEL_TILE_HEIGHT;
-        work.launch(program(), "mean_curvature", vectorRange(work.device, width, rows), constants_, normals_,
-                    positions_ ? positions_ : depth_, ids_, *out_, cl_uint(work.rows.begin * PEL_TILE_HEIGHT),
-                    cl_uint(rows), cl_uint(outRow_));
+        const uint32_t rows = (work.rows.end - work.rows.begin) * PEL_TILE_HEIGHT;
+        curvature_.enqueue(work.device, program(), work.events, work.rows.begin * PEL_TILE_HEIGHT, rows,
+                           outRow_);
     }
 
   private:
     Ref<Buffer> out_;
-    ImageView normals_, positions_, depth_, ids_;
-    SentConstants<PelMeanCurvature> constants_;
+    MeanCurvature curvature_;
     uint32_t outRow_ = 0;  // of the frame, where the scratch image begins
 };
 

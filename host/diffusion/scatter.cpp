@@ -8,6 +8,9 @@
 namespace pel {
 namespace {
 
+constexpr PelImageSlot keptSlots[] = {PEL_SLOT_SCATTER_WEIGHT, PEL_SLOT_ALBEDO, PEL_SLOT_IRRADIANCE_BACK,
+                                      PEL_SLOT_NORMAL_GEOMETRIC, PEL_SLOT_MEAN_CURVATURE};
+
 void checkParams(const PelScatterParams& params) {
     if (!(params.targetError >= 0) || !std::isfinite(params.targetError))
         invalidArgument("PelScatterParams.targetError is ", params.targetError,
@@ -80,22 +83,33 @@ void Scatter::setControls(uint32_t id, const PelScatterControls& c) {
 }
 
 void Scatter::setImage(PelImageSlot slot, const ImageView& view) {
-    if (slot != PEL_SLOT_SCATTER_WEIGHT && slot != PEL_SLOT_IRRADIANCE_BACK && slot != PEL_SLOT_ALBEDO)
+    if (std::ranges::find(keptSlots, slot) == std::end(keptSlots))
         invalidArgument(
             "image slot ", int(slot),
-            " is none that a PelScatter keeps: scatter weight, back irradiance or albedo would be");
+            " is none that a PelScatter keeps: scatter weight, back irradiance, albedo, geometric "
+            "normals or mean curvature would be");
     if (view) checkImage(slot, view);
     images_[slot] = view;
 }
 
 // The methods of the materials, and the steps before and after them.
-Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImages& images) const {
+Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImages& images) {
     Plan plan;
     plan.weight = image(PEL_SLOT_SCATTER_WEIGHT);
     const ImageView albedo = image(PEL_SLOT_ALBEDO), back = image(PEL_SLOT_IRRADIANCE_BACK);
     plan.finishes = params.accumulate || albedo;
     plan.other.after = albedo ? 1.0f : 0.0f;
+    plan.curvature = image(PEL_SLOT_MEAN_CURVATURE);
+    const bool measures = !plan.curvature && image(PEL_SLOT_NORMAL_GEOMETRIC),
+               curved = measures || plan.curvature;
     for (const auto& [id, material] : materials_) {
+        ScreenScatter::Material curving = material;
+        const PelProfileInfo info = material.profile->info();
+        for (int k = 0; curved && k < 3; ++k) {
+            const double path = meanFreePath(info, k) * material.scale;
+            curving.gain[size_t(k)] = float(path);
+            if (path > 0) plan.windows[id] = std::max(plan.windows[id], float(windowOfPath * path));
+        }
         const auto found = controls_.find(id);
         const PelScatterControls c = found == controls_.end() ? pelScatterControlsDefaults() : found->second;
         plan.sources.set(id);
@@ -110,7 +124,7 @@ Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImage
                                                     scatterTapsOf(c.scattering, wanted),
                                                     {c.borderColor[0], c.borderColor[1], c.borderColor[2]}};
         else
-            plan.screen[id] = material;
+            plan.screen[id] = curving;
         if (c.thinThickness > 0 && !back)
             invalidArgument("material ", id, " has a thinThickness of ", c.thinThickness,
                             ", and there is no back irradiance image, whose light would come through");
@@ -123,11 +137,19 @@ Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImage
         const Rgb through = throughSheet(*material.profile, material.scale, c.thinThickness);
         for (int k = 0; k < 3; ++k) blend.through[k] = float(through[k]);
         blend.weighs = !taps && plan.weight;
+        std::ranges::copy(curving.gain, blend.gain);
         plan.blend[id] = blend;
         plan.prepares |= c.albedoBefore > 0 || c.thinThickness > 0;
-        plan.finishes |= blend.weighs != 0;
+        plan.finishes |= blend.weighs != 0 || curving.gain[0] > 0;
     }
-    for (PelImageSlot slot : {PEL_SLOT_SCATTER_WEIGHT, PEL_SLOT_ALBEDO, PEL_SLOT_IRRADIANCE_BACK}) {
+    if (plan.windows.empty()) plan.curvature = {};
+    if (measures && !plan.windows.empty()) {
+        resize(measured_, device_, size_t(images.out.width) * images.out.height * sizeof(float));
+        plan.curvature = scratchImage(measured_, images.out, PEL_FORMAT_R32F);
+        curvature_.setImages(
+            {image(PEL_SLOT_NORMAL_GEOMETRIC), images.positions, images.depth, images.ids, plan.curvature});
+    }
+    for (PelImageSlot slot : keptSlots) {
         const ImageView view = image(slot);
         if (!view) continue;
         if (view.width != images.out.width || view.height != images.out.height)
@@ -175,6 +197,16 @@ void Scatter::run(const PelScatterParams& params, const ScatterImages& images,
     };
     ScatterImages now = images;
     now.takeRadii(plan.weight);
+    now.curvature = plan.screen.empty() ? ImageView() : plan.curvature;
+    if (plan.curvature && plan.curvature.buffer.get() == measured_.get()) {
+        const cl::ProgramKey key = curvature_.program(*device_);
+        if (keys) {
+            keys->push_back(key);
+        } else {
+            curvature_.send(*device_, images.out.height, params.inverseViewProjection, plan.windows);
+            curvature_.enqueue(*device_, device_->programs().get(key), events_, 0, images.out.height, 0);
+        }
+    }
     if (plan.prepares) {
         const BlendImages blend{images.irradiance,
                                 {},
@@ -224,7 +256,7 @@ void Scatter::run(const PelScatterParams& params, const ScatterImages& images,
     }
     if (!plan.finishes) return;
     const BlendImages blend{arriving,    now.irradiance,         images.ids, {},
-                            plan.weight, image(PEL_SLOT_ALBEDO), images.out};
+                            plan.weight, image(PEL_SLOT_ALBEDO), images.out, plan.curvature};
     step(after_, blend, [&] {
         after_.prepare(plan.blend, plan.other, blend, params.accumulate != 0);
         after_.enqueueFinish(blend, events_);
@@ -265,6 +297,7 @@ PelScatterStats Scatter::stats() {
     PelScatterStats stats = pelScatterStatsDefaults();
     stats.scratchBytes = screen_.bytes() + disk_.bytes() + lines_.bytes();
     for (const Ref<Buffer>& buffer : scratch_) stats.scratchBytes += buffer ? buffer->bytes() : 0;
+    stats.scratchBytes += measured_ ? measured_->bytes() : 0;
     if (!executed_) return stats;
     stats.pixelsTotal = pixels_;
     for (const auto& [scattering, read] : counts_) {

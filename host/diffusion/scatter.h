@@ -3,6 +3,7 @@
 #include "core/build_jobs.h"
 #include "diffusion/blend_scatter.h"
 #include "diffusion/gather_scatter.h"
+#include "diffusion/mean_curvature.h"
 
 namespace pel {
 
@@ -37,12 +38,14 @@ class Scatter final : public Object {
         std::map<uint32_t, GatherScatter::Material> disk, lines;
         GatherScatter::Ids sources;
         ImageView weight;
+        ImageView curvature;                // that the caller gives, or that is measured
+        std::map<uint32_t, float> windows;  // over which it is measured, by id
         std::map<uint32_t, PelBlendMaterial> blend;
         PelBlendMaterial other{};  // of ids that do not scatter
         bool prepares = false, finishes = false;
     };
     ~Scatter() override = default;
-    Plan planOf(const PelScatterParams& params, const ScatterImages& images) const;
+    Plan planOf(const PelScatterParams& params, const ScatterImages& images);
     // With `keys` the programs are named alone.
     void run(const PelScatterParams& params, const ScatterImages& images, std::vector<cl::ProgramKey>* keys);
     ImageView image(PelImageSlot slot) const;
@@ -52,6 +55,8 @@ class Scatter final : public Object {
     ScreenScatter screen_;
     GatherScatter disk_, lines_;
     BlendScatter before_, after_;
+    MeanCurvature curvature_;
+    Ref<Buffer> measured_;
     std::array<Ref<Buffer>, 3> scratch_;
     std::map<uint32_t, ScreenScatter::Material> materials_;
     std::map<uint32_t, PelScatterControls> controls_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/handle_table.h"
+#include "diffusion/mean_curvature.h"
 #include "lut/luts.h"
 #include "shading/features.h"
 
@@ -17,19 +18,11 @@ constexpr float softness = 0.1f, coneSlope = 0.8f;
 // Without a profile, mm.
 constexpr double plainFilterWidth = 8, plainBias = 0.5;
 constexpr float plainSoftness = 0.25f, plainConeSlope = 0.5f;
-constexpr double pathOfBurley = 1.087;  // mean free path over Burley's d at a reflectance of 0.8 (section 12)
-constexpr double windowOfPath = 2.75;   // length over which curvature is measured, in mean free paths
 constexpr float noBlend[3] = {1, 0.3f, 0};
 constexpr uint32_t transmissionTexels = 256;
 
 double widest(const PelProfileInfo& profile) {
     return std::max({profile.width[0], profile.width[1], profile.width[2]});
-}
-
-// Of the medium, in the profile's unit; 0: the profile does not say.
-double meanFreePath(const PelProfileInfo& profile, int channel) {
-    if (profile.meanFreePath[channel] > 0) return profile.meanFreePath[channel];
-    return profile.kind == PEL_PROFILE_BURLEY ? pathOfBurley / std::sqrt(7.0) * profile.width[channel] : 0;
 }
 
 // In the scene's unit. A table whose description leaves it out has its profile's, in mm.

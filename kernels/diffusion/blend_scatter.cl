@@ -1,11 +1,13 @@
 // The steps before and after a scattering method: light from the other side of thin sheets, powers of
-// albedo, and the weight of the scattered light per pixel (docs/mathematics.md, section 10, "Controls").
+// albedo, the gain of curved bodies, and the weight of the scattered light per pixel (docs/mathematics.md,
+// sections 10, "Controls", and 12).
 //
 // prepare_irradiance: (irradiance + through * back) * albedo^before. finish_scatter: irradiance + weight *
-// (scattered - irradiance), times albedo^after, written or added. One work-item is one pixel. Variants:
+// (scattered * gain - irradiance), times albedo^after, written or added. One work-item is one pixel. Variants:
 // PEL_FORMAT_... of the images, 0 for an image that is not set.
 #include "lib/diffusion/item.clh"
 #include "lib/image/image.clh"
+#include "lib/shading/curvature_gain.clh"
 #include "lib/shading/material_id.clh"
 #include "shared/blend.h"
 
@@ -52,11 +54,17 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void prepare_irr
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void finish_scatter(
     __global const PelBlendFrame* restrict frame, __global const PelBlendMaterial* restrict materials,
     __global uchar* irradiance, __global uchar* scattered, __global uchar* ids, __global uchar* weight,
-    __global uchar* albedo, __global uchar* out) {
+    __global uchar* albedo, __global uchar* curvature, __global uchar* out) {
     const uint x = itemOfFolded() % frame->width, y = itemOfFolded() / frame->width;
     if (y >= frame->height) return;
     __global const PelBlendMaterial* material = materialAt(frame, materials, ids, x, y);
     Vec3w s = loadColor(PEL_FORMAT_SCATTERED, imageSpan(scattered, &frame->scattered, x, y));
+#if PEL_FORMAT_MEAN_CURVATURE
+    if (material->gain[0] > 0.0f) {
+        const float h = loadScalar(PEL_FORMAT_MEAN_CURVATURE, imageSpan(curvature, &frame->curvature, x, y));
+        s = mul3(s, curvatureGain(material->gain, isfinite(h) ? h : 0.0f));
+    }
+#endif
 #if PEL_FORMAT_SCATTER_WEIGHT
     if (material->weighs) {
         const float given = loadScalar(PEL_FORMAT_SCATTER_WEIGHT, imageSpan(weight, &frame->weight, x, y));

@@ -8,6 +8,7 @@ typedef struct PelBlendMaterial {
     float before, after;
     float through[3];  // share of the light on the other side
     PelUint32 weighs;  // 1: the weights per pixel are still to be applied
+    float gain[3];     // length: mean free path; 0: none
 } PelBlendMaterial;
 
 typedef struct PelBlendFrame {
@@ -15,10 +16,10 @@ typedef struct PelBlendFrame {
     PelUint32 height;
     PelUint32 accumulate;  // 1: add to what `out` holds
     PelUint32 pad;
-    PelShadeImage irradiance, scattered, material, back, weight, albedo, out;
+    PelShadeImage irradiance, scattered, material, back, weight, albedo, curvature, out;
     PelUint32 materialOf[PEL_DIFFUSION_IDS];  // of an id; entry 0 is for ids that do not scatter
 } PelBlendFrame;
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(PelBlendMaterial) == 36 && sizeof(PelBlendFrame) == 16 + 7 * 32 + 4 * PEL_DIFFUSION_IDS);
+static_assert(sizeof(PelBlendMaterial) == 48 && sizeof(PelBlendFrame) == 16 + 8 * 32 + 4 * PEL_DIFFUSION_IDS);
 #endif

@@ -147,7 +147,7 @@ struct Material {
 
 // What a call has beside irradiance and positions.
 struct Extra {
-    std::vector<float> weights, albedo, back;
+    std::vector<float> weights, albedo, back, normals, curvature;
     std::vector<float> depth;  // in place of positions
     std::vector<float> out;    // what the output holds before
     bool inPlace = false, ids = true;
@@ -168,7 +168,9 @@ inline Result run(Scatter& scatter, const Picture& p, const std::vector<Material
     const std::pair<PelImageSlot, const std::vector<float>*> slots[] = {
         {PEL_SLOT_SCATTER_WEIGHT, &extra.weights},
         {PEL_SLOT_ALBEDO, &extra.albedo},
-        {PEL_SLOT_IRRADIANCE_BACK, &extra.back}};
+        {PEL_SLOT_IRRADIANCE_BACK, &extra.back},
+        {PEL_SLOT_NORMAL_GEOMETRIC, &extra.normals},
+        {PEL_SLOT_MEAN_CURVATURE, &extra.curvature}};
     for (const auto& [slot, values] : slots) {
         scatter.clear(slot);
         if (!values->empty()) scatter.set(slot, image(*values));

@@ -101,6 +101,45 @@ TEST(ScatterBlend, ThinSheetsLetLightThrough) {
     }
 }
 
+// The gain of curved bodies of a PelScatter that has normals, or the curvature itself, is that of a shader.
+TEST(ScatterBlend, CurvedBodiesGainAsInAShader) {
+    const double radius = 10;
+    Picture p = ball(100, radius, 0.21, normalized(Vec3{1, 0.3, 0.2}));
+    const PelCamera camera = standingAt({0, 0, 400});
+    std::copy_n(camera.inverseViewProjection, 16, p.params.inverseViewProjection);
+    const Profile known = Profile::burleyDistance({2, 1, 0.5});
+    for (uint32_t taps : {0u, 25u})
+        for (bool measured : {true, false}) {
+            const PelScattering method = taps == 25 ? separable : screen;
+            Frame f(p, method, radius);
+            f.profile = known;
+            f.material.scatterTaps = taps;
+            f.material.curvatureGain = 1;
+            Extra extra;
+            extra.normals = f.images[PEL_SLOT_NORMAL_SHADING];
+            if (!measured) {
+                for (size_t i = 0; i < p.pixels(); ++i)
+                    extra.curvature.push_back(p.ids[i] ? 0.1f + 0.05f * float(i % 7) : notANumber);
+                f.images[PEL_SLOT_MEAN_CURVATURE] = extra.curvature;
+            }
+            ShownImages shown(device(), 1, 1);
+            shown.shader.set(camera);
+            const auto expected = f.shade(shown).light;
+            const std::vector<Material> materials{{1, known, 1, controlsOf(method, taps)}};
+            const auto result = run(p, materials, extra).scattered, plain = run(p, materials).scattered;
+            double gain = 0, most = 0;
+            for (size_t i = 0; i < p.pixels(); ++i)
+                for (size_t c = 0; p.ids[i] && c < 3; ++c) {
+                    ASSERT_NEAR(result[3 * i + c], expected[3 * i + c], 1e-5) << taps << " " << i;
+                    gain += result[3 * i + c], most += plain[3 * i + c];
+                }
+            EXPECT_GT(gain / most, 1.01) << taps;
+            // A medium that is not known gains nothing, and costs nothing.
+            const std::vector<Material> unknown{{1, Profile::skin(), 1, controlsOf(method, taps)}};
+            EXPECT_EQ(run(p, unknown, extra).scattered, run(p, unknown).scattered);
+        }
+}
+
 TEST(ScatterBlend, AloneAddsAndMultiplies) {
     const Picture p = stripes();
     const auto plain = run(p, Profile::skin()).scattered;

@@ -51,8 +51,9 @@ class Scatter(OfThisProcess):
         self._handle.set_controls(id, settings._data)
 
     def set_image(self, slot: ImageSlot | str, image: Any) -> None:
-        """An image that executions read beside those they are given: "scatter_weight", "irradiance_back" or
-        "albedo"; None clears it. It stays the caller's, and is read at each execution."""
+        """An image that executions read beside those they are given: "scatter_weight", "irradiance_back",
+        "albedo", "normal_geometric" or "mean_curvature"; None clears it. It stays the caller's, and is read
+        at each execution. Either of the last two turns on the gain of curved bodies."""
         s = to_enum(ImageSlot, slot, "slot")
         image = to_image(self.device, image, s.name.lower())
         self._handle.set_image(int(s), None if image is None else image._view.native)
