@@ -33,13 +33,11 @@ struct Axis {
     }
 };
 
-// The variables: of the thickness, of the absorption along it, and of the lower layer's.
-constexpr double thicknessUnit = 0.5, opticalUnit = 0.2;
-double rootOf(double absorption) {
-    return std::sqrt(absorption / (1 + absorption));
-}
+// The variables are log(1 + x / unit) of the thickness and of the absorption along it, and the logarithm of
+// the lower layer's absorption.
+constexpr double thicknessUnit = 0.05, opticalUnit = 0.2;
 
-constexpr double lowestFrequency = 0.01, highestFrequency = 30;
+constexpr double lowestFrequency = 0.01, highestFrequency = 80;
 constexpr int frequencies = 16;  // the first is 0, the others are evenly spaced in the logarithm
 double frequency(int i) {
     return i == 0 ? 0
@@ -59,7 +57,7 @@ class Table {
         const int first = thickness_.weights(std::log1p(layers.thickness / thicknessUnit), t),
                   second =
                       upper_.weights(std::log1p(layers.thickness * layers.upperAbsorption / opticalUnit), u),
-                  third = lower_.weights(rootOf(layers.lowerAbsorption), l);
+                  third = lower_.weights(std::log(layers.lowerAbsorption), l);
         Spectrum sum{};
         for (int a = 0; a < 4; ++a)
             for (int b = 0; b < 4; ++b)
@@ -79,18 +77,17 @@ class Table {
             for (size_t r = begin; r < end; ++r) {
                 const int a = int(r) / (upper_.nodes * lower_.nodes),
                           b = int(r) / lower_.nodes % upper_.nodes, c = int(r) % lower_.nodes;
-                const double thickness = thicknessUnit * std::expm1(thickness_.node(a)),
-                             root = lower_.node(c) * lower_.node(c);
+                const double thickness = thicknessUnit * std::expm1(thickness_.node(a));
                 const SkinLayers layers{thickness, opticalUnit * std::expm1(upper_.node(b)) / thickness,
-                                        root / (1 - root)};
+                                        std::exp(lower_.node(c))};
                 for (int k = 0; k < frequencies; ++k)
                     rows_[r][k] = float(std::log(skinReflected(layers, frequency(k))));
             }
         });
     }
-    // Of thicknesses from 0.02 to 8 and absorption along them from 0 to 300.
-    const Axis thickness_{7, std::log1p(0.02 / thicknessUnit), std::log1p(8 / thicknessUnit)},
-        upper_{14, 0, std::log1p(300 / opticalUnit)}, lower_{9, 0.03, 0.985};
+    // The ranges of PelSkin reach so far at the wavelengths of the table of spectra.
+    const Axis thickness_{8, std::log1p(0.016 / thicknessUnit), std::log1p(10 / thicknessUnit)},
+        upper_{16, 0, std::log1p(45 / opticalUnit)}, lower_{9, std::log(0.0025), std::log(32)};
     std::vector<Spectrum> rows_;
 };
 
@@ -99,7 +96,7 @@ class Table {
 // Widths of the Gaussians, mm, and frequencies of the fit, 1/mm.
 constexpr int terms = 14, fitted = 28;
 double variance(int i) {
-    return std::pow(0.005 * std::pow(15 / 0.005, i / (terms - 1.0)), 2);
+    return std::pow(0.003 * std::pow(12 / 0.003, i / (terms - 1.0)), 2);
 }
 double fittedFrequency(int j) {
     return 0.02 * std::pow(150 / 0.02, j / (fitted - 1.0));
@@ -112,7 +109,7 @@ struct Computed {
 };
 
 Computed compute(const PelSkin& skin, bool radial) {
-    constexpr double perLog = (frequencies - 2) / 8.0063675676502459;  // log(highest / lowest)
+    constexpr double perLog = (frequencies - 2) / 8.9871968206619729;  // log(highest / lowest)
     static const auto logFrequency = [] {
         std::array<double, fitted> logs;
         for (int j = 0; j < fitted; ++j) logs[j] = std::log(fittedFrequency(j));
@@ -137,17 +134,19 @@ Computed compute(const PelSkin& skin, bool radial) {
         if (!radial) continue;
         const double shift = std::log(c.scattering * lowestFrequency);
         for (int j = 0; j < fitted; ++j) {
-            // Cubic [Catmull-Rom] in the logarithm of the frequency; quadratic in it below the first.
+            // Cubic [Catmull-Rom] in the logarithm of the frequency; below the first node quadratic in the
+            // frequency, beyond the last a power of it.
             const double at = (logFrequency[j] - shift) * perLog;
             double value = values[0] + (values[1] - values[0]) * std::exp(2 * std::min(0.0, at) / perLog);
             if (at > 0) {
                 const int cell = std::min(int(at), frequencies - 3);
-                const double x = std::min(at - cell, 1.0);
+                const double x = std::min(at - cell, 1.0), beyond = at - cell - x;
                 const auto node = [&](int q) {
                     return double(values[std::clamp(cell + q, 0, frequencies - 2) + 1]);
                 };
                 const double p = node(-1), q = node(0), r = node(1), s = node(2);
-                value = q + x / 2 * (r - p + x * (2 * p - 5 * q + 4 * r - s + x * (3 * (q - r) + s - p)));
+                value = q + x / 2 * (r - p + x * (2 * p - 5 * q + 4 * r - s + x * (3 * (q - r) + s - p))) +
+                        beyond * (r - q);
             }
             value = std::exp(value);
             for (int n = 0; n < 3; ++n) out.spectrum[j][n] += std::max(0.0, weight[n]) * value;

@@ -45,8 +45,9 @@ TEST(Skin, ReflectsWhatARandomWalkDoes) {
 }
 
 TEST(Skin, ChannelsAndDistancesAreThoseOfARandomWalk) {
-    for (const auto& s : {skins[0], skins[1], skins[4]}) {
-        const auto walk = reference::walkChannels(s, 6000);
+    // The bands of the blood of skins[3] are narrower than the steps of the oracle.
+    for (const auto& s : {skins[0], skins[1], skins[2], skins[4], skins[5]}) {
+        const auto walk = reference::walkChannels(s, 10000);
         const PelSkinInfo info = skinInfo(skinOf(s));
         for (int c = 0; c < 3; ++c) {
             EXPECT_NEAR(info.albedo[c], walk.albedo[c], tolerance::skinAlbedo) << c << ", " << s.melanin;
