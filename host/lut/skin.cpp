@@ -372,7 +372,7 @@ std::vector<float> skinTable(const PelSkin& skin, int oxygenations) {
 void skinFromAlbedo(const PelSkin& skin, const float* albedo, size_t count, float* melanin, float* blood,
                     float* difference) {
     const auto maps = Maps::of(skin);
-    for (size_t i = 0; i < count; ++i) {
+    const auto find = [&](size_t i) {
         Rgb wanted;
         for (int c = 0; c < 3; ++c) wanted[c] = std::clamp(albedo[3 * i + c], 0.0f, 1.0f);
         for (double& value : wanted) value = std::isnan(value) ? 0 : value;
@@ -414,7 +414,10 @@ void skinFromAlbedo(const PelSkin& skin, const float* albedo, size_t count, floa
         melanin[i] = found.melanin;
         blood[i] = found.blood;
         if (difference) difference[i] = float(best);
-    }
+    };
+    inParts(count, partsOf(count, 1024), [&](size_t, size_t i, size_t end) {
+        for (; i < end; ++i) find(i);
+    });
 }
 
 }  // namespace pel
