@@ -75,6 +75,31 @@ TEST(Skin, MoreMelaninOrBloodIsDarker) {
         }
 }
 
+// At each wavelength, whatever the other fields are. Channels of linear sRGB have negative weights as well.
+TEST(Skin, MorePigmentReflectsLessOverTheWholeRange) {
+    std::mt19937 random(1);
+    std::vector<float> nanometres, before, now;
+    for (int nm = 380; nm <= 720; nm += 5) nanometres.push_back(float(nm));
+    now.resize(nanometres.size());
+    for (int i = 0; i < sized(60, 6); ++i) {
+        PelSkin skin = pelSkinDefaults();
+#define DRAW(type, name, value, min, max, ...) \
+    skin.name = std::uniform_real_distribution<float>(min, max)(random);
+        PEL_EACH_SKIN_FIELD(DRAW)
+#undef DRAW
+        float& pigment = i % 2 ? skin.blood : skin.melanin;
+        const float most = i % 2 ? pel::range::skin::blood.max : pel::range::skin::melanin.max;
+        before.assign(now.size(), 1);
+        for (int step = 0; step <= 40; ++step) {
+            pigment = most * float(step * step) / 1600;
+            pellucid::check(pelSkinReflectance(&skin, nanometres.data(), uint32_t(now.size()), now.data()));
+            for (size_t k = 0; k < now.size(); ++k)
+                EXPECT_LE(now[k], before[k] + 1e-6f) << nanometres[k] << " nm, " << pigment;
+            before = now;
+        }
+    }
+}
+
 // Without pigment skin sends back most of what its surface lets in (94 %), and more where it scatters more.
 TEST(Skin, NoLightIsMade) {
     PelSkin skin = pelSkinDefaults();

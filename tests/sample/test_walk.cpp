@@ -145,6 +145,13 @@ TEST(WalkLight, EqualLayersAreOneMedium) {
     EXPECT_EQ(walked(layers), walked(medium(0.1)));
     for (sample::Wave& w : layers.waves) w.outerAbsorption *= 2;
     EXPECT_NE(walked(layers), walked(medium(0.1)));
+    // A white furnace: what enters the surface comes back.
+    layers.refractiveIndex = sample::fresnelIndex;
+    for (sample::Wave& w : layers.waves) w.outerAbsorption = w.absorption = 0;
+    double sum = 0;
+    const std::vector<float> white = walkLight(body, fromEverywhere(), points, layers, {64}).first;
+    for (const float v : white) sum += v;
+    EXPECT_NEAR(sum / double(white.size()), 0.92319, 5e-3) << "diffuse Fresnel transmission";
 }
 
 TEST(WalkLight, LargePlaneReflectsWhatTheMediumWasMadeFor) {
