@@ -416,7 +416,22 @@ void skinFromAlbedo(const PelSkin& skin, const float* albedo, size_t count, floa
         if (difference) difference[i] = float(best);
     };
     inParts(count, partsOf(count, 1024), [&](size_t, size_t i, size_t end) {
-        for (; i < end; ++i) find(i);
+        // Pictures of 8 bits repeat their colours: the last pixel of each hash.
+        std::vector<size_t> found(4096, count);
+        for (; i < end; ++i) {
+            const float* rgb = albedo + 3 * i;
+            size_t& same = found[(std::bit_cast<uint32_t>(rgb[0]) * 0x9e3779b1u +
+                                  std::bit_cast<uint32_t>(rgb[1]) * 0x85ebca6bu +
+                                  std::bit_cast<uint32_t>(rgb[2]) * 0xc2b2ae35u) >>
+                                 20];
+            if (same == count || std::memcmp(albedo + 3 * same, rgb, 3 * sizeof(float)) != 0) {
+                find(i);
+            } else {
+                melanin[i] = melanin[same], blood[i] = blood[same];
+                if (difference) difference[i] = difference[same];
+            }
+            same = i;
+        }
     });
 }
 
