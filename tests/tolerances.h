@@ -291,12 +291,11 @@ constexpr double eyeCausticRms = 1e-2;    // the same, with caustics from a tabl
 constexpr double eyeMinified = 0.05;
 
 // Skin against random walks: the grid of depths and directions is right to 0.003, the table between its nodes
-// to 0.009 where an epidermis of several free paths hardly absorbs, and else to 0.002. Albedos are means of
-// that, and the oracle sums in other steps.
+// to 0.002. The oracle of albedos sums in other steps.
 constexpr double skinReflectance = 0.01, skinAlbedo = 0.01;
-// The oracle has approximate matching functions every 10 nm; noise of 6000 walks is 1 % of the distance.
-constexpr double skinDistance = 0.07;
-constexpr double skinProfile = 0.05;   // 14 Gaussians against light that falls like 1/d near its entry
+// The oracle has approximate matching functions every 10 nm; its noise is 1 to 2 % of the distance.
+constexpr double skinDistance = 0.05;
+constexpr double skinProfile = 0.02;   // 14 Gaussians against light that falls like 1/d near its entry
 constexpr double skinRoundTrip = 0.5;  // CIEDE2000; a fraction of what can be seen
 constexpr double skinMeasured = 3;     // CIEDE2000; other observers, instruments and people
 }  // namespace tolerance

@@ -99,34 +99,42 @@ bool readNumber(const std::string& text, float& number) {
     return CLI::detail::lexical_cast(text, number);
 }
 
-Run::Run(const Options& options)
-    : options_(options),
-      device_(options.device),
-      before_(device_.stats()),
-      start_(std::chrono::steady_clock::now()) {
+Progress::Progress() : start_(std::chrono::steady_clock::now()) {
     std::signal(SIGINT, onInterrupt);
-    device_.setProgress(&Run::onProgress, this);
-    report["device"] = device_.info().name;
 }
 
-Run::~Run() {
-    if (progressShown_) std::fputs("\n", stderr);
-    pelDeviceSetProgress(device_.get(), nullptr, nullptr);
+Progress::~Progress() {
+    if (shown_) std::fputs("\n", stderr);
 }
 
-int Run::onProgress(void* user, double fraction, const char* what) {
-    Run& run = *static_cast<Run*>(user);
-    const std::chrono::duration<double> since = std::chrono::steady_clock::now() - run.start_;
-    if (pel::system::errorsAreSeen() && since.count() > 1) {
+double Progress::milliseconds() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+}
+
+bool Progress::goesOn(double fraction, const char* what) {
+    if (pel::system::errorsAreSeen() && milliseconds() > 1000) {
         std::fprintf(stderr, "\r%3.0f %% %-60.60s", fraction * 100, what);
-        run.progressShown_ = fraction < 1;
-        if (fraction >= 1) std::fputs("\n", stderr);
+        shown_ = fraction < 1;
+        if (!shown_) std::fputs("\n", stderr);
     }
     return !interrupted;
 }
 
-void Run::progress(double fraction, const char* what) {
-    if (!onProgress(this, fraction, what)) throw Error(PEL_ERROR_CANCELLED, "interrupted");
+void Progress::operator()(double fraction, const char* what) {
+    if (!goesOn(fraction, what)) throw Error(PEL_ERROR_CANCELLED, "interrupted");
+}
+
+Run::Run(const Options& options) : options_(options), device_(options.device), before_(device_.stats()) {
+    device_.setProgress(
+        [](void* user, double fraction, const char* what) {
+            return int(static_cast<Progress*>(user)->goesOn(fraction, what));
+        },
+        &progress_);
+    report["device"] = device_.info().name;
+}
+
+Run::~Run() {
+    pelDeviceSetProgress(device_.get(), nullptr, nullptr);
 }
 
 double Run::deviceMilliseconds() const {
@@ -144,9 +152,8 @@ void Run::warn(const std::string& text) {
 }
 
 void Run::finish() {
-    const std::chrono::duration<double, std::milli> total = std::chrono::steady_clock::now() - start_;
     report["device_ms"] = deviceMilliseconds();
-    report["total_ms"] = total.count();
+    report["total_ms"] = progress_.milliseconds();
     report["warnings"] = warnings_;
     if (options_.json) {
         printJson(report);

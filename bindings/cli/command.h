@@ -32,6 +32,21 @@ struct ExitWith : std::runtime_error {
     ExitCode code;
 };
 
+// Progress on stderr, from the first second of a command on, and its end by Ctrl-C.
+class Progress {
+  public:
+    Progress();
+    ~Progress();
+    Progress(const Progress&) = delete;
+    bool goesOn(double fraction, const char* what);      // false after Ctrl-C
+    void operator()(double fraction, const char* what);  // throws Error after Ctrl-C
+    double milliseconds() const;                         // since it began
+
+  private:
+    std::chrono::steady_clock::time_point start_;
+    bool shown_ = false;
+};
+
 // One run of a subcommand: opens the device, shows progress on stderr, prints the report on stdout at the
 // end.
 class Run {
@@ -48,9 +63,8 @@ class Run {
     const Device& device() const { return device_; }
     double deviceMilliseconds() const;  // kernels since this run began
 
-    // Shows progress of work on the host. Throws Error after Ctrl-C.
-    void progress(double fraction, const char* what);
-    void note(const std::string& text) const;  // to stderr, for people
+    void progress(double fraction, const char* what) { progress_(fraction, what); }  // of work on the host
+    void note(const std::string& text) const;                                        // to stderr, for people
     // To stderr, and into the report; with --strict an InputError. Before anything is written.
     void warn(const std::string& text);
     // Key and value of the report, in this order. Numbers, texts, arrays and objects alike.
@@ -63,10 +77,8 @@ class Run {
     Options options_;
     Device device_;
     PelDeviceStats before_;
-    std::chrono::steady_clock::time_point start_;
+    Progress progress_;
     nlohmann::ordered_json warnings_ = nlohmann::ordered_json::array();
-    bool progressShown_ = false;
-    static int onProgress(void* user, double fraction, const char* what);
 };
 
 // The time that `work` takes.

@@ -5,6 +5,7 @@
 #include "io/atomic_file.h"
 #include "io/lut/profile_file.h"
 #include "io/mesh/mesh_parts.h"
+#include "lut/skin_spectra.h"
 #include "mesh_curvature.h"
 #include "sample/random_walk.h"
 #include "scene/scene_frame.h"
@@ -89,39 +90,74 @@ void addWalkOptions(CLI::App& command, WalkArguments& walk) {
            "of the material's pixels, or the albedo of the material)",
            Count{3}, inRange(0.0, 1.0), Needs{enabled});
     option(command, "--boundary", walk.boundary,
-           "index-matched, or fresnel: a smooth surface of a refractive index of 1.4",
+           "index-matched, or fresnel: a smooth surface of a refractive index of 1.4, which skin always has",
            isOneOf({"index-matched", "fresnel"}), shown, Needs{enabled});
 }
 
-// The medium of a Burley profile; `scale`: unit of positions per unit of the profile. No medium is known of
-// other kinds of profile.
-sample::Medium mediumOf(const WalkArguments& walk, const Profile& profile, double scale,
-                        const RgbValues& reflectance, const std::string& material) {
-    const PelProfileInfo info = profile.info();
+// How one material scatters.
+struct Diffusion {
+    Profile profile;
+    std::optional<PelSkin> skin;       // that the profile is computed from
+    float unit = 1;                    // mm per unit of positions
+    float radius = 0;                  // the profile's unit; 0: its own
+    double scale = 1;                  // unit of positions per unit of the profile
+    double narrowest = 0, widest = 0;  // units of positions, of the channels' line spreads
+};
+
+struct WalkMedium {
+    sample::LayeredMedium layers;
+    sample::Medium mean;  // for the report; of skin: the dermis
+};
+
+// Skin: both layers at each wavelength.
+WalkMedium mediumOf(const PelSkin& skin, double scale) {
+    const PelSkinInfo info = skinInfo(skin);
+    WalkMedium out;
+    out.layers.thickness = scale * skin.epidermis;
+    out.layers.refractiveIndex = sample::fresnelIndex;
+    for (size_t i = 0; i < pel::skinWavelengths; ++i) {
+        const pel::SkinCoefficients c = pel::skinCoefficients(skin, pel::skinSpectra[i]);
+        out.layers.waves.push_back(
+            {c.scattering / scale, c.epidermis / scale, c.dermis / scale, pel::skinChannels()[i]});
+    }
+    for (size_t c = 0; c < 3; ++c) {
+        out.mean.meanFreePath[c] = scale * info.meanFreePath[c];
+        out.mean.albedo[c] = info.singleScatteringAlbedo[c];
+    }
+    return out;
+}
+
+// Of skin or of a Burley profile. No medium is known of other kinds of profile.
+WalkMedium mediumOf(const WalkArguments& walk, const Diffusion& d, const RgbValues& reflectance,
+                    const std::string& material) {
+    if (d.skin) return mediumOf(*d.skin, d.scale);
+    const PelProfileInfo info = d.profile.info();
     if (info.kind != PEL_PROFILE_BURLEY)
         throw InputError(
             "the profile '" + std::string(info.name) + "' of " + material +
-            " has no known medium; a random walk needs one of kind burley, such as --profile with a "
-            "file of that kind");
+            " has no known medium; a random walk needs one of kind burley, or of kind skin with pigments, "
+            "such as --profile with a file of that kind");
     RgbValues lengths;
     // The line spread of Burley's profile of length d has a standard deviation of sqrt(7) d.
-    for (int c = 0; c < 3; ++c) lengths[c] = scale * info.width[c] / std::sqrt(7.0);
-    return burleyMedium(
-        lengths, reflectance,
-        walk.boundary == "fresnel" ? sample::Boundary::Fresnel : sample::Boundary::IndexMatched);
+    for (int c = 0; c < 3; ++c) lengths[c] = d.scale * info.width[c] / std::sqrt(7.0);
+    const sample::Medium medium =
+        burleyMedium(lengths, reflectance,
+                     walk.boundary == "fresnel" ? sample::Boundary::Fresnel : sample::Boundary::IndexMatched);
+    return {medium, medium};
 }
 
 // Walks from `points`, with progress and an entry `media` in the report.
 sample::WalkedLight walk(Run& run, const WalkArguments& walk, const sample::WalkBody& body,
                          const sample::Lighting& lighting, const std::vector<sample::SurfacePoint>& points,
-                         const sample::Medium& medium, const RgbValues& reflectance,
+                         const WalkMedium& medium, const RgbValues& reflectance,
                          const std::string& material) {
     sample::WalkOptions options{walk.samples, walk.noise, walk.seed,
                                 [&](double part) { run.progress(part, "random walk"); }};
-    const sample::WalkedLight light = walkLight(body, lighting, points, medium, options);
+    const sample::WalkedLight light = walkLight(body, lighting, points, medium.layers, options);
     run.report["media"].push_back({{"material", material},
-                                   {"mean_free_path", medium.meanFreePath},
-                                   {"single_scattering_albedo", medium.albedo},
+                                   {"epidermis", medium.layers.thickness},
+                                   {"mean_free_path", medium.mean.meanFreePath},
+                                   {"single_scattering_albedo", medium.mean.albedo},
                                    {"reflectance", reflectance},
                                    {"samples", light.samples},
                                    {"noise", light.noise}});
@@ -239,15 +275,6 @@ float unitOf(const Arguments& a, const io::SceneFile& scene) {
     return a.unit > 0 ? a.unit : scene.options.millimetresPerUnit;
 }
 
-// How one material scatters.
-struct Diffusion {
-    Profile profile;
-    float unit = 1;                    // mm per unit of positions
-    float radius = 0;                  // the profile's unit; 0: its own
-    double scale = 1;                  // unit of positions per unit of the profile
-    double narrowest = 0, widest = 0;  // units of positions, of the channels' line spreads
-};
-
 Diffusion diffusionOf(const Arguments& a, const io::SceneFile& scene, const io::SceneMaterial* material) {
     Diffusion d;
     std::string name = a.profile;
@@ -262,7 +289,13 @@ Diffusion diffusionOf(const Arguments& a, const io::SceneFile& scene, const io::
                            " is a file, which does not contain its profile; name one with --profile"));
         if (lut) name = lut->profile;
     }
-    d.profile = name.empty() ? Profile::skin() : io::findProfile(name).profile;
+    if (name.empty()) {
+        d.profile = Profile::skin();
+    } else {
+        const io::ProfileFile file = io::findProfile(name);
+        d.profile = file.profile;
+        d.skin = file.skin;
+    }
     const PelProfileInfo info = d.profile.info();
     d.scale = (d.radius > 0 ? d.radius / info.radius : 1) / d.unit;
     d.narrowest = d.scale * std::min({info.width[0], info.width[1], info.width[2]});
@@ -360,7 +393,7 @@ class Reference {
         const size_t count = mesh_.mesh.vertexCount();
         if (a_.walk.enabled) {
             const Points points = pointsOf(run_, body, mesh_.mesh.positions);
-            const RgbValues A = reflectanceOf(material, {}, {});
+            const RgbValues A = reflectanceOf(d, material, {}, {});
             const sample::WalkedLight light = walked(body, d, points, A, material);
             const size_t shape[] = {2, count, 3};
             std::vector<float> halves = light.first;
@@ -432,14 +465,14 @@ class Reference {
             const std::vector<float> S = integrate(run_, a_, d, lit(d, body.material()), points.positions);
             store(layers.surface, [&](size_t k) { return S[k]; });
         } else {
-            const RgbValues A = reflectanceOf(&material, albedos, pixels);
+            const RgbValues A = reflectanceOf(d, &material, albedos, pixels);
             const sample::WalkedLight light = walked(body, d, points, A, &material);
             const auto at = [&](size_t k) { return 3 * pixels[k / 3] + k % 3; };
             store(layers.surface,
                   [&](size_t k) { return (light.first[k] + light.second[k]) / 2 / A[k % 3]; });
             store(layers.first, [&](size_t k) { return light.first[k] / A[k % 3] * albedo(at(k)); });
             store(layers.second, [&](size_t k) { return light.second[k] / A[k % 3] * albedo(at(k)); });
-            store(layers.meanFreePath, [&](size_t k) { return medium_.meanFreePath[k % 3]; });
+            store(layers.meanFreePath, [&](size_t k) { return medium_.mean.meanFreePath[k % 3]; });
             const std::vector<float> curvature = meanCurvatureAt(run_, mesh_.mesh, points.places),
                                      thickness = thicknessAt(body, points.places);
             store(
@@ -455,14 +488,20 @@ class Reference {
     sample::WalkedLight walked(const sample::WalkBody& body, const Diffusion& d, const Points& points,
                                const RgbValues& reflectance, const io::SceneMaterial* material) {
         const std::string name = io::concat("material ", material ? material->id : 1);
-        medium_ = mediumOf(a_.walk, d.profile, d.scale, reflectance, name);
+        medium_ = mediumOf(a_.walk, d, reflectance, name);
         return walk(run_, a_.walk, body, lighting_, points.places, medium_, reflectance, name);
     }
 
     // What a large plane of the medium reflects. A texture varies the albedo over one medium.
-    RgbValues reflectanceOf(const io::SceneMaterial* material, const std::vector<float>& albedos,
-                            const std::vector<size_t>& pixels) const {
+    RgbValues reflectanceOf(const Diffusion& d, const io::SceneMaterial* material,
+                            const std::vector<float>& albedos, const std::vector<size_t>& pixels) const {
         RgbValues A{0.8, 0.8, 0.8};
+        if (d.skin) {
+            if (!a_.walk.reflectance.empty())
+                throw InputError("--reflectance: that of skin follows from its pigments");
+            std::ranges::copy(skinInfo(*d.skin).albedo, A.begin());
+            return A;
+        }
         for (size_t c = 0; c < 3; ++c) {
             if (material) A[c] = material->material.albedo[c];
             double sum = 0;
@@ -495,7 +534,7 @@ class Reference {
     ReferenceMesh mesh_;
     sample::Scene scene_;
     sample::Lighting lighting_;
-    sample::Medium medium_;  // of the material that was walked last
+    WalkMedium medium_;  // of the material that was walked last
 };
 
 void run(const Arguments& a) {

@@ -130,6 +130,7 @@ void skin(const SkinArguments& a) {
 
 void pigments(const SkinArguments& a) {
     checkOutput(a.output, {"exr"});
+    Progress progress;
     const io::Image image = io::readImage(a.input);
     std::vector<float> albedo = image.interleaved(a.channels);
     // Files of 8 bits hold sRGB.
@@ -138,7 +139,12 @@ void pigments(const SkinArguments& a) {
     const size_t count = image.pixelCount();
     std::vector<float> maps[3];
     for (auto& map : maps) map.resize(count);
-    check(pelSkinFromAlbedo(&a.skin, albedo.data(), count, maps[0].data(), maps[1].data(), maps[2].data()));
+    constexpr size_t piece = 1 << 16;
+    for (size_t i = 0; i < count; i += piece) {
+        progress(double(i) / double(count), "pigments");
+        check(pelSkinFromAlbedo(&a.skin, &albedo[3 * i], std::min(piece, count - i), &maps[0][i], &maps[1][i],
+                                &maps[2][i]));
+    }
     io::Image result;
     result.width = image.width;
     result.height = image.height;

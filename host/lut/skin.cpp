@@ -13,48 +13,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// ---- Coefficients, 1/mm
-
-struct Coefficients {
-    double epidermis, dermis, scattering;
-};
-
-// Jacques, Optical properties of biological tissues: a review, 2013: melanosomes, scattering. Skin without
-// blood and melanin: Jacques, Skin Optics, OMLC News, January 1998, after Saidi 1992. Pheomelanin: Donner and
-// Jensen, A Spectral BSSRDF for Shading Human Skin, 2006. Blood holds 150 g of haemoglobin a litre (Prahl).
-Coefficients coefficients(const PelSkin& skin, const SkinSpectrum& at) {
-    const double nm = at.nanometres, ratio = nm / 500, perCm = 0.1, ln10 = std::numbers::ln10;
-    const double eumelanin = perCm * 519 * std::pow(ratio, -3.0), pheomelanin = 2.9e14 * std::pow(nm, -4.75);
-    const double bare = perCm * (0.244 + 85.3 * std::exp(-(nm - 154) / 66.2));
-    const double haemoglobin =
-        at.oxyhaemoglobin * double(skin.oxygenation) + at.haemoglobin * (1 - double(skin.oxygenation));
-    const double melanin = skin.melanin, blood = skin.blood;
-    return {melanin * (skin.eumelanin * eumelanin + (1 - double(skin.eumelanin)) * pheomelanin) +
-                (1 - melanin) * bare + perCm * ln10 * at.carotene * skin.carotene * 1e-3 / 537,
-            perCm * ln10 * (blood * haemoglobin * 150 / 64500 + at.bilirubin * skin.bilirubin * 1e-3 / 585) +
-                (1 - blood) * bare + skin.water * double(at.water) * 1e-3,
-            skin.scattering * std::pow(ratio, -double(skin.scatteringPower))};
-}
-
-// Share of a wavelength in each channel of linear sRGB (IEC 61966-2-1) under D65; a channel adds up to 1.
-const std::array<Rgb, skinWavelengths>& channels() {
-    static const auto all = [] {
-        std::array<Rgb, skinWavelengths> w{};
-        Rgb sum{};
-        for (int i = 0; i < skinWavelengths; ++i) {
-            const SkinSpectrum& s = skinSpectra[i];
-            w[i] = {3.2404542 * s.x - 1.5371385 * s.y - 0.4985314 * s.z,
-                    -0.9692660 * s.x + 1.8760108 * s.y + 0.0415560 * s.z,
-                    0.0556434 * s.x - 0.2040259 * s.y + 1.0572252 * s.z};
-            for (int c = 0; c < 3; ++c) sum[c] += w[i][c] *= s.d65;
-        }
-        for (Rgb& row : w)
-            for (int c = 0; c < 3; ++c) row[c] /= sum[c];
-        return w;
-    }();
-    return all;
-}
-
 // ---- skinReflected as a polynomial
 
 // Evenly spaced nodes of a variable in which the logarithm of the reflectance is smooth.
@@ -75,13 +33,11 @@ struct Axis {
     }
 };
 
-// The variables: of the thickness, of the absorption along it, and of the lower layer's.
-constexpr double thicknessUnit = 0.5, opticalUnit = 0.2;
-double rootOf(double absorption) {
-    return std::sqrt(absorption / (1 + absorption));
-}
+// The variables are log(1 + x / unit) of the thickness and of the absorption along it, and the logarithm of
+// the lower layer's absorption.
+constexpr double thicknessUnit = 0.05, opticalUnit = 0.2;
 
-constexpr double lowestFrequency = 0.01, highestFrequency = 30;
+constexpr double lowestFrequency = 0.01, highestFrequency = 80;
 constexpr int frequencies = 16;  // the first is 0, the others are evenly spaced in the logarithm
 double frequency(int i) {
     return i == 0 ? 0
@@ -101,7 +57,7 @@ class Table {
         const int first = thickness_.weights(std::log1p(layers.thickness / thicknessUnit), t),
                   second =
                       upper_.weights(std::log1p(layers.thickness * layers.upperAbsorption / opticalUnit), u),
-                  third = lower_.weights(rootOf(layers.lowerAbsorption), l);
+                  third = lower_.weights(std::log(layers.lowerAbsorption), l);
         Spectrum sum{};
         for (int a = 0; a < 4; ++a)
             for (int b = 0; b < 4; ++b)
@@ -121,18 +77,17 @@ class Table {
             for (size_t r = begin; r < end; ++r) {
                 const int a = int(r) / (upper_.nodes * lower_.nodes),
                           b = int(r) / lower_.nodes % upper_.nodes, c = int(r) % lower_.nodes;
-                const double thickness = thicknessUnit * std::expm1(thickness_.node(a)),
-                             root = lower_.node(c) * lower_.node(c);
+                const double thickness = thicknessUnit * std::expm1(thickness_.node(a));
                 const SkinLayers layers{thickness, opticalUnit * std::expm1(upper_.node(b)) / thickness,
-                                        root / (1 - root)};
+                                        std::exp(lower_.node(c))};
                 for (int k = 0; k < frequencies; ++k)
                     rows_[r][k] = float(std::log(skinReflected(layers, frequency(k))));
             }
         });
     }
-    // Of thicknesses from 0.02 to 8 and absorption along them from 0 to 300.
-    const Axis thickness_{7, std::log1p(0.02 / thicknessUnit), std::log1p(8 / thicknessUnit)},
-        upper_{14, 0, std::log1p(300 / opticalUnit)}, lower_{9, 0.03, 0.985};
+    // The ranges of PelSkin reach so far at the wavelengths of the table of spectra.
+    const Axis thickness_{8, std::log1p(0.016 / thicknessUnit), std::log1p(10 / thicknessUnit)},
+        upper_{16, 0, std::log1p(45 / opticalUnit)}, lower_{9, std::log(0.0025), std::log(32)};
     std::vector<Spectrum> rows_;
 };
 
@@ -141,7 +96,7 @@ class Table {
 // Widths of the Gaussians, mm, and frequencies of the fit, 1/mm.
 constexpr int terms = 14, fitted = 28;
 double variance(int i) {
-    return std::pow(0.005 * std::pow(15 / 0.005, i / (terms - 1.0)), 2);
+    return std::pow(0.003 * std::pow(12 / 0.003, i / (terms - 1.0)), 2);
 }
 double fittedFrequency(int j) {
     return 0.02 * std::pow(150 / 0.02, j / (fitted - 1.0));
@@ -154,7 +109,7 @@ struct Computed {
 };
 
 Computed compute(const PelSkin& skin, bool radial) {
-    constexpr double perLog = (frequencies - 2) / 8.0063675676502459;  // log(highest / lowest)
+    constexpr double perLog = (frequencies - 2) / 8.9871968206619729;  // log(highest / lowest)
     static const auto logFrequency = [] {
         std::array<double, fitted> logs;
         for (int j = 0; j < fitted; ++j) logs[j] = std::log(fittedFrequency(j));
@@ -163,11 +118,11 @@ Computed compute(const PelSkin& skin, bool radial) {
     Computed out;
     Rgb light{};
     for (int i = 0; i < skinWavelengths; ++i) {
-        const Coefficients c = coefficients(skin, skinSpectra[i]);
+        const SkinCoefficients c = skinCoefficients(skin, skinSpectra[i]);
         const SkinLayers layers{skin.epidermis * c.scattering, c.epidermis / c.scattering,
                                 c.dermis / c.scattering};
         const Spectrum values = Table::get().at(layers);
-        const Rgb& weight = channels()[i];
+        const Rgb& weight = skinChannels()[i];
         out.reflectance[i] = std::exp(values[0]);
         for (int n = 0; n < 3; ++n) {
             out.albedo[n] += weight[n] * out.reflectance[i];
@@ -179,17 +134,19 @@ Computed compute(const PelSkin& skin, bool radial) {
         if (!radial) continue;
         const double shift = std::log(c.scattering * lowestFrequency);
         for (int j = 0; j < fitted; ++j) {
-            // Cubic [Catmull-Rom] in the logarithm of the frequency; quadratic in it below the first.
+            // Cubic [Catmull-Rom] in the logarithm of the frequency; below the first node quadratic in the
+            // frequency, beyond the last a power of it.
             const double at = (logFrequency[j] - shift) * perLog;
             double value = values[0] + (values[1] - values[0]) * std::exp(2 * std::min(0.0, at) / perLog);
             if (at > 0) {
                 const int cell = std::min(int(at), frequencies - 3);
-                const double x = std::min(at - cell, 1.0);
+                const double x = std::min(at - cell, 1.0), beyond = at - cell - x;
                 const auto node = [&](int q) {
                     return double(values[std::clamp(cell + q, 0, frequencies - 2) + 1]);
                 };
                 const double p = node(-1), q = node(0), r = node(1), s = node(2);
-                value = q + x / 2 * (r - p + x * (2 * p - 5 * q + 4 * r - s + x * (3 * (q - r) + s - p)));
+                value = q + x / 2 * (r - p + x * (2 * p - 5 * q + 4 * r - s + x * (3 * (q - r) + s - p))) +
+                        beyond * (r - q);
             }
             value = std::exp(value);
             for (int n = 0; n < 3; ++n) out.spectrum[j][n] += std::max(0.0, weight[n]) * value;
@@ -415,7 +372,7 @@ std::vector<float> skinTable(const PelSkin& skin, int oxygenations) {
 void skinFromAlbedo(const PelSkin& skin, const float* albedo, size_t count, float* melanin, float* blood,
                     float* difference) {
     const auto maps = Maps::of(skin);
-    for (size_t i = 0; i < count; ++i) {
+    const auto find = [&](size_t i) {
         Rgb wanted;
         for (int c = 0; c < 3; ++c) wanted[c] = std::clamp(albedo[3 * i + c], 0.0f, 1.0f);
         for (double& value : wanted) value = std::isnan(value) ? 0 : value;
@@ -457,7 +414,25 @@ void skinFromAlbedo(const PelSkin& skin, const float* albedo, size_t count, floa
         melanin[i] = found.melanin;
         blood[i] = found.blood;
         if (difference) difference[i] = float(best);
-    }
+    };
+    inParts(count, partsOf(count, 1024), [&](size_t, size_t i, size_t end) {
+        // Pictures of 8 bits repeat their colours: the last pixel of each hash.
+        std::vector<size_t> found(4096, count);
+        for (; i < end; ++i) {
+            const float* rgb = albedo + 3 * i;
+            size_t& same = found[(std::bit_cast<uint32_t>(rgb[0]) * 0x9e3779b1u +
+                                  std::bit_cast<uint32_t>(rgb[1]) * 0x85ebca6bu +
+                                  std::bit_cast<uint32_t>(rgb[2]) * 0xc2b2ae35u) >>
+                                 20];
+            if (same == count || std::memcmp(albedo + 3 * same, rgb, 3 * sizeof(float)) != 0) {
+                find(i);
+            } else {
+                melanin[i] = melanin[same], blood[i] = blood[same];
+                if (difference) difference[i] = difference[same];
+            }
+            same = i;
+        }
+    });
 }
 
 }  // namespace pel

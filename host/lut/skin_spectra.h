@@ -7,6 +7,11 @@
 // Water: 1/m; Hale and Querry, Optical Constants of Water, Applied Optics 12, 1973, linear between values.
 // x, y, z: colour-matching functions of the CIE 1931 standard observer. D65: CIE standard illuminant.
 #pragma once
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "pellucid/pellucid.h"
 
 namespace pel {
 
@@ -87,5 +92,46 @@ inline constexpr SkinSpectrum skinSpectra[skinWavelengths] = {
     {720, 348, 1326, 0, 0, 1.39, 0.002899, 0.001047, 0, 61.6},
 };
 // clang-format on
+
+// Absorption and scattering, 1/mm.
+struct SkinCoefficients {
+    double epidermis, dermis, scattering;
+};
+
+// Jacques, Optical properties of biological tissues: a review, 2013: melanosomes, scattering. Skin without
+// blood and melanin: Jacques, Skin Optics, OMLC News, January 1998, after Saidi 1992. Pheomelanin: Donner and
+// Jensen, A Spectral BSSRDF for Shading Human Skin, 2006. Blood holds 150 g of haemoglobin a litre (Prahl).
+inline SkinCoefficients skinCoefficients(const PelSkin& skin, const SkinSpectrum& at) {
+    const double nm = at.nanometres, ratio = nm / 500, perCm = 0.1, ln10 = std::numbers::ln10;
+    const double eumelanin = perCm * 519 * std::pow(ratio, -3.0), pheomelanin = 2.9e14 * std::pow(nm, -4.75);
+    const double bare = perCm * (0.244 + 85.3 * std::exp(-(nm - 154) / 66.2));
+    const double haemoglobin =
+        at.oxyhaemoglobin * double(skin.oxygenation) + at.haemoglobin * (1 - double(skin.oxygenation));
+    const double melanin = skin.melanin, blood = skin.blood;
+    return {melanin * (skin.eumelanin * eumelanin + (1 - double(skin.eumelanin)) * pheomelanin) +
+                (1 - melanin) * bare + perCm * ln10 * at.carotene * skin.carotene * 1e-3 / 537,
+            perCm * ln10 * (blood * haemoglobin * 150 / 64500 + at.bilirubin * skin.bilirubin * 1e-3 / 585) +
+                (1 - blood) * bare + skin.water * double(at.water) * 1e-3,
+            skin.scattering * std::pow(ratio, -double(skin.scatteringPower))};
+}
+
+// Share of a wavelength in each channel of linear sRGB (IEC 61966-2-1) under D65; a channel adds up to 1.
+inline const std::array<std::array<double, 3>, skinWavelengths>& skinChannels() {
+    static const auto all = [] {
+        std::array<std::array<double, 3>, skinWavelengths> w{};
+        std::array<double, 3> sum{};
+        for (int i = 0; i < skinWavelengths; ++i) {
+            const SkinSpectrum& s = skinSpectra[i];
+            w[i] = {3.2404542 * s.x - 1.5371385 * s.y - 0.4985314 * s.z,
+                    -0.9692660 * s.x + 1.8760108 * s.y + 0.0415560 * s.z,
+                    0.0556434 * s.x - 0.2040259 * s.y + 1.0572252 * s.z};
+            for (int c = 0; c < 3; ++c) sum[c] += w[i][c] *= s.d65;
+        }
+        for (auto& row : w)
+            for (int c = 0; c < 3; ++c) row[c] /= sum[c];
+        return w;
+    }();
+    return all;
+}
 
 }  // namespace pel

@@ -114,7 +114,7 @@ double skinReflected(const SkinLayers& layers, double k) {
     const int thick = 4 + int(std::min(14.0, 3 * optical));
     for (int i = 1; i <= thick; ++i) {
         double x = i / double(thick);
-        const double power = 1 + std::log1p(optical);
+        const double power = 1 + 0.4 * std::log1p(optical);
         x = std::pow(x, power) / (std::pow(x, power) + std::pow(1 - x, power));
         depth.push_back(layers.thickness * x);
     }

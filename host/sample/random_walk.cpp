@@ -43,12 +43,13 @@ class Random {
     uint64_t state_;
 };
 
-// Point i of the three-dimensional R sequence [Roberts 2018], shifted: starts that are spread evenly.
-std::array<double, 3> spread(uint32_t i, const std::array<double, 3>& shift) {
-    constexpr double root = 1.2207440846057596;  // of x^4 = x + 1
-    std::array<double, 3> p;
+// Point i of the four-dimensional R sequence [Roberts 2018], shifted: starts and wavelengths that are spread
+// evenly.
+std::array<double, 4> spread(uint32_t i, const std::array<double, 4>& shift) {
+    constexpr double root = 1.1673039782614187;  // of x^5 = x + 1
+    std::array<double, 4> p;
     double step = 1;
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 4; ++k) {
         step /= root;
         p[k] = shift[k] + step * (i + 1);
         p[k] -= std::floor(p[k]);
@@ -104,8 +105,12 @@ struct Start {
 
 class Walker {
   public:
-    Walker(const WalkBody& body, const Lighting& lighting, const Medium& medium)
+    Walker(const WalkBody& body, const Lighting& lighting, const LayeredMedium& medium)
         : body_(body), lighting_(lighting), medium_(medium) {
+        for (size_t c = 0; c < 3; ++c) {
+            double sum = 0;
+            for (const Wave& wave : medium.waves) shares_[c].push_back(sum += std::abs(wave.weight[c]));
+        }
         const Bounds& b = body.body().bounds();
         low_ = b.low, high_ = b.high;
         const Vec3 size = b.high - b.low;
@@ -129,22 +134,30 @@ class Walker {
     double mean(const Start& start, int channel, uint32_t samples, uint64_t seed, Progress& progress,
                 uint64_t& lost) const {
         Random random(seed);
-        const std::array<double, 3> shift{random.next(), random.next(), random.next()};
+        const std::array<double, 4> shift{random.next(), random.next(), random.next(), random.next()};
+        const std::vector<double>& shares = shares_[size_t(channel)];
         double sum = 0;
         for (uint32_t i = 0; i < samples && !progress.stopped(); ++i) {
             SurfacePoint exit;
-            const double weight = walk(start, channel, spread(i, shift), random, exit, lost);
-            if (weight > 0) sum += weight * irradianceAt(body_.lit(), lighting_, exit)[channel];
+            const std::array<double, 4> first = spread(i, shift);
+            const auto at = std::upper_bound(shares.begin(), shares.end() - 1, first[3] * shares.back());
+            const Wave& wave = medium_.waves[size_t(at - shares.begin())];
+            const double weight = walk(start, wave, first, random, exit, lost);
+            if (weight > 0)
+                sum += std::copysign(weight, wave.weight[channel]) *
+                       irradianceAt(body_.lit(), lighting_, exit)[channel];
         }
-        return sum / samples;
+        return sum * shares.back() / samples;
     }
 
   private:
     // Returns the weight with which the walk leaves at `exit`; 0 if it does not leave.
-    double walk(const Start& start, int channel, const std::array<double, 3>& first, Random& random,
+    double walk(const Start& start, const Wave& wave, const std::array<double, 4>& first, Random& random,
                 SurfacePoint& exit, uint64_t& lost) const {
-        const double path = medium_.meanFreePath[channel], albedo = medium_.albedo[channel],
-                     index = medium_.refractiveIndex;
+        // Delta tracking [Woodcock 1965]: paths of the layer that absorbs more. In the other one some events
+        // change nothing.
+        const double most = std::max(wave.outerAbsorption, wave.absorption),
+                     path = 1 / (wave.scattering + most), index = medium_.refractiveIndex;
         double cosine = std::sqrt(first[0]), weight = 1;
         if (index != 1) {
             weight -= fresnel(cosine, index);
@@ -173,12 +186,19 @@ class Walker {
                 if (!(p.x >= low_.x && p.x <= high_.x && p.y >= low_.y && p.y <= high_.y && p.z >= low_.z &&
                       p.z <= high_.z))
                     break;
-                weight *= albedo;
+                const double absorption =
+                    wave.outerAbsorption != wave.absorption &&
+                            body_.body().nearest(p, medium_.thickness).triangle != Hit::none
+                        ? wave.outerAbsorption
+                        : wave.absorption;
+                weight *= 1 - path * absorption;
                 if (weight < faint) {
                     if (weight == 0 || random.next() < 0.5) return 0;
                     weight *= 2;
                 }
-                d = random.direction();
+                if (absorption == most ||
+                    random.next() * (wave.scattering + most - absorption) < wave.scattering)
+                    d = random.direction();
             }
             step = -path * std::log(random.next());
         }
@@ -188,7 +208,9 @@ class Walker {
 
     const WalkBody& body_;
     const Lighting& lighting_;
-    const Medium& medium_;
+    const LayeredMedium& medium_;
+    std::array<std::vector<double>, 3>
+        shares_;  // per channel: sums of the weights of wavelengths, without sign
     Vec3 low_, high_;
     double depth_ = 0;
 };
@@ -221,13 +243,19 @@ WalkedLight walkPoints(const Walker& walker, std::span<const SurfacePoint> point
     return result;
 }
 
-void check(const WalkBody& body, std::span<const SurfacePoint> points, const Medium& medium,
+void check(const WalkBody& body, std::span<const SurfacePoint> points, const LayeredMedium& medium,
            const WalkOptions& options) {
-    for (int c = 0; c < 3; ++c) {
-        if (!(medium.meanFreePath[c] > 0 && std::isfinite(medium.meanFreePath[c])))
-            throw std::invalid_argument("walkLight: each mean free path must be above 0 and finite");
-        if (!(medium.albedo[c] >= 0 && medium.albedo[c] <= 1))
-            throw std::invalid_argument("walkLight: each single-scattering albedo must be between 0 and 1");
+    if (medium.waves.empty()) throw std::invalid_argument("walkLight: the medium has no wavelength");
+    if (!(medium.thickness >= 0 && std::isfinite(medium.thickness)))
+        throw std::invalid_argument(
+            "walkLight: the thickness of the outer layer must be 0 or more, and finite");
+    for (const Wave& w : medium.waves) {
+        for (const double value : {w.scattering, w.outerAbsorption, w.absorption})
+            if (!(value >= 0 && std::isfinite(value)))
+                throw std::invalid_argument(
+                    "walkLight: scattering and absorption must be 0 or more, and finite");
+        if (w.scattering + std::max(w.outerAbsorption, w.absorption) == 0)
+            throw std::invalid_argument("walkLight: a medium must scatter or absorb");
     }
     if (!(medium.refractiveIndex >= 1 && medium.refractiveIndex <= 3))
         throw std::invalid_argument("walkLight: the refractive index must be between 1 and 3");
@@ -243,6 +271,15 @@ void check(const WalkBody& body, std::span<const SurfacePoint> points, const Med
 }
 
 }  // namespace
+
+LayeredMedium::LayeredMedium(const Medium& medium) : refractiveIndex(medium.refractiveIndex) {
+    for (size_t c = 0; c < 3; ++c) {
+        const double extinction = 1 / medium.meanFreePath[c],
+                     absorption = (1 - medium.albedo[c]) * extinction;
+        waves.push_back({medium.albedo[c] * extinction, absorption, absorption});
+        waves.back().weight[c] = 1;
+    }
+}
 
 WalkBody::WalkBody(const Scene& scene, uint32_t material) : lit_(scene), material_(material) {
     const Mesh& mesh = scene.mesh();
@@ -264,7 +301,7 @@ bool WalkBody::encloses(uint32_t triangle) const {
 }
 
 WalkedLight walkLight(const WalkBody& body, const Lighting& lighting, std::span<const SurfacePoint> points,
-                      const Medium& medium, const WalkOptions& options) {
+                      const LayeredMedium& medium, const WalkOptions& options) {
     check(body, points, medium, options);
     const Walker walker(body, lighting, medium);
     uint32_t samples = options.samples;

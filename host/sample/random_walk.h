@@ -12,6 +12,21 @@ struct Medium {
     double refractiveIndex = 1;  // relative to the outside; 1: index-matched, else smooth Fresnel
 };
 
+// Light of one wavelength, 1/unit of positions.
+struct Wave {
+    double scattering = 0;  // of both layers, isotropic
+    double outerAbsorption = 0, absorption = 0;
+    std::array<double, 3> weight{};  // share in each channel; negative where a colour space is narrow
+};
+
+// All points at most `thickness` away from the nearest triangle belong to the outer layer.
+struct LayeredMedium {
+    LayeredMedium() = default;
+    LayeredMedium(const Medium& medium);  // of one layer and one wavelength per channel
+    double thickness = 0, refractiveIndex = 1;
+    std::vector<Wave> waves;
+};
+
 enum class Boundary { IndexMatched, Fresnel };
 constexpr double fresnelIndex = 1.4;  // of skin; the only one for which burleyMedium has fits
 
@@ -68,6 +83,6 @@ struct WalkedLight {
 // met, and takes the irradiance there, with ray-traced visibility. The result depends on the seed, not on the
 // number of threads.
 WalkedLight walkLight(const WalkBody& body, const Lighting& lighting, std::span<const SurfacePoint> points,
-                      const Medium& medium, const WalkOptions& options);
+                      const LayeredMedium& medium, const WalkOptions& options);
 
 }  // namespace pellucid::sample

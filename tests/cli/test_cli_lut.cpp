@@ -177,3 +177,13 @@ TEST_F(CliLut, SkinIsDescribedDrawnAndTakenFromAPicture) {
     EXPECT_NEAR(maps.channel("melanin").pixels[0], 0.03f, 1e-3f);
     EXPECT_NEAR(maps.channel("blood").pixels[0], 0.01f, 1e-3f);
 }
+
+TEST_F(CliLut, InterruptEndsTheSearchForPigments) {
+    io::Image image;
+    image.width = image.height = 4096;
+    image.addInterleaved(std::vector<std::string>{"R", "G", "B"},
+                         std::vector<float>(3 * image.pixelCount(), 0.2f));
+    io::writeExr(path("a.exr"), image);
+    expectInterrupted("profile pigments @a.exr -o @m.exr");
+    EXPECT_FALSE(std::filesystem::exists(path("m.exr")));
+}

@@ -30,6 +30,13 @@ class ShadeFeatures : public Shade {
             [&](int x, int y, size_t c) { return radius * normals[size_t(3 * (y * width + x)) + c]; });
         add(PEL_SLOT_CURVATURE, {"C.V"}, [&](int, int, size_t) { return 1 / radius; });
     }
+    // A plane with pixels of half a millimetre, half of it lit.
+    void addPlane() {
+        add(PEL_SLOT_POSITION, positionNames, [](int x, int y, size_t c) {
+            return c == 0 ? 0.5 * x : c == 1 ? 0.5 * y : 0;
+        });
+        add(PEL_SLOT_IRRADIANCE, {"E.R", "E.G", "E.B"}, [](int x, int, size_t) { return x < 7; });
+    }
     // The front of a ball in the middle of a square picture, seen from +z.
     static auto ball(int side, float pixel, float radius) {
         return [=](int x, int y, size_t c) {
@@ -273,12 +280,38 @@ TEST_F(ShadeFeatures, DepthThatGivesNoLikelySizeIsSaid) {
     EXPECT_TRUE(contains(with(-250, 1), "depth channel reaches -250"));
 }
 
+TEST_F(ShadeFeatures, MapsOfPigmentsAreSkin) {
+    addPlane();
+    scene_.channels[PEL_SLOT_ALBEDO].clear();
+    PelSkin skin = pelSkinDefaults();
+    skin.melanin = 0.03f, skin.blood = 0.01f;
+    done("profile skin --melanin 0.03 --blood 0.01 -o @cheek.toml");
+    io::SceneMaterial& material = scene_.materials[0];
+    material.profile = "cheek.toml";
+    std::ranges::copy(skinInfo(skin).albedo, material.material.albedo);
+    const auto plain = shaded();
+    material.material.albedo[0] = 0.9f;
+    const io::Image without = gbuffer_;
+    const auto mapped = [&](const std::vector<float>& pigments) {
+        gbuffer_ = without;
+        add(PEL_SLOT_SKIN, Names{"Melanin.V", "Blood.V", "Oxygen.V"},
+            [&](int, int, size_t c) { return pigments[std::min(c, pigments.size() - 1)]; });
+        scene_.channels[PEL_SLOT_SKIN].resize(pigments.size());
+        return shaded();
+    };
+    const auto even = mapped({0.03f, 0.01f});
+    EXPECT_LT(farthest(even, plain), 1e-3);
+    EXPECT_LT(farthest(mapped({0.03f, 0.01f, 0.75f}), plain), 1e-3);
+    EXPECT_EQ(mapped({NAN, NAN}), even) << "the profile's own";
+    EXPECT_EQ(mapped({7, -1}), mapped({0.5f, 0})) << "clamped";
+    EXPECT_GT(farthest(mapped({0.12f, 0.01f}), plain), 0.1);
+    scene_.channels[PEL_SLOT_SKIN] = {"Melanin.V", "Carotene.V"};
+    refuses("Carotene.V");
+}
+
 // Every control of scattering that a scene file can name.
 TEST_F(ShadeFeatures, MethodsAndTheirControls) {
-    add(PEL_SLOT_POSITION, positionNames, [](int x, int y, size_t c) {
-        return c == 0 ? 0.5 * x : c == 1 ? 0.5 * y : 0;
-    });
-    add(PEL_SLOT_IRRADIANCE, {"E.R", "E.G", "E.B"}, [](int x, int, size_t) { return x < 7; });
+    addPlane();
     add(PEL_SLOT_UV, {"UV.U", "UV.V"}, [](int x, int, size_t c) { return c ? 0.5f : float(x) / width; });
     addChannels(gbuffer_, {"B.R", "B.G", "B.B"}, [](int, int, size_t) { return 0.3; });
     addChannels(gbuffer_, {"W.V"}, [](int, int, size_t) { return 0; });

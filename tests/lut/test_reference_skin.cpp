@@ -45,8 +45,9 @@ TEST(Skin, ReflectsWhatARandomWalkDoes) {
 }
 
 TEST(Skin, ChannelsAndDistancesAreThoseOfARandomWalk) {
-    for (const auto& s : {skins[0], skins[1], skins[4]}) {
-        const auto walk = reference::walkChannels(s, 6000);
+    // The bands of the blood of skins[3] are narrower than the steps of the oracle.
+    for (const auto& s : {skins[0], skins[1], skins[2], skins[4], skins[5]}) {
+        const auto walk = reference::walkChannels(s, 10000);
         const PelSkinInfo info = skinInfo(skinOf(s));
         for (int c = 0; c < 3; ++c) {
             EXPECT_NEAR(info.albedo[c], walk.albedo[c], tolerance::skinAlbedo) << c << ", " << s.melanin;
@@ -72,6 +73,31 @@ TEST(Skin, MoreMelaninOrBloodIsDarker) {
                 before[which][c] = info.albedo[c];
             }
         }
+}
+
+// At each wavelength, whatever the other fields are. Channels of linear sRGB have negative weights as well.
+TEST(Skin, MorePigmentReflectsLessOverTheWholeRange) {
+    std::mt19937 random(1);
+    std::vector<float> nanometres, before, now;
+    for (int nm = 380; nm <= 720; nm += 5) nanometres.push_back(float(nm));
+    now.resize(nanometres.size());
+    for (int i = 0; i < sized(60, 6); ++i) {
+        PelSkin skin = pelSkinDefaults();
+#define DRAW(type, name, value, min, max, ...) \
+    skin.name = std::uniform_real_distribution<float>(min, max)(random);
+        PEL_EACH_SKIN_FIELD(DRAW)
+#undef DRAW
+        float& pigment = i % 2 ? skin.blood : skin.melanin;
+        const float most = i % 2 ? pel::range::skin::blood.max : pel::range::skin::melanin.max;
+        before.assign(now.size(), 1);
+        for (int step = 0; step <= 40; ++step) {
+            pigment = most * float(step * step) / 1600;
+            pellucid::check(pelSkinReflectance(&skin, nanometres.data(), uint32_t(now.size()), now.data()));
+            for (size_t k = 0; k < now.size(); ++k)
+                EXPECT_LE(now[k], before[k] + 1e-6f) << nanometres[k] << " nm, " << pigment;
+            before = now;
+        }
+    }
 }
 
 // Without pigment skin sends back most of what its surface lets in (94 %), and more where it scatters more.

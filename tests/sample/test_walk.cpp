@@ -7,6 +7,7 @@
 #include "io/mesh/mesh_parts.h"
 #include "npy.h"
 #include "reference/random_walk.h"
+#include "reference/skin_walk.h"
 #include "sample/random_walk.h"
 
 namespace sample = pellucid::sample;
@@ -89,15 +90,72 @@ TEST(WalkLight, BallEqualsTheOraclesWalk) {
     }
 }
 
-TEST(WalkLight, LargePlaneReflectsWhatTheMediumWasMadeFor) {
-    // A box so large that it is a half-space to its top.
+// A box so large that it is a half-space to its top, whose first triangle is 0 0 to 1 1.
+sample::Mesh largeBox() {
     sample::Mesh box;
     const float s = 100, deep = 60;
     for (int i = 0; i < 8; ++i)
         box.positions.insert(box.positions.end(), {i & 1 ? s : -s, i & 2 ? s : -s, i & 4 ? 0 : -deep});
     box.triangles = {4, 5, 7, 4, 7, 6, 0, 3, 1, 0, 2, 3, 0, 1, 5, 0, 5, 4,
                      1, 3, 7, 1, 7, 5, 3, 2, 6, 3, 6, 7, 2, 0, 4, 2, 4, 6};
-    const sample::Scene scene(box.view());
+    return box;
+}
+
+TEST(WalkLight, LayersReflectWhatTheOraclesWalkDoes) {
+    const sample::Scene scene(largeBox().view());
+    const sample::WalkBody body(scene, 0);
+    const std::vector<sample::SurfacePoint> middle(sized(32, 2), {0, {0.5, 0, 0.5}});
+    for (const double thickness : {0.06, 1.0}) {
+        // The upper layer absorbs more, less, and the medium is white at a second wavelength of a channel.
+        sample::LayeredMedium medium;
+        medium.thickness = thickness;
+        medium.refractiveIndex = 1.4;
+        medium.waves = {{4, 2, 0.1, {1, 0, -0.25}}, {2, 0.02, 3, {0, 1, 0}}, {3, 0.2, 0.05, {0, 0, 1.25}}};
+        std::vector<reference::SkinWalk> walks;
+        for (const sample::Wave& w : medium.waves)
+            walks.push_back(reference::walkSkin(
+                {{thickness, w.outerAbsorption, w.scattering}, {0, w.absorption, w.scattering}}, 1.4,
+                sized(100000, 2000), 3));
+        const sample::WalkedLight light =
+            walkLight(body, fromEverywhere(), middle, medium, {uint32_t(sized(1000, 50))});
+        for (size_t c = 0; c < 3; ++c) {
+            double mean = 0, expected = 0, uncertainty = 0;
+            for (size_t i = c; i < light.first.size(); i += 3)
+                mean += double(light.first[i] + light.second[i]) / double(2 * middle.size());
+            for (size_t i = 0; i < walks.size(); ++i) {
+                expected += medium.waves[i].weight[c] * walks[i].reflectance;
+                uncertainty += std::abs(medium.waves[i].weight[c]) * walks[i].error;
+            }
+            EXPECT_NEAR(mean, expected, testsAreSmall() ? 0.1 : 6 * uncertainty)
+                << "channel " << c << ", thickness " << thickness;
+        }
+        EXPECT_EQ(light.lost, 0u);
+    }
+}
+
+TEST(WalkLight, EqualLayersAreOneMedium) {
+    const sample::Scene scene(sample::makeSphere(1, 24, 48).view());
+    const sample::WalkBody body(scene, 0);
+    const auto points = middles(scene, 60);
+    sample::LayeredMedium layers = medium(0.1);
+    layers.thickness = 0.2;
+    const auto walked = [&](const sample::LayeredMedium& m) {
+        return walkLight(body, fromAbove(), points, m, {8}).first;
+    };
+    EXPECT_EQ(walked(layers), walked(medium(0.1)));
+    for (sample::Wave& w : layers.waves) w.outerAbsorption *= 2;
+    EXPECT_NE(walked(layers), walked(medium(0.1)));
+    // A white furnace: what enters the surface comes back.
+    layers.refractiveIndex = sample::fresnelIndex;
+    for (sample::Wave& w : layers.waves) w.outerAbsorption = w.absorption = 0;
+    double sum = 0;
+    const std::vector<float> white = walkLight(body, fromEverywhere(), points, layers, {64}).first;
+    for (const float v : white) sum += v;
+    EXPECT_NEAR(sum / double(white.size()), 0.92319, 5e-3) << "diffuse Fresnel transmission";
+}
+
+TEST(WalkLight, LargePlaneReflectsWhatTheMediumWasMadeFor) {
+    const sample::Scene scene(largeBox().view());
     const sample::WalkBody body(scene, 0);
     const std::array<double, 3> reflectance{0.8, 0.5, 0.25};
     for (const auto boundary : {sample::Boundary::IndexMatched, sample::Boundary::Fresnel}) {
@@ -207,7 +265,7 @@ TEST(WalkLight, RefusesWhatHasNoResult) {
     const sample::Scene scene(sample::makeSphere(1, 8, 16).view());
     const sample::WalkBody body(scene, 0);
     const std::vector<sample::SurfacePoint> points{{0, {1, 0, 0}}};
-    const auto refused = [&](const sample::Medium& m, const sample::WalkOptions& options = {}) {
+    const auto refused = [&](const sample::LayeredMedium& m, const sample::WalkOptions& options = {}) {
         EXPECT_THROW(walkLight(body, fromAbove(), points, m, options), std::invalid_argument);
     };
     for (double path : {0.0, -1.0, double(INFINITY), std::nan("")}) refused(medium(path));
@@ -215,6 +273,12 @@ TEST(WalkLight, RefusesWhatHasNoResult) {
     refused(medium(1), {0});
     refused(medium(1), {sample::maxWalkSamples + 1});
     refused(medium(1), {1, std::nan("")});
+    refused({});
+    for (const double thickness : {-1.0, std::nan("")}) {
+        sample::LayeredMedium layers = medium(1);
+        layers.thickness = thickness;
+        refused(layers);
+    }
     sample::Medium glass = medium(1);
     glass.refractiveIndex = 0.5;
     refused(glass);

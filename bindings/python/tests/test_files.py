@@ -2,6 +2,7 @@
 import numpy as np
 import pytest
 
+from pellucid import skin_info
 from pellucid._command import program
 
 files = pytest.importorskip("pellucid.files", reason="this build reads no files")
@@ -99,5 +100,10 @@ def test_reference_by_a_random_walk(tmp_path):
     for channel in "RGB":
         assert np.allclose(layers[f"Surface.{channel}"].mean(), 1, atol=0.05)
     assert layers["Thickness"][0, 0] == pytest.approx(side, rel=1e-3)
+    (tmp_path / "skin.toml").write_text('name = "s"\nsource = "test"\nkind = "skin"\nmelanin = 0.03\n')
+    layers = files.reference(*inputs, walk=True, samples=256, profile=tmp_path / "skin.toml")
+    for i, channel in enumerate("RGB"):
+        albedo = skin_info(melanin=0.03).albedo[i]
+        assert albedo * layers[f"Surface.{channel}"].mean() == pytest.approx(albedo, abs=0.02)
     with pytest.raises(files.FileError, match="no known medium"):
         files.reference(*inputs, walk=True, profile="skin")

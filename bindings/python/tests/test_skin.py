@@ -32,6 +32,8 @@ class Skin(unittest.TestCase):
         self.assertLess(difference.max(), 0.5)
         np.testing.assert_allclose(m, melanin, atol=0.005)
         np.testing.assert_allclose(b, blood, atol=0.005)
+        twice = pellucid.skin_from_albedo(np.concatenate([albedo, albedo[::-1]]))
+        np.testing.assert_array_equal(twice[0], np.concatenate([m, m[::-1]]))
         one = pellucid.skin_from_albedo(albedo[3, 4])  # a single colour
         np.testing.assert_array_equal(one, (m[3, 4], b[3, 4], difference[3, 4]))
         with self.assertRaisesRegex(ValueError, "albedo has the shape"):

@@ -87,21 +87,21 @@ Profile table(TomlReader& reader, float unit) {
 constexpr const char* skinKeys[] = {PEL_EACH_SKIN_FIELD(KEY)};
 #undef KEY
 
-Profile skinLayers(TomlReader& reader) {
+PelSkin skinLayers(TomlReader& reader) {
     PelSkin skin = pelSkinDefaults();
 #define READ(type, name, value, min, max, special, unit, key, ...) \
     reader.number(key, skin.name, {float(min), float(max), float(special)});
     PEL_EACH_SKIN_FIELD(READ)
 #undef READ
-    return Profile::skinLayers(skin);
+    return skin;
 }
 
-Profile shapeOf(TomlReader& reader, PelProfileKind kind, float unit) {
+Profile shapeOf(TomlReader& reader, PelProfileKind kind, float unit, std::optional<PelSkin>& skin) {
     switch (kind) {
         case PEL_PROFILE_SKIN:
             return Profile::skin();
         case PEL_PROFILE_SKIN_LAYERS:
-            return skinLayers(reader);
+            return Profile::skinLayers(skin.emplace(skinLayers(reader)));
         case PEL_PROFILE_GAUSSIANS:
             return gaussians(reader, unit);
         case PEL_PROFILE_BURLEY:
@@ -136,7 +136,7 @@ ProfileFile parseProfile(const std::string& file, const std::string& text) {
     if (kind != PEL_PROFILE_SKIN && kind != PEL_PROFILE_SKIN_LAYERS) need(reader, "unit", result.kind);
     reader.choice("unit", unit, units);
     try {
-        result.profile = shapeOf(reader, kind, millimetres[unit]);
+        result.profile = shapeOf(reader, kind, millimetres[unit], result.skin);
         result.profile.setName(result.name);
     } catch (const Error& e) {
         throw FileError(file, e.what(), reader.line());
@@ -153,7 +153,7 @@ ProfileFile findProfile(const std::string& nameOrPath) {
         if (name == nameOrPath) {
             const Profile profile = Profile::named(name);
             const PelProfileInfo info = profile.info();
-            return {name, std::string(profileKinds[info.kind]), info.source, profile};
+            return {name, std::string(profileKinds[info.kind]), info.source, profile, {}};
         }
         known.append(known.empty() ? "" : ", ").append(name);
     }

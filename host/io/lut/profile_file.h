@@ -1,6 +1,7 @@
 // Diffusion profiles as TOML files, and the materials of the library by name. Keys and units:
 // docs/guide/profiles.md.
 #pragma once
+#include <optional>
 #include <pellucid/pellucid.hpp>
 #include <string>
 
@@ -9,6 +10,7 @@ namespace pellucid::io {
 struct ProfileFile {
     std::string name, kind, source;  // source: where the numbers come from
     Profile profile;                 // lengths in mm, whatever the file's unit; named `name`
+    std::optional<PelSkin> skin;     // what a profile of pigments is computed from
 };
 
 // Reads a profile from TOML text; `file` is for messages. Throws FileError with the line: unknown key, wrong
