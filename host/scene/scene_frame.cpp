@@ -193,7 +193,10 @@ void SceneFrame::set(const SceneFile& scene, LutStore& luts, const PelShaderOpti
     materials_.clear();
     for (const SceneMaterial& m : scene.materials) setMaterial(scene, m, luts);
     for (const SceneMaterial& m : scene.materials)
-        if (!m.normalMap.empty()) shader_.setNormalMap(m.id, normalMap(m.normalMap));
+        if (!m.normalMap.empty())
+            shader_.setNormalMap(m.id, normalMap(m.normalMap));
+        else if (!m.normalMapLevels.empty())
+            shader_.setNormalMap(m.id, normalMapLevels(m.normalMapLevels));
     for (const SceneMaterial& m : scene.materials)
         if (!m.scatteredTexture.empty())
             shader_.setScatteredTexture(m.id,
@@ -254,7 +257,7 @@ void SceneFrame::setMaterial(const SceneFile& scene, const SceneMaterial& m, Lut
         shadow = luts.get(scene, m.shadowLut, PEL_LUT_SHADOW);
     Profile profile;
     try {
-        if (!m.profile.empty()) profile = findProfile(m.profile).profile;
+        profile = profileOf(m.profile);
     } catch (const FileError& e) {
         throw FileError(scene.source, concat("the profile of material ", m.id, " is refused: ", e.what()),
                         m.line);
@@ -277,7 +280,7 @@ void SceneFrame::setEye(const SceneFile& scene, const SceneEye& e) {
     PelEye eye = e.eye;
     Profile profile;
     try {
-        if (!e.irisProfile.empty()) profile = findProfile(e.irisProfile).profile;
+        profile = profileOf(e.irisProfile);
         eye.irisProfile = profile.get();
         shader_.setEye(e.material, eye, e.caustics.empty() ? Lut() : readLut(device_, e.caustics));
     } catch (const Error& error) {
@@ -301,7 +304,7 @@ PelImageDesc SceneFrame::cubeImage(const std::string& file) {
 }
 
 const std::vector<PelImageDesc>& SceneFrame::normalMap(const std::string& file) {
-    std::vector<PelImageDesc>& levels = normalMaps_[file];
+    std::vector<PelImageDesc>& levels = normalMaps_[{file}];
     if (!levels.empty()) return levels;
     const Image image = readImage(file);
     std::vector<float> normals =
@@ -313,6 +316,37 @@ const std::vector<PelImageDesc>& SceneFrame::normalMap(const std::string& file) 
         levels.push_back(imageDesc(files_.back(), PEL_FORMAT_RGB32F, uint32_t(level.width),
                                    uint32_t(level.height), level.byteOffset));
     return levels;
+}
+
+const std::vector<PelImageDesc>& SceneFrame::normalMapLevels(const std::vector<std::string>& files) {
+    std::vector<std::string> key = files;
+    key.emplace_back();  // unlike that of a map whose levels are made
+    std::vector<PelImageDesc>& levels = normalMaps_[key];
+    if (!levels.empty()) return levels;
+    std::vector<Image> images;
+    std::vector<float> texels;
+    for (const std::string& file : files) {
+        const Image& image = images.emplace_back(readImage(file));
+        const auto names = colorChannels(file, image, "a level of a normal map needs three: x, y, z");
+        const std::vector<float> values = image.interleaved(names);
+        texels.insert(texels.end(), values.begin(), values.end());
+    }
+    files_.emplace_back(device_, texels);
+    uint64_t offset = 0;
+    for (const Image& image : images) {
+        levels.push_back(imageDesc(files_.back(), PEL_FORMAT_RGB32F, uint32_t(image.width),
+                                   uint32_t(image.height), offset));
+        offset += image.pixelCount() * 3 * sizeof(float);
+    }
+    return levels;
+}
+
+Profile SceneFrame::profileOf(const std::string& nameOrPath) {
+    if (nameOrPath.empty()) return {};
+    const auto known = profiles_.find(nameOrPath);
+    return known != profiles_.end()
+               ? known->second
+               : profiles_.emplace(nameOrPath, findProfile(nameOrPath).profile).first->second;
 }
 
 PelImageDesc SceneFrame::colorImage(const std::string& file, const char* need) {
