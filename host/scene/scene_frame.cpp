@@ -184,23 +184,40 @@ void SceneFrame::update(const SceneFile& scene, LutStore& luts, const PelShaderO
 
 void SceneFrame::set(const SceneFile& scene, LutStore& luts, const PelShaderOptions& options) {
     shader_.set(withOptionsOf(scene, options));
+    std::set<uint32_t> materials, eyes;
+    for (const SceneMaterial& m : scene.materials) materials.insert(m.id);
+    for (const SceneEye& e : scene.eyes) eyes.insert(e.material);
+    bool removed = false;
+    for (const uint32_t id : materials_)
+        if (!materials.contains(id)) {
+            check(pelShaderSetMaterial(shader_.get(), id, nullptr, nullptr, nullptr));
+            irises_.erase(id);
+            removed = true;
+        }
+    for (auto iris = irises_.begin(); iris != irises_.end();)
+        if (eyes.contains(iris->first)) {
+            ++iris;
+        } else {
+            shader_.clearEye(iris->first);
+            iris = irises_.erase(iris);
+        }
+    materials_ = materials;
     // Pixels whose material is removed are not written again.
-    if (!materials_.empty()) {
+    if (removed || options.accumulate) {
         clear(radiance_);
         for (const auto& [slot, buffer] : outputs_) clear(buffer);
     }
-    for (uint32_t id : materials_) check(pelShaderSetMaterial(shader_.get(), id, nullptr, nullptr, nullptr));
-    materials_.clear();
     for (const SceneMaterial& m : scene.materials) setMaterial(scene, m, luts);
-    for (const SceneMaterial& m : scene.materials)
-        if (!m.normalMap.empty())
-            shader_.setNormalMap(m.id, normalMap(m.normalMap));
-        else if (!m.normalMapLevels.empty())
-            shader_.setNormalMap(m.id, normalMapLevels(m.normalMapLevels));
-    for (const SceneMaterial& m : scene.materials)
-        if (!m.scatteredTexture.empty())
+    for (const SceneMaterial& m : scene.materials) {
+        shader_.setNormalMap(m.id, !m.normalMap.empty()        ? normalMap(m.normalMap)
+                                   : m.normalMapLevels.empty() ? std::vector<PelImageDesc>()
+                                                               : normalMapLevels(m.normalMapLevels));
+        if (m.scatteredTexture.empty())
+            shader_.clearScatteredTexture(m.id);
+        else
             shader_.setScatteredTexture(m.id,
                                         colorImage(m.scatteredTexture, "a scattered texture needs three"));
+    }
     setLights(scene);
     shader_.set(scene.ambient);
     for (const SceneEye& e : scene.eyes) setEye(scene, e);
@@ -273,7 +290,6 @@ void SceneFrame::setMaterial(const SceneFile& scene, const SceneMaterial& m, Lut
         material.profile = profile.get();
     }
     shader_.setMaterial(m.id, material, curvature, shadow);
-    materials_.push_back(m.id);
 }
 
 void SceneFrame::setEye(const SceneFile& scene, const SceneEye& e) {
@@ -282,12 +298,20 @@ void SceneFrame::setEye(const SceneFile& scene, const SceneEye& e) {
     try {
         profile = profileOf(e.irisProfile);
         eye.irisProfile = profile.get();
-        shader_.setEye(e.material, eye, e.caustics.empty() ? Lut() : readLut(device_, e.caustics));
+        Lut& caustics = caustics_[e.caustics];
+        if (!caustics && !e.caustics.empty()) caustics = readLut(device_, e.caustics);
+        shader_.setEye(e.material, eye, caustics);
     } catch (const Error& error) {
         throw FileError(scene.source, error.what(), e.line);
     }
-    if (!e.irisTexture.empty())
+    // A texture that is set is read again.
+    const auto iris = irises_.try_emplace(e.material).first;
+    if (iris->second == e.irisTexture) return;
+    if (e.irisTexture.empty())
+        shader_.clearIrisTexture(e.material);
+    else
         shader_.setIrisTexture(e.material, colorImage(e.irisTexture, "the texture of an iris needs three"));
+    iris->second = e.irisTexture;
 }
 
 PelImageDesc SceneFrame::cubeImage(const std::string& file) {

@@ -160,7 +160,9 @@ class SceneFrame {
     std::map<std::vector<std::string>, PelImageDesc> maps_, images_;            // of pictures_, of files_
     std::map<std::vector<std::string>, std::vector<PelImageDesc>> normalMaps_;  // of files_
     std::map<std::string, Profile> profiles_;
-    std::vector<uint32_t> materials_;  // that are set
+    std::map<std::string, Lut> caustics_;     // by their files
+    std::set<uint32_t> materials_;            // that are set
+    std::map<uint32_t, std::string> irises_;  // of materials that are eyes: their textures
 };
 
 // Warnings about values that are probably wrong: depth that is not device depth, objects whose size does not
