@@ -214,7 +214,7 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
             {"tuned", s.tuned != 0}};
 }
 
-void run(const Arguments& a) {
+void run(Arguments a) {
     checkOutput(a.output, {"exr", "png", "jpg", "jpeg", "bmp", "tga"});
     if (!a.picture.empty()) checkOutput(a.picture, {"png", "jpg", "jpeg", "bmp", "tga"});
     const std::string picture = io::isPicture(a.output) ? a.output : a.picture;
@@ -224,7 +224,11 @@ void run(const Arguments& a) {
     if (picture == a.output && !a.picture.empty())
         throw UsageError("--picture: -o is a picture already; write -o to an .exr, or leave --picture out");
     Run run(a.run);
+    if (a.scene.empty()) a.scene = std::exchange(a.gbuffer, "");
     io::SceneFile scene = io::readScene(a.scene);
+    if (a.gbuffer.empty()) a.gbuffer = scene.gbuffer;
+    if (a.gbuffer.empty())
+        throw UsageError("gbuffer: " + a.scene + " names none; write GBUFFER.exr --scene " + a.scene);
     scene.options.buildInBackground = 0;  // the picture is of the methods that it names
     io::checkReadable(a.gbuffer);
     const auto files = outputFiles(a, scene);
@@ -300,9 +304,8 @@ void run(const Arguments& a) {
 void addShade(CLI::App& app) {
     CLI::App* command = app.add_subcommand("shade", "Shade a G-buffer");
     auto a = std::make_shared<Arguments>();
-    option(*command, "gbuffer", a->gbuffer, "multi-layer EXR", required);
-    option(*command, "--scene", a->scene, "scene file (TOML): lights, materials, which channel is what",
-           required);
+    option(*command, "gbuffer", a->gbuffer, "multi-layer EXR; or a scene file that names one", required);
+    option(*command, "--scene", a->scene, "scene file (TOML): lights, materials, which channel is what");
     option(*command, "-o,--output", a->output,
            "file to write: .exr for radiance R, G, B; .png, .jpg, .bmp or .tga for a picture to look at",
            required);

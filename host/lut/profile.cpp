@@ -100,7 +100,12 @@ Ref<Profile> Profile::gaussians(const PelGaussian* gaussians, uint32_t count) {
         terms.push_back({g.variance, {g.weight[0], g.weight[1], g.weight[2]}});
     }
     auto shape = std::make_unique<GaussianShape>(std::move(terms));
-    return make<Profile>(PEL_PROFILE_GAUSSIANS, std::sqrt(widest), std::move(shape));
+    Ref<Profile> profile = make<Profile>(PEL_PROFILE_GAUSSIANS, std::sqrt(widest), std::move(shape));
+    for (uint32_t i = 0; i < count; ++i) {
+        const auto& [variance, weight] = gaussians[i];
+        profile->recipe_.rows.push_back({variance, weight[0], weight[1], weight[2]});
+    }
+    return profile;
 }
 
 PelProfileInfo Profile::info() const {
@@ -121,6 +126,14 @@ PelProfileInfo Profile::info() const {
     for (int c = 0; c < 3; ++c) info.meanFreePath[c] = float(path[c]);
     info.reach = float(reach());
     return info;
+}
+
+ProfileRecipe Profile::recipe() const {
+    ProfileRecipe recipe = recipe_;
+    recipe.kind = profileKind_;
+    recipe.name = name();
+    if (pigments_) recipe.skin = *pigments_;
+    return recipe;
 }
 
 double Profile::reach() const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/object.h"
+#include "fields/captured_frame.h"
 
 namespace pel {
 
@@ -62,6 +63,7 @@ class Profile final : public Object {
     // What skin of pelProfileCreateSkinLayers is made of; NULL for other profiles.
     const PelSkin* pigments() const { return pigments_ ? &*pigments_ : nullptr; }
     void setPigments(const PelSkin& skin) { pigments_ = skin; }  // before the profile is used
+    ProfileRecipe recipe() const;
     // Distance within which 99.9 % of the light of each channel leaves.
     double reach() const;
 
@@ -77,6 +79,7 @@ class Profile final : public Object {
     std::string name_;
     const char* source_ = "";
     std::optional<PelSkin> pigments_;
+    ProfileRecipe recipe_;  // the numbers that it was created from
 };
 
 // Sums of Gaussians, in any order and scale. Weights are scaled to a sum of 1 per channel.

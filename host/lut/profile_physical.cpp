@@ -167,14 +167,21 @@ Ref<Profile> Profile::burley(const float* meanFreePath, const float* albedo, Pel
     }
     auto shape = std::make_unique<BurleyShape>(decay, Rgb{meanFreePath[0], meanFreePath[1], meanFreePath[2]});
     const double radius = largest(shape->width());
-    return make<Profile>(PEL_PROFILE_BURLEY, radius, std::move(shape));
+    Ref<Profile> profile = make<Profile>(PEL_PROFILE_BURLEY, radius, std::move(shape));
+    std::copy_n(meanFreePath, 3, profile->recipe_.first);
+    std::copy_n(albedo, 3, profile->recipe_.second);
+    profile->recipe_.fit = fit;
+    return profile;
 }
 
 Ref<Profile> Profile::burleyDistance(const float* distance) {
     checkPositive(distance, "distance");
     auto shape = std::make_unique<BurleyShape>(Rgb{distance[0], distance[1], distance[2]}, Rgb{});
     const double radius = largest(shape->width());
-    return make<Profile>(PEL_PROFILE_BURLEY, radius, std::move(shape));
+    Ref<Profile> profile = make<Profile>(PEL_PROFILE_BURLEY, radius, std::move(shape));
+    std::copy_n(distance, 3, profile->recipe_.first);
+    profile->recipe_.byDistance = true;
+    return profile;
 }
 
 Ref<Profile> Profile::dipole(const float* absorption, const float* reducedScattering, float eta) {
@@ -203,7 +210,11 @@ Ref<Profile> Profile::dipole(const float* absorption, const float* reducedScatte
     }
     auto shape = std::make_unique<DipoleShape>(dipoles, meanFreePath);
     const double radius = largest(shape->width());
-    return make<Profile>(PEL_PROFILE_DIPOLE, radius, std::move(shape));
+    Ref<Profile> profile = make<Profile>(PEL_PROFILE_DIPOLE, radius, std::move(shape));
+    std::copy_n(absorption, 3, profile->recipe_.first);
+    std::copy_n(reducedScattering, 3, profile->recipe_.second);
+    profile->recipe_.eta = eta;
+    return profile;
 }
 
 }  // namespace pel

@@ -112,7 +112,11 @@ Ref<Profile> Profile::table(const float* distances, const float* values, uint32_
     }
     auto shape = std::make_unique<TableShape>(std::move(pieces));
     const Rgb width = shape->width();
-    return make<Profile>(PEL_PROFILE_TABLE, std::max({width[0], width[1], width[2]}), std::move(shape));
+    Ref<Profile> profile =
+        make<Profile>(PEL_PROFILE_TABLE, std::max({width[0], width[1], width[2]}), std::move(shape));
+    for (uint32_t i = 0; i < count; ++i)
+        profile->recipe_.rows.push_back({distances[i], values[3 * i], values[3 * i + 1], values[3 * i + 2]});
+    return profile;
 }
 
 }  // namespace pel

@@ -184,20 +184,40 @@ void SceneFrame::update(const SceneFile& scene, LutStore& luts, const PelShaderO
 
 void SceneFrame::set(const SceneFile& scene, LutStore& luts, const PelShaderOptions& options) {
     shader_.set(withOptionsOf(scene, options));
+    std::set<uint32_t> materials, eyes;
+    for (const SceneMaterial& m : scene.materials) materials.insert(m.id);
+    for (const SceneEye& e : scene.eyes) eyes.insert(e.material);
+    bool removed = false;
+    for (const uint32_t id : materials_)
+        if (!materials.contains(id)) {
+            check(pelShaderSetMaterial(shader_.get(), id, nullptr, nullptr, nullptr));
+            irises_.erase(id);
+            removed = true;
+        }
+    for (auto iris = irises_.begin(); iris != irises_.end();)
+        if (eyes.contains(iris->first)) {
+            ++iris;
+        } else {
+            shader_.clearEye(iris->first);
+            iris = irises_.erase(iris);
+        }
+    materials_ = materials;
     // Pixels whose material is removed are not written again.
-    if (!materials_.empty()) {
+    if (removed || options.accumulate) {
         clear(radiance_);
         for (const auto& [slot, buffer] : outputs_) clear(buffer);
     }
-    for (uint32_t id : materials_) check(pelShaderSetMaterial(shader_.get(), id, nullptr, nullptr, nullptr));
-    materials_.clear();
     for (const SceneMaterial& m : scene.materials) setMaterial(scene, m, luts);
-    for (const SceneMaterial& m : scene.materials)
-        if (!m.normalMap.empty()) shader_.setNormalMap(m.id, normalMap(m.normalMap));
-    for (const SceneMaterial& m : scene.materials)
-        if (!m.scatteredTexture.empty())
+    for (const SceneMaterial& m : scene.materials) {
+        shader_.setNormalMap(m.id, !m.normalMap.empty()        ? normalMap(m.normalMap)
+                                   : m.normalMapLevels.empty() ? std::vector<PelImageDesc>()
+                                                               : normalMapLevels(m.normalMapLevels));
+        if (m.scatteredTexture.empty())
+            shader_.clearScatteredTexture(m.id);
+        else
             shader_.setScatteredTexture(m.id,
                                         colorImage(m.scatteredTexture, "a scattered texture needs three"));
+    }
     setLights(scene);
     shader_.set(scene.ambient);
     for (const SceneEye& e : scene.eyes) setEye(scene, e);
@@ -254,7 +274,7 @@ void SceneFrame::setMaterial(const SceneFile& scene, const SceneMaterial& m, Lut
         shadow = luts.get(scene, m.shadowLut, PEL_LUT_SHADOW);
     Profile profile;
     try {
-        if (!m.profile.empty()) profile = findProfile(m.profile).profile;
+        profile = profileOf(m.profile);
     } catch (const FileError& e) {
         throw FileError(scene.source, concat("the profile of material ", m.id, " is refused: ", e.what()),
                         m.line);
@@ -270,21 +290,28 @@ void SceneFrame::setMaterial(const SceneFile& scene, const SceneMaterial& m, Lut
         material.profile = profile.get();
     }
     shader_.setMaterial(m.id, material, curvature, shadow);
-    materials_.push_back(m.id);
 }
 
 void SceneFrame::setEye(const SceneFile& scene, const SceneEye& e) {
     PelEye eye = e.eye;
     Profile profile;
     try {
-        if (!e.irisProfile.empty()) profile = findProfile(e.irisProfile).profile;
+        profile = profileOf(e.irisProfile);
         eye.irisProfile = profile.get();
-        shader_.setEye(e.material, eye, e.caustics.empty() ? Lut() : readLut(device_, e.caustics));
+        Lut& caustics = caustics_[e.caustics];
+        if (!caustics && !e.caustics.empty()) caustics = readLut(device_, e.caustics);
+        shader_.setEye(e.material, eye, caustics);
     } catch (const Error& error) {
         throw FileError(scene.source, error.what(), e.line);
     }
-    if (!e.irisTexture.empty())
+    // A texture that is set is read again.
+    const auto iris = irises_.try_emplace(e.material).first;
+    if (iris->second == e.irisTexture) return;
+    if (e.irisTexture.empty())
+        shader_.clearIrisTexture(e.material);
+    else
         shader_.setIrisTexture(e.material, colorImage(e.irisTexture, "the texture of an iris needs three"));
+    iris->second = e.irisTexture;
 }
 
 PelImageDesc SceneFrame::cubeImage(const std::string& file) {
@@ -301,7 +328,7 @@ PelImageDesc SceneFrame::cubeImage(const std::string& file) {
 }
 
 const std::vector<PelImageDesc>& SceneFrame::normalMap(const std::string& file) {
-    std::vector<PelImageDesc>& levels = normalMaps_[file];
+    std::vector<PelImageDesc>& levels = normalMaps_[{file}];
     if (!levels.empty()) return levels;
     const Image image = readImage(file);
     std::vector<float> normals =
@@ -313,6 +340,37 @@ const std::vector<PelImageDesc>& SceneFrame::normalMap(const std::string& file) 
         levels.push_back(imageDesc(files_.back(), PEL_FORMAT_RGB32F, uint32_t(level.width),
                                    uint32_t(level.height), level.byteOffset));
     return levels;
+}
+
+const std::vector<PelImageDesc>& SceneFrame::normalMapLevels(const std::vector<std::string>& files) {
+    std::vector<std::string> key = files;
+    key.emplace_back();  // unlike that of a map whose levels are made
+    std::vector<PelImageDesc>& levels = normalMaps_[key];
+    if (!levels.empty()) return levels;
+    std::vector<Image> images;
+    std::vector<float> texels;
+    for (const std::string& file : files) {
+        const Image& image = images.emplace_back(readImage(file));
+        const auto names = colorChannels(file, image, "a level of a normal map needs three: x, y, z");
+        const std::vector<float> values = image.interleaved(names);
+        texels.insert(texels.end(), values.begin(), values.end());
+    }
+    files_.emplace_back(device_, texels);
+    uint64_t offset = 0;
+    for (const Image& image : images) {
+        levels.push_back(imageDesc(files_.back(), PEL_FORMAT_RGB32F, uint32_t(image.width),
+                                   uint32_t(image.height), offset));
+        offset += image.pixelCount() * 3 * sizeof(float);
+    }
+    return levels;
+}
+
+Profile SceneFrame::profileOf(const std::string& nameOrPath) {
+    if (nameOrPath.empty()) return {};
+    const auto known = profiles_.find(nameOrPath);
+    return known != profiles_.end()
+               ? known->second
+               : profiles_.emplace(nameOrPath, findProfile(nameOrPath).profile).first->second;
 }
 
 PelImageDesc SceneFrame::colorImage(const std::string& file, const char* need) {

@@ -136,6 +136,9 @@ class SceneFrame {
     // Images of files are kept by their names, wide shadows by their channels.
     PelImageDesc mapOf(const std::string& file, const std::string& channel, const std::string& second);
     const std::vector<PelImageDesc>& normalMap(const std::string& file);
+    const std::vector<PelImageDesc>& normalMapLevels(const std::vector<std::string>& files);
+    // Each name or file is one profile, also where several materials have it.
+    Profile profileOf(const std::string& nameOrPath);
     PelImageDesc colorImage(const std::string& file, const char* need);
     // Curvature from normals and positions or depth of the G-buffer (pelScreenCurvature).
     PelImageDesc measureCurvature(const SceneFile& scene);
@@ -154,9 +157,12 @@ class SceneFrame {
     Buffer radiance_;
     std::vector<Buffer> pictures_, files_;  // of the G-buffer and shadow maps; of other files
     std::map<PelImageSlot, Buffer> outputs_;
-    std::map<std::vector<std::string>, PelImageDesc> maps_, images_;  // of pictures_, of files_
-    std::map<std::string, std::vector<PelImageDesc>> normalMaps_;
-    std::vector<uint32_t> materials_;  // that are set
+    std::map<std::vector<std::string>, PelImageDesc> maps_, images_;            // of pictures_, of files_
+    std::map<std::vector<std::string>, std::vector<PelImageDesc>> normalMaps_;  // of files_
+    std::map<std::string, Profile> profiles_;
+    std::map<std::string, Lut> caustics_;     // by their files
+    std::set<uint32_t> materials_;            // that are set
+    std::map<uint32_t, std::string> irises_;  // of materials that are eyes: their textures
 };
 
 // Warnings about values that are probably wrong: depth that is not device depth, objects whose size does not

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "shading/background_build.h"
+#include "shading/capture.h"
 #include "shading/features.h"
 #include "shading/image_slots.h"
 #include "shading/shade_variants.h"
@@ -182,6 +183,11 @@ void Shader::execute(bool blocking) {
         fail(PEL_ERROR_INVALID_STATE,
              "something was set after the last pelShaderCommit, or nothing was committed yet");
     if (standsIn_ && (!background_ || background_->done())) commit();
+    if (!captured_ && !standsIn_) {
+        captured_ = true;
+        if (const char* folder = std::getenv("PELLUCID_CAPTURE"); folder && *folder)
+            captureFrame(*device_, state_, folder);
+    }
     PassWork work = beginWork(false);
     work.interruptible = blocking && device_->hasProgress();
     for (uint32_t row = 0; row < plan_.tileRows;) {

@@ -103,6 +103,7 @@ void Shader::setEye(uint32_t id, const PelEye* eye, Lut* caustics) {
     }
     ShaderEye set = material.eye.value_or(ShaderEye());  // which may have a texture
     const PelEye before = set.params;
+    set.given = *eye;
     set.params = resolvedEye(*eye);
     set.ambientKnown &= sameShape(before, set.params);
     if (caustics && &caustics->device() != device_.get())

@@ -7,6 +7,7 @@ namespace pel {
 
 // The eye around a material that is its sclera.
 struct ShaderEye {
+    PelEye given{};
     PelEye params{};  // checked, with its defaults filled in (eye/eye.h)
     Ref<Profile> irisProfile;
     Ref<Lut> caustics;  // the caller's, or made at commit

@@ -56,4 +56,16 @@ void* symbolIn(void* library, const char* name);
 // unknown.
 std::string folderOf(const void* address);
 
+// openLibrary() for a file in that folder, in a folder "pellucid" there (a build, an installed tree that may
+// have been moved, or the Python package), or in the system's search path.
+inline void* openBeside(const void* address, const std::string& name, std::string& why) {
+    const std::string beside = folderOf(address);
+    for (const std::string& folder : {beside, beside + "pellucid/", std::string()}) {
+        std::string reason;
+        if (void* const library = openLibrary(folder + name, reason)) return library;
+        why += (why.empty() ? "" : "; ") + reason;
+    }
+    return nullptr;
+}
+
 }  // namespace pel::system

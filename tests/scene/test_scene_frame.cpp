@@ -1,6 +1,7 @@
 // A frame that was prepared before its pictures came: the same bits, and nothing is read or made twice.
 #include "scene/scene_frame.h"
 
+#include "cl/cl_spy.h"
 #include "fields/field_ranges.h"
 #include "io/io_files.h"
 
@@ -122,6 +123,57 @@ TEST_F(SceneFrames, PreparedReadsAndMakesNothingTwice) {
     EXPECT_EQ(device.stats().programsBuilt, before.programsBuilt);
     prepared.shade();
     EXPECT_EQ(device.stats().programsBuilt, before.programsBuilt);
+}
+
+// After a move of lights, camera and eyes: the launches of a steady frame, and no new buffer. Pictures of
+// what is taken away and put back are those of a new frame.
+TEST_F(SceneFrames, UpdateSetsWhatChanged) {
+    const Device device("");
+    io::SceneFile s = scene();
+    s.eyes[0].irisProfile = "skin-dark";
+    const io::Image gbuffer = ball();
+    io::LutStore luts(device);
+    io::SceneFrame frame(device, gbuffer, s, luts);
+    const auto updated = [&] {
+        device.stats();  // waits
+        const spy::Counts before = spy::counts();
+        frame.update(s, luts);
+        frame.shade();
+        const spy::Counts now = spy::counts();
+        return std::array{now.launches - before.launches, now.fills - before.fills,
+                          now.buffersMade - before.buffersMade};
+    };
+    frame.shade();
+    const auto steady = updated();
+    s.lights[0].light.toLight[0] = -0.6f;
+    s.lights[0].light.worldToShadow[3] = 0.1f;
+    s.camera.position[0] = 3;
+    s.eyes[0].eye.gaze[0] = 0.2f;
+    s.materials[0].material.specular = 0.4f;
+    const auto moved = updated();
+    std::printf("steady: %lu launches, %lu fills; after a move %lu, %lu\n", steady[0], steady[1], moved[0],
+                moved[1]);
+    EXPECT_EQ(moved, steady);
+    EXPECT_EQ(steady[2], 0u) << "buffers";
+    const auto expectAsNew = [&](const char* what) {
+        SCOPED_TRACE(what);
+        updated();
+        io::LutStore others(device);
+        io::SceneFrame another(device, gbuffer, s, others);
+        another.shade();
+        EXPECT_EQ(frame.radiance(), another.radiance());
+    };
+    expectAsNew("moved");
+    const io::SceneFile whole = s;
+    s.eyes[0].irisTexture.clear();
+    expectAsNew("fibres");
+    s.eyes.clear();
+    s.materials[0].normalMap.clear();
+    expectAsNew("no eye, no map");
+    s.materials.pop_back();
+    expectAsNew("one material");
+    s = whole;
+    expectAsNew("all again");
 }
 
 // A field of a structure at an end of its range, or at its special value.

@@ -141,11 +141,13 @@ class Scene {
             move(l.shadowMapFile);
             for (io::SceneCascade& c : l.cascades) move(c.file);
         }
-        for (io::SceneMaterial& m : scene.materials)
+        for (io::SceneMaterial& m : scene.materials) {
             move(m.profile), move(m.scatteredTexture), move(m.normalMap);
+            for (std::string& level : m.normalMapLevels) move(level);
+        }
         for (io::SceneLut& l : scene.luts) move(l.file), move(l.profile);
         for (io::SceneEye& e : scene.eyes) move(e.irisProfile), move(e.irisTexture), move(e.caustics);
-        move(scene.ambientCube), move(scene.reflectionCube);
+        move(scene.gbuffer), move(scene.ambientCube), move(scene.reflectionCube);
         io::writeScene(path, scene);
     }
 

@@ -23,24 +23,13 @@ struct Loaded {
 
 Loaded load() {
     Loaded loaded;
-    // First beside libpellucid, or in a folder there: in a build, an installed tree that may have been moved,
-    // or the Python package. Then by name, in the program's search path.
-    const std::string beside = pel::system::folderOf(reinterpret_cast<const void*>(&pelVersion));
-    for (const std::string& folder : {beside, beside + "pellucid/", std::string()}) {
-        const std::string file = folder + PELLUCID_PICTURES;
-        std::string why;
-        void* const module = pel::system::openLibrary(file, why);
-        if (!module) {
-            loaded.why += (loaded.why.empty() ? "" : "; ") + why;
-            continue;
-        }
-        const auto* library =
-            static_cast<const PictureLibrary*>(pel::system::symbolIn(module, "pellucidPictures"));
-        if (library && std::strcmp(library->version, PELLUCID_VERSION) == 0) return {library, ""};
-        loaded.why = file + " belongs to another version of pellucid";
-        return loaded;
-    }
-    return loaded;
+    void* const module =
+        pel::system::openBeside(reinterpret_cast<const void*>(&pelVersion), PELLUCID_PICTURES, loaded.why);
+    if (!module) return loaded;
+    const auto* library =
+        static_cast<const PictureLibrary*>(pel::system::symbolIn(module, "pellucidPictures"));
+    if (library && std::strcmp(library->version, PELLUCID_VERSION) == 0) return {library, ""};
+    return {nullptr, PELLUCID_PICTURES " belongs to another version of pellucid"};
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "io/choice_keys.h"
 #include "io/input_file.h"
 #include "io/toml_reader.h"
+#include "io/toml_writer.h"
 
 namespace pellucid::io {
 namespace {
@@ -143,6 +144,49 @@ ProfileFile parseProfile(const std::string& file, const std::string& text) {
     }
     reader.finish();
     return result;
+}
+
+std::string profileText(const pel::ProfileRecipe& recipe) {
+    std::string out;
+    TomlWriter writer(out);
+    writer.text("name", recipe.name);
+    writer.choice("kind", recipe.kind, profileKinds);
+    writer.text("source", "captured");
+    if (recipe.kind != PEL_PROFILE_SKIN && recipe.kind != PEL_PROFILE_SKIN_LAYERS) writer.text("unit", "mm");
+    const auto three = [&](const char* key, const float* values) {
+        writer.numbers(key, values, 3, range::any);
+    };
+    switch (recipe.kind) {
+        case PEL_PROFILE_SKIN:
+            break;
+        case PEL_PROFILE_SKIN_LAYERS:
+#define WRITE(type, name, value, min, max, special, unit, key, ...) \
+    writer.number(key, recipe.skin.name, range::any);
+            PEL_EACH_SKIN_FIELD(WRITE)
+#undef WRITE
+            break;
+        case PEL_PROFILE_BURLEY:
+            three(recipe.byDistance ? "distance" : "mean_free_path", recipe.first);
+            if (recipe.byDistance) break;
+            three("albedo", recipe.second);
+            writer.choice("fit", recipe.fit, fits);
+            break;
+        case PEL_PROFILE_DIPOLE:
+            three("absorption", recipe.first);
+            three("reduced_scattering", recipe.second);
+            writer.number("eta", recipe.eta, range::any);
+            break;
+        case PEL_PROFILE_GAUSSIANS:
+        case PEL_PROFILE_TABLE: {
+            const bool sums = recipe.kind == PEL_PROFILE_GAUSSIANS;
+            for (const std::array<float, 4>& row : recipe.rows) {
+                out += sums ? "[[gaussian]]\n" : "[[sample]]\n";
+                writer.number(sums ? "variance" : "distance", row[0], range::any);
+                three(sums ? "weight" : "value", &row[1]);
+            }
+        }
+    }
+    return out;
 }
 
 ProfileFile findProfile(const std::string& nameOrPath) {

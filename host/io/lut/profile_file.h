@@ -5,6 +5,8 @@
 #include <pellucid/pellucid.hpp>
 #include <string>
 
+#include "fields/captured_frame.h"
+
 namespace pellucid::io {
 
 struct ProfileFile {
@@ -16,6 +18,9 @@ struct ProfileFile {
 // Reads a profile from TOML text; `file` is for messages. Throws FileError with the line: unknown key, wrong
 // type, value out of range, missing key.
 ProfileFile parseProfile(const std::string& file, const std::string& text);
+
+// The text of a profile file that is read back as the same profile.
+std::string profileText(const pel::ProfileRecipe& recipe);
 
 // A material of the library by name, or a file whose name ends in .toml. Throws FileError; for an unknown
 // name it lists the library.

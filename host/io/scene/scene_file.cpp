@@ -93,7 +93,10 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
                 scene.source,
                 concat("'thickness_taps' is ", m.material.thicknessTaps, "; 0, 8, 16 or 32 would be right"),
                 m.line);
-        if (!m.normalMap.empty())
+        if (!m.normalMap.empty() && !m.normalMapLevels.empty())
+            throw FileError(scene.source,
+                            "'normal_map_levels' cannot stand beside 'normal_map'; leave one out", m.line);
+        if (!m.normalMap.empty() || !m.normalMapLevels.empty())
             for (const auto& [slot, key] : {std::pair{PEL_SLOT_UV, "uv"}, {PEL_SLOT_TANGENT, "tangent"}})
                 if (scene.channels[slot].empty())
                     channels.fail(key, concat("is missing; the normal map of material ", m.id, " needs it"));
@@ -185,15 +188,17 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
         if (profile.ends_with(".toml")) besideScene(profile);
     };
     for (SceneLut& l : scene.luts) besideScene(l.file), profileBesideScene(l.profile);
-    for (SceneMaterial& m : scene.materials)
+    for (SceneMaterial& m : scene.materials) {
         profileBesideScene(m.profile), besideScene(m.scatteredTexture), besideScene(m.normalMap);
+        for (std::string& level : m.normalMapLevels) besideScene(level);
+    }
     for (SceneEye& e : scene.eyes)
         besideScene(e.irisTexture), besideScene(e.caustics), profileBesideScene(e.irisProfile);
     for (SceneLight& l : scene.lights) {
         besideScene(l.shadowMapFile);
         for (SceneCascade& c : l.cascades) besideScene(c.file);
     }
-    besideScene(scene.reflectionCube), besideScene(scene.ambientCube);
+    besideScene(scene.gbuffer), besideScene(scene.reflectionCube), besideScene(scene.ambientCube);
     for (std::string& output : scene.outputs) besideScene(output);
     return scene;
 }

@@ -35,6 +35,8 @@ struct SceneMaterial {
     ScenePreset preset = ScenePreset::none;
     std::string scatteredTexture;  // image of light that was scattered in texture space, linear; "": none
     std::string normalMap;  // image of tangent-space normals, x, y, z from 0 to 1 as in 8-bit files; "": none
+    // Instead: its levels, the finest first, x, y, z from -1 to 1
+    std::vector<std::string> normalMapLevels;
     int line = 0;
 };
 
@@ -67,7 +69,8 @@ struct SceneLight {
 };
 
 struct SceneFile {
-    std::string source;  // the file, for messages
+    std::string source;   // the file, for messages
+    std::string gbuffer;  // image file; "": the user names one
     // Of the G-buffer per image slot; empty: slot not set
     std::array<std::vector<std::string>, PEL_SLOT_COUNT> channels;
     // Scenes set the fields in optionKeys() of scene_keys.h

@@ -7,6 +7,7 @@
 #include "io/choice_keys.h"
 #include "io/scene/scene_file.h"
 #include "shared/image_slots.h"
+#include "shared/shade_passes.h"
 
 namespace pellucid::io {
 
@@ -122,6 +123,7 @@ void materialKeys(Visitor& v, Material& m) {
     auto& s = m.material;
     PEL_EACH_MATERIAL_FIELD(PELLUCID_FIELD_KEY)
     v.text("normal_map", m.normalMap);
+    v.texts("normal_map_levels", m.normalMapLevels, PEL_MAP_LEVELS, 1);
     v.choice("specular_model", m.material.specularModel, specularModels);
     v.choice("scattering", m.material.scattering, scatterings);
     v.text("scattered_texture", m.scatteredTexture);
@@ -129,6 +131,7 @@ void materialKeys(Visitor& v, Material& m) {
 
 template <class Visitor, class Scene>
 void optionKeys(Visitor& v, Scene& scene) {
+    v.text("gbuffer", scene.gbuffer);
     auto& s = scene.options;
     PEL_EACH_OPTION_FIELD(PELLUCID_FIELD_KEY)
     v.text("reflection_cube", scene.reflectionCube);

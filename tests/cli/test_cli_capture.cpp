@@ -1,0 +1,335 @@
+// PELLUCID_CAPTURE: `pellucid shade` makes the same bits of a captured frame as the program that it was
+// captured from.
+#include "cli_run.h"
+#include "eye/eye_frame.h"
+#include "io/image/image_file.h"
+#include "shading/pass_scene.h"
+
+using namespace shade_test;
+using pellucid::Lut;
+using pellucid::Profile;
+namespace fs = std::filesystem;
+
+namespace {
+
+class Capture : public CommandTest {
+  protected:
+    void TearDown() override {
+        ::unsetenv("PELLUCID_CAPTURE");
+        pelSetLogCallback(nullptr, nullptr);
+        CommandTest::TearDown();
+    }
+    // Commits and executes with the variable set. What the log says is in said_.
+    void capture(Shader& shader, const std::string& folder = "captures") {
+        said_.clear();
+        pelSetLogCallback([](void* said, PelLogLevel, const char*,
+                             const char* line) { static_cast<std::string*>(said)->append(line) += '\n'; },
+                          &said_);
+        ::setenv("PELLUCID_CAPTURE", path(folder).c_str(), 1);
+        shader.commit();
+        said_.clear();
+        shader.execute();
+        ::unsetenv("PELLUCID_CAPTURE");
+        pelSetLogCallback(nullptr, nullptr);
+    }
+    std::vector<float> radianceOf(const std::string& file) const {
+        const pellucid::io::Image image = pellucid::io::readImage(file);
+        const std::vector<std::string> names{"R", "G", "B"};
+        return image.interleaved(names);
+    }
+    // Captures an execution, and compares what the command makes of it.
+    void expectRepeats(Shader& shader, const Buffer& target) {
+        capture(shader);
+        EXPECT_EQ(said_, "");
+        const std::vector<float> expected = target.readAll<float>();
+        EXPECT_TRUE(std::ranges::any_of(expected, [](float v) { return v > 0; }));
+        done("shade @captures/shader-1/scene.toml -o @again.exr");
+        EXPECT_TRUE(sameBits(radianceOf(path("again.exr")), expected));
+        fs::rename(path("captures"), path("captures-" + std::to_string(++number_)));
+    }
+    void expectRepeats(const Frame& f, const std::function<void(Shader&)>& change = {}) {
+        Shader shader(device());
+        setFrame(device(), shader, f, tables());
+        const Buffer target = setTarget(device(), shader, f);
+        if (change) change(shader);
+        expectRepeats(shader, target);
+    }
+    static ::testing::AssertionResult sameBits(const std::vector<float>& a, const std::vector<float>& b) {
+        if (a.size() != b.size()) return ::testing::AssertionFailure() << a.size() << " and " << b.size();
+        size_t others = 0;
+        for (size_t i = 0; i < a.size(); ++i)
+            others += std::bit_cast<uint32_t>(a[i]) != std::bit_cast<uint32_t>(b[i]);
+        if (!others) return ::testing::AssertionSuccess();
+        return ::testing::AssertionFailure() << others << " of " << a.size() << " values differ";
+    }
+
+    std::string said_;
+    int number_ = 0;
+};
+
+// A relief whose materials scatter, under a light with a shadow map from above.
+Frame scatteringFrame(PelScattering scattering) {
+    Frame f = reliefFrame(3, 96, 64, 0.5f);
+    Light light;
+    PelLight& l = light.params;
+    l.toLight[0] = 0.6f, l.toLight[1] = 0, l.toLight[2] = 0.8f;
+    const float rows[16] = {1 / 60.0f, 0, 0, 0.1f, 0, 1 / 60.0f, 0, 0.1f, 0, 0, -0.01f, 0.5f, 0, 0, 0, 1};
+    std::copy_n(rows, 16, l.worldToShadow);
+    l.shadowDepthRange = 100;
+    l.shadowFilterTexels = 16;
+    light.mapSize = 64;
+    light.map.components = 1;
+    for (uint32_t i = 0; i < 64 * 64; ++i) light.map.values.push_back(i % 64 > 40 ? 0.2f : 0.48f);
+    f.lights.push_back(light);
+    f.camera.position[2] = 200;
+    f.ambient.constant[0] = 0.1f;
+    for (auto& [id, m] : f.materials) {
+        m = pelMaterialDefaults();
+        m.scattering = scattering;
+        m.thicknessTaps = 8;
+    }
+    return f;
+}
+
+std::vector<Profile> profiles() {
+    const float paths[] = {1.2f, 0.7f, 0.31f}, albedos[] = {0.7f, 0.4f, 0.3f}, few[] = {0.02f, 0.1f, 0.3f};
+    PelSkin skin = pelSkinDefaults();
+    skin.melanin = 0.17f;
+    return {Profile::skin(),
+            Profile::gaussians({{0.1f, {0.3f, 0.4f, 0.5f}}, {1.3f, {0.7f, 0.5f, 0.1f}}}),
+            Profile::burley(paths, albedos, PEL_BURLEY_SEARCHLIGHT),
+            Profile::burleyDistance(paths),
+            Profile::dipole(few, paths, 1.37f),
+            Profile::table({0, 0.3f, 1.7f, 4}, {1, 1, 1, 0.5f, 0.4f, 0.3f, 0.1f, 0.05f, 0.01f, 0, 0, 0}),
+            Profile::skinLayers(skin)};
+}
+
+}  // namespace
+
+// Lights of all types with maps of both projections and wide shadows, tables of the caller's, every image.
+TEST_F(Capture, RepeatsLightsAndTables) {
+    const Frame f = randomFrame(5, 70, 40, 3);
+    Shader shader(device());
+    setFrame(device(), shader, f, tables());
+    const Buffer target = setTarget(device(), shader, f);
+    const Buffer diffuse = setTarget(device(), shader, f, PEL_SLOT_OUT_DIFFUSE),
+                 thickness = setTarget(device(), shader, f, PEL_SLOT_OUT_THICKNESS);
+    expectRepeats(shader, target);
+    const std::string folder = path("captures-1/shader-1/");
+    EXPECT_TRUE(sameBits(radianceOf(folder + "diffuse.exr"), diffuse.readAll<float>()));
+    EXPECT_TRUE(sameBits(pellucid::io::readImage(folder + "thickness.exr").channels[0].pixels,
+                         thickness.readAll<float>()));
+}
+
+TEST_F(Capture, RepeatsPackedFormats) {
+    const Frame f = randomFrame(6, 64, 32, 1);
+    Random random(7);
+    const auto bytes = [&](uint32_t count, uint32_t highest = 255) {
+        std::vector<uint8_t> values(count);
+        for (uint8_t& v : values) v = uint8_t(random.below(highest + 1));
+        return Buffer(device(), values);
+    };
+    const uint32_t n = uint32_t(f.pixels());
+    expectRepeats(f, [&](Shader& shader) {
+        const auto set = [&](PelImageSlot slot, PelFormat format, const Buffer& values) {
+            shader.set(slot, imageDesc(values, format, f.width, f.height));
+        };
+        set(PEL_SLOT_NORMAL_SHADING, PEL_FORMAT_OCT16X2_SNORM, bytes(4 * n));
+        set(PEL_SLOT_NORMAL_GEOMETRIC, PEL_FORMAT_RGBA8_UNORM, bytes(4 * n));
+        set(PEL_SLOT_NORMAL_BLURRED, PEL_FORMAT_A2B10G10R10_UNORM, bytes(4 * n));
+        set(PEL_SLOT_POSITION, PEL_FORMAT_RGBA16F, bytes(8 * n, 0x5b));  // no Inf, no NaN
+        set(PEL_SLOT_ALBEDO, PEL_FORMAT_RGBA8_SRGB, bytes(4 * n));
+        set(PEL_SLOT_AMBIENT_OCCLUSION, PEL_FORMAT_R8_UNORM, bytes(n));
+        set(PEL_SLOT_ROUGHNESS, PEL_FORMAT_R16_UNORM, bytes(2 * n));
+        set(PEL_SLOT_CURVATURE, PEL_FORMAT_R16F, bytes(2 * n, 0x38));
+        set(PEL_SLOT_MATERIAL, PEL_FORMAT_R8_UINT, bytes(n, 3));
+        shader.set(0, PEL_LIGHT_SHADOW_MAP, imageDesc(bytes(2 * 61 * 61), PEL_FORMAT_R16_UNORM, 61, 61));
+        // A part of a larger image, every second pixel.
+        const Buffer larger = bytes(2 * n + 64);
+        PelImageDesc specular = imageDesc(larger, PEL_FORMAT_R8_UNORM, f.width, f.height, 33);
+        specular.pixelStride = 2, specular.rowStride = 2 * f.width;
+        shader.set(PEL_SLOT_SPECULAR, specular);
+    });
+}
+
+TEST_F(Capture, RepeatsEveryMethodAndProfile) {
+    const std::vector<Profile> all = profiles();
+    for (const auto scattering :
+         {PEL_SCATTERING_NONE, PEL_SCATTERING_PREINTEGRATED, PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_SCREEN,
+          PEL_SCATTERING_LIGHT, PEL_SCATTERING_TEXTURE, PEL_SCATTERING_AUTO}) {
+        SCOPED_TRACE(int(scattering));
+        Frame f = scatteringFrame(scattering);
+        Random random(8);
+        const auto scalars = [&](PelImageSlot slot, uint32_t components) {
+            f.slots[slot].components = components;
+            for (size_t i = 0; i < components * f.pixels(); ++i)
+                f.slots[slot].values.push_back(random.uniform(0.2f, 1));
+        };
+        scalars(PEL_SLOT_SCATTER_WEIGHT, scattering == PEL_SCATTERING_SCREEN ? 2 : 1);
+        scalars(PEL_SLOT_MEAN_CURVATURE, 1);
+        scalars(PEL_SLOT_UV, 2);
+        // Both materials have one profile, but in one frame.
+        const Profile first = all[scattering], second = scattering == PEL_SCATTERING_AUTO ? all[0] : first;
+        f.materials[1].profile = first.get();
+        f.materials[2].profile = second.get();
+        expectRepeats(f, [&](Shader& shader) {
+            if (scattering != PEL_SCATTERING_TEXTURE) return;
+            std::vector<float> texels(3 * 16 * 8);
+            for (float& t : texels) t = random.uniform();
+            for (uint32_t id : {1u, 2u})
+                shader.setScatteredTexture(id, imageDesc(Buffer(device(), texels), PEL_FORMAT_RGB32F, 16, 8));
+        });
+    }
+}
+
+TEST_F(Capture, RepeatsFormsOfShadowMaps) {
+    for (const auto content :
+         {PEL_SHADOW_CONTENT_DEPTH, PEL_SHADOW_CONTENT_MOMENTS, PEL_SHADOW_CONTENT_EXPONENTIAL}) {
+        SCOPED_TRACE(int(content));
+        Frame f = scatteringFrame(PEL_SCATTERING_PREINTEGRATED);
+        for (auto& [id, m] : f.materials) std::fill_n(m.deepScatterColor, 3, 0.5f);
+        const uint32_t components = content == PEL_SHADOW_CONTENT_MOMENTS ? 2 : 1;
+        Light light = f.lights[0];
+        light.map = {};
+        PelLight& l = light.params;
+        l.shadowContent = content;
+        l.shadowExponent = 80;
+        const auto map = [&](PelLightSlot slot, uint32_t width, uint32_t height) {
+            std::vector<float> values;
+            for (uint32_t i = 0; i < width * height; ++i) {
+                const float z = i % width > width / 2 ? 0.2f : 0.48f;
+                values.push_back(content == PEL_SHADOW_CONTENT_EXPONENTIAL ? std::exp(80 * z) : z);
+                if (components == 2) values.push_back(z * z + 1e-4f);
+            }
+            return MapImage{slot, width, height, components, values};
+        };
+        l.shadowCascades = 3;
+        for (int i = 0; i < 2; ++i) {
+            std::copy_n(l.worldToShadow, 16, l.cascadeToShadow[i]);
+            l.cascadeToShadow[i][0] /= float(2 + i);
+            l.cascadeDepthRange[i] = l.shadowDepthRange;
+        }
+        light.maps = {map(PEL_LIGHT_SHADOW_MAP, 32, 32), map(PEL_LIGHT_CASCADE_1, 24, 40),
+                      map(PEL_LIGHT_CASCADE_2, 16, 16)};
+        Light lamp;
+        lamp.params.type = PEL_LIGHT_POINT;
+        lamp.params.position[0] = 20, lamp.params.position[1] = 10, lamp.params.position[2] = 40;
+        for (int r = 0; r < 3; ++r)
+            lamp.params.worldToShadow[5 * r] = 1,
+                                          lamp.params.worldToShadow[4 * r + 3] = -lamp.params.position[r];
+        lamp.params.shadowProjection = PEL_SHADOW_CUBE_RADIAL;
+        lamp.params.shadowContent = content;
+        lamp.params.shadowExponent = 80;
+        lamp.params.shadowDepthRange = 100;
+        lamp.params.shadowFilterTexels = 8;
+        std::fill_n(lamp.params.color, 3, 800.0f);
+        lamp.maps = {map(PEL_LIGHT_SHADOW_MAP, 12, 72)};
+        f.lights = {light, lamp};
+        expectRepeats(f);
+    }
+}
+
+TEST_F(Capture, RepeatsEyesCubesAndNormalMaps) {
+    eye_test::EyeFrame frame(128, 96, 0.3f, 64, 48);
+    Shader shader(frame.device);
+    frame.prepare(shader);
+    Random random(9);
+    const auto colors = [&](uint32_t count) {
+        std::vector<float> values(3 * count);
+        for (float& v : values) v = random.uniform();
+        return Buffer(frame.device, values);
+    };
+    PelEye eye = pelEyeDefaults();
+    eye.gaze[0] = 0.3f, eye.gaze[1] = 0.1f, eye.gaze[2] = 2;  // not of unit length
+    eye.up[0] = 0.2f;
+    const Profile iris = profiles()[2];
+    eye.irisProfile = iris.get();
+    PelEyeLutDesc table = pelEyeLutDescOf(&eye);
+    table.profile = nullptr;
+    shader.setEye(2, eye, Lut(frame.device, table));
+    shader.setIrisTexture(2, imageDesc(colors(32 * 32), PEL_FORMAT_RGB32F, 32, 32));
+    shader.setReflectionCube(imageDesc(colors(6 * 16), PEL_FORMAT_RGB32F, 4, 24));
+    shader.setAmbientCube(imageDesc(colors(6 * 4), PEL_FORMAT_RGB32F, 12, 2));
+    const auto set = [&](PelImageSlot slot, PelFormat format, uint32_t components, float low) {
+        std::vector<float> values(components * frame.pixels());
+        for (float& v : values) v = random.uniform(low, 1);
+        shader.set(slot, imageDesc(Buffer(frame.device, values), format, frame.width, frame.height));
+    };
+    set(PEL_SLOT_WETNESS, PEL_FORMAT_R32F, 1, 0);
+    set(PEL_SLOT_UV, PEL_FORMAT_RG32F, 2, 0);
+    set(PEL_SLOT_UV_GRADIENT, PEL_FORMAT_RGBA32F, 4, -0.2f);
+    set(PEL_SLOT_TANGENT, PEL_FORMAT_RGBA32F, 4, -1);
+    PelMaterial wall = pelMaterialDefaults();
+    wall.profile = iris.get();
+    wall.scattering = PEL_SCATTERING_PREINTEGRATED;
+    shader.setMaterial(1, wall);
+    // Values that do not survive a detour over 0 to 1, and 8 bits.
+    const Buffer levels = colors(16 * 8 + 8 * 4 + 4 * 2);
+    shader.setNormalMap(1, {imageDesc(levels, PEL_FORMAT_RGB32F, 16, 8),
+                            imageDesc(levels, PEL_FORMAT_RGB32F, 8, 4, 16 * 8 * 12),
+                            imageDesc(levels, PEL_FORMAT_RGB32F, 4, 2, (16 * 8 + 8 * 4) * 12)});
+    const Buffer target(frame.device, std::vector<float>(3 * frame.pixels()));
+    shader.set(PEL_SLOT_RADIANCE, frame.image(target));
+    expectRepeats(shader, target);
+}
+
+TEST_F(Capture, WritesEachShaderOnceAndNothingOver) {
+    const Frame f = randomFrame(1, 32, 16, 1);
+    Shader first(device()), second(device());
+    for (Shader* s : {&first, &second}) setFrame(device(), *s, f, tables());
+    const Buffer a = setTarget(device(), first, f), b = setTarget(device(), second, f);
+    pellucid::check(pelSetName(second.get(), "head/../left"));
+    // Links that somebody else put there are left alone, wherever they point to.
+    fs::create_directories(path("elsewhere"));
+    fs::create_directories(path("captures"));
+    fs::create_directory_symlink(path("elsewhere"), path("captures/shader-1"));
+    fs::create_symlink(path("nowhere"), path("captures/shader-2"));
+    capture(first);
+    capture(first);
+    capture(second);
+    EXPECT_TRUE(fs::is_empty(path("elsewhere")));
+    EXPECT_FALSE(fs::exists(path("nowhere")));
+    EXPECT_TRUE(fs::exists(path("captures/shader-3/scene.toml")));
+    EXPECT_FALSE(fs::exists(path("captures/shader-4")));
+    EXPECT_TRUE(fs::exists(path("captures/head____left-1/scene.toml")));
+    const std::string before = read(path("captures/shader-3/scene.toml"));
+    Shader third(device());
+    setFrame(device(), third, f, tables());
+    const Buffer c = setTarget(device(), third, f);
+    capture(third);
+    EXPECT_EQ(read(path("captures/shader-3/scene.toml")), before);
+    EXPECT_EQ(read(path("captures/shader-4/scene.toml")), before);
+}
+
+// What a scene cannot hold is said, and a folder that cannot be written to; the frame is shaded all the same.
+TEST_F(Capture, SaysWhatIsLeftOut) {
+    Frame f = randomFrame(1, 32, 16, 1);
+    f.options.accumulate = 1;
+    f.options.scratchBudget = 64 << 20;
+    f.options.invalidColor[1] = 1;
+    f.lights[0].params.toLight[0] *= 1.0001f;
+    Shader shader(device());
+    setFrame(device(), shader, f, tables());
+    const Buffer target = setTarget(device(), shader, f);
+    capture(shader);
+    for (const char* words :
+         {"PelShaderOptions.accumulate", "PelShaderOptions.scratchBudget: --scratch-mib 64",
+          "PelShaderOptions.invalidColor", "PelLight 0.toLight"})
+        EXPECT_TRUE(contains(said_, words));
+    const std::vector<float> expected = target.readAll<float>();
+    EXPECT_TRUE(std::ranges::any_of(expected, [](float v) { return v > 0; }));
+
+    write("a_file", "");
+    Shader other(device());
+    setFrame(device(), other, randomFrame(1, 32, 16, 1), tables());
+    const Buffer kept = setTarget(device(), other, f);
+    capture(other, "a_file");
+    EXPECT_TRUE(contains(said_, "PELLUCID_CAPTURE: "));
+    const std::vector<float> shaded = kept.readAll<float>();
+    EXPECT_TRUE(std::ranges::any_of(shaded, [](float v) { return v > 0; }));
+}
+
+TEST_F(Capture, SceneWithoutGBufferIsRefused) {
+    write("s.toml", "[channels]\nnormal_shading = ['a.X', 'a.Y', 'a.Z']\n");
+    refused("shade @s.toml -o @o.exr", 2, "names none");
+}
