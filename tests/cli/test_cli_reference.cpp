@@ -17,13 +17,7 @@ class CliReference : public CommandTest {
 
     void SetUp() override {
         CommandTest::SetUp();
-        const int rings = sized(120, 12);
-        const auto ball = pellucid::sample::makeSphere(radius, rings, 2 * rings);
-        std::ostringstream off;
-        off << "OFF\n" << ball.positions.size() / 3 << ' ' << ball.triangles.size() / 3 << " 0";
-        for (size_t i = 0; i < ball.positions.size(); ++i) off << (i % 3 ? " " : "\n") << ball.positions[i];
-        for (size_t i = 0; i < ball.triangles.size(); ++i) off << (i % 3 ? " " : "\n3 ") << ball.triangles[i];
-        write("ball.off", off.str() + "\n");
+        writeBall(sized(40, 12));
         write("burley.toml",
               "name = \"burley\"\nsource = \"test\"\nkind = \"burley\"\nunit = \"mm\"\n"
               "distance = [1, 0.5, 0.25]\n");
@@ -51,6 +45,14 @@ class CliReference : public CommandTest {
         std::copy(toLight, toLight + 3, scene_.lights[0].light.toLight);
         pellucid::io::writeScene(path("s.toml"), scene_);
     }
+    void writeBall(int rings) const {
+        const auto ball = pellucid::sample::makeSphere(radius, rings, 2 * rings);
+        std::ostringstream off;
+        off << "OFF\n" << ball.positions.size() / 3 << ' ' << ball.triangles.size() / 3 << " 0";
+        for (size_t i = 0; i < ball.positions.size(); ++i) off << (i % 3 ? " " : "\n") << ball.positions[i];
+        for (size_t i = 0; i < ball.triangles.size(); ++i) off << (i % 3 ? " " : "\n3 ") << ball.triangles[i];
+        write("ball.off", off.str() + "\n");
+    }
     const std::vector<float>& given(const char* name) const { return gbuffer_.channel(name).pixels; }
     void npy(const std::string& name, const Shape& shape, const std::vector<float>& values) const {
         pellucid::io::writeNpy(path(name), shape, values);
@@ -65,6 +67,7 @@ const std::string ofBall = "reference @ball.off --scene @s.toml ", picture = "--
 }  // namespace
 
 TEST_F(CliReference, BallEqualsTheClosedForm) {
+    writeBall(sized(120, 12));
     const auto report = reportOf(ofBall + picture + fine + "-o @o.exr");
     expectReport(report);
     EXPECT_LT(report["points_off_mesh"].get<double>(), testsAreSmall() ? 1 : 0.01);
