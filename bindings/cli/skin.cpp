@@ -180,7 +180,7 @@ void addSkin(CLI::App& profile) {
     command->callback([a] { skin(*a); });
     CLI::App* maps = profile.add_subcommand("pigments", "Maps of melanin and blood from an albedo map");
     option(*maps, "albedo", b->input, "picture: linear if .exr, else sRGB", required);
-    option(*maps, "--channels", b->channels, "of the albedo", Count{3}, shown);
+    option(*maps, "--channels", b->channels, "of the albedo", Count{3}, Word{"NAME"}, shown);
     addFields(*maps, *b, false);
     option(*maps, "-o,--output", b->output,
            ".exr to write: melanin, blood, and the difference that remains (CIEDE2000)", required);
