@@ -2,10 +2,10 @@
 // volume.
 #include <charconv>
 
+#include "fields/skin_spectra.h"
 #include "io/atomic_file.h"
 #include "io/lut/profile_file.h"
 #include "io/mesh/mesh_parts.h"
-#include "lut/skin_spectra.h"
 #include "mesh_curvature.h"
 #include "sample/random_walk.h"
 #include "scene/scene_frame.h"

@@ -4,7 +4,7 @@
 #include "core/struct_size.h"
 #include "core/threads.h"
 #include "fields/color_difference.h"
-#include "lut/skin_spectra.h"
+#include "fields/skin_spectra.h"
 #include "lut/skin_transport.h"
 #include "shared/skin_maps.h"
 
