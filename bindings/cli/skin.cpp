@@ -148,22 +148,20 @@ void pigments(const SkinArguments& a) {
     io::Image result;
     result.width = image.width;
     result.height = image.height;
-    double sum = 0;
-    float most = 0;
-    size_t outside = 0;
-    for (const float difference : maps[2]) {
-        sum += difference;
-        most = std::max(most, difference);
-        outside += difference > 1;
-    }
+    std::vector<float> differences = maps[2];
+    std::ranges::sort(differences);
+    const auto at = [&](double part) { return differences[size_t(part * double(count - 1))]; };
+    const auto above = differences.end() - std::ranges::upper_bound(differences, 1.0f);
     constexpr const char* names[] = {"melanin", "blood", "difference"};
     for (int i = 0; i < 3; ++i)
         result.channels.push_back({names[i], io::ChannelType::Float, std::move(maps[i])});
     io::writeExr(a.output, result);
     printReport({{"output", a.output},
-                 {"delta_e_mean", count ? sum / double(count) : 0},
-                 {"delta_e_max", most},
-                 {"share_above_1", count ? double(outside) / double(count) : 0}},
+                 {"delta_e_median", at(0.5)},
+                 {"delta_e_p90", at(0.9)},
+                 {"delta_e_p99", at(0.99)},
+                 {"delta_e_max", at(1)},
+                 {"share_above_1", double(above) / double(count)}},
                 a.json, nameWidth);
 }
 
