@@ -1,5 +1,7 @@
 #include "lut/skin.h"
 
+#include <bit>
+
 #include "core/check_range.h"
 #include "core/struct_size.h"
 #include "core/threads.h"
