@@ -145,6 +145,7 @@ void pigments(const SkinArguments& a) {
         check(pelSkinFromAlbedo(&a.skin, &albedo[3 * i], std::min(piece, count - i), &maps[0][i], &maps[1][i],
                                 &maps[2][i]));
     }
+    progress(1, "pigments");
     io::Image result;
     result.width = image.width;
     result.height = image.height;

@@ -28,7 +28,7 @@ float reflectance(const PelSkin& skin, float nanometres) {
     return value;
 }
 
-// Pale, brown and very dark; bloodless and as bloody as can be; thin and thick; dark and pale where a table of
+// Pale, brown and very dark; bloodless and as bloody as can be; thin and thick; two for which a table of
 // coarse nodes has its largest errors.
 constexpr reference::WalkedSkin skins[] = {
     {0.01, 1, 0.002, 0.75, 0.06, 4.6, 1.421}, {0.1, 0.5, 0.02, 0.75, 0.06, 4.6, 1.421},
