@@ -381,6 +381,8 @@ class Reference {
         for (const std::string& warning : mesh_.mesh.warnings) run.warn(warning);
         if (!file_.ambientCube.empty())
             run.warn("the ambient cube map is left out; only the keys constant and sh of [ambient] are used");
+        if (!file_.channels[PEL_SLOT_SKIN].empty())
+            run.warn("the maps of pigments are left out; albedo and profile are those of the material");
         if (lighting_.lights.empty() && !lighting_.ambient)
             run.warn("the scene has no light: the result is black");
         run.report["triangles"] = mesh_.mesh.triangleCount();

@@ -168,6 +168,9 @@ TEST_F(CliReference, SkinIsWalkedInItsLayers) {
         EXPECT_NEAR(albedo * sum / count, albedo, tolerance::skinAlbedo) << c;
     }
     refused(walk + "--reflectance 0.5 0.5 0.5", 3, "follows from its pigments");
+    scene_.channels[PEL_SLOT_SKIN] = {"Melanin.V", "Blood.V"};
+    pellucid::io::writeScene(path("s.toml"), scene_);
+    refused(walk + "--strict", 3, "maps of pigments are left out");
 }
 
 TEST_F(CliReference, WalkOfTheVerticesAndBodies) {
