@@ -91,9 +91,8 @@ TEST(WalkLight, BallEqualsTheOraclesWalk) {
 }
 
 // A box so large that it is a half-space to its top, whose first triangle is 0 0 to 1 1.
-sample::Mesh largeBox() {
+sample::Mesh largeBox(float s = 100, float deep = 60) {
     sample::Mesh box;
-    const float s = 100, deep = 60;
     for (int i = 0; i < 8; ++i)
         box.positions.insert(box.positions.end(), {i & 1 ? s : -s, i & 2 ? s : -s, i & 4 ? 0 : -deep});
     box.triangles = {4, 5, 7, 4, 7, 6, 0, 3, 1, 0, 2, 3, 0, 1, 5, 0, 5, 4,
@@ -130,6 +129,33 @@ TEST(WalkLight, LayersReflectWhatTheOraclesWalkDoes) {
                 << "channel " << c << ", thickness " << thickness;
         }
         EXPECT_EQ(light.lost, 0u);
+    }
+}
+
+// Beside the edge of a shadow: how far light goes in layers.
+TEST(WalkLight, LayersCarryLightAsFarAsInTheOraclesWalk) {
+    sample::Mesh both = largeBox(10, 10);
+    both.positions.insert(both.positions.end(), {-10, -10, 5, 0, -10, 5, 0, 10, 5, -10, 10, 5});
+    both.triangles.insert(both.triangles.end(), {8, 9, 10, 8, 10, 11});
+    both.materials = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 2, 2};
+    const sample::Scene scene(both.view());
+    const sample::WalkBody body(scene, 1);
+    const double thickness = 0.1;
+    sample::LayeredMedium layers;
+    layers.thickness = thickness, layers.refractiveIndex = 1.4;
+    layers.waves = {{4, 2, 0.1, {1, 1, 1}}};
+    for (const double away : {0.1, 0.5}) {
+        const reference::SkinWalk expected =
+            reference::walkSkin({{thickness, 2, 4}, {0, 0.1, 4}}, 1.4, sized(200000, 4000), 9, away);
+        const std::vector<sample::SurfacePoint> inShadow(sized(32, 2),
+                                                         {0, {0.5 + away / 20, 0.25 - away / 20, 0.25}});
+        const sample::WalkedLight light =
+            walkLight(body, fromAbove(), inShadow, layers, {uint32_t(sized(500, 50))});
+        double sum = 0;
+        for (size_t i = 0; i < light.first.size(); ++i) sum += light.first[i] + light.second[i];
+        EXPECT_NEAR(sum / double(2 * light.first.size()), expected.beyond,
+                    testsAreSmall() ? 0.05 : 6 * expected.error)
+            << away;
     }
 }
 
