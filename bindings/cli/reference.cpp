@@ -2,10 +2,10 @@
 // volume.
 #include <charconv>
 
+#include "fields/skin_spectra.h"
 #include "io/atomic_file.h"
 #include "io/lut/profile_file.h"
 #include "io/mesh/mesh_parts.h"
-#include "lut/skin_spectra.h"
 #include "mesh_curvature.h"
 #include "sample/random_walk.h"
 #include "scene/scene_frame.h"
@@ -381,6 +381,8 @@ class Reference {
         for (const std::string& warning : mesh_.mesh.warnings) run.warn(warning);
         if (!file_.ambientCube.empty())
             run.warn("the ambient cube map is left out; only the keys constant and sh of [ambient] are used");
+        if (!file_.channels[PEL_SLOT_SKIN].empty())
+            run.warn("the maps of pigments are left out; albedo and profile are those of the material");
         if (lighting_.lights.empty() && !lighting_.ambient)
             run.warn("the scene has no light: the result is black");
         run.report["triangles"] = mesh_.mesh.triangleCount();

@@ -145,25 +145,24 @@ void pigments(const SkinArguments& a) {
         check(pelSkinFromAlbedo(&a.skin, &albedo[3 * i], std::min(piece, count - i), &maps[0][i], &maps[1][i],
                                 &maps[2][i]));
     }
+    progress(1, "pigments");
     io::Image result;
     result.width = image.width;
     result.height = image.height;
-    double sum = 0;
-    float most = 0;
-    size_t outside = 0;
-    for (const float difference : maps[2]) {
-        sum += difference;
-        most = std::max(most, difference);
-        outside += difference > 1;
-    }
+    std::vector<float> differences = maps[2];
+    std::ranges::sort(differences);
+    const auto at = [&](double part) { return differences[size_t(part * double(count - 1))]; };
+    const auto above = differences.end() - std::ranges::upper_bound(differences, 1.0f);
     constexpr const char* names[] = {"melanin", "blood", "difference"};
     for (int i = 0; i < 3; ++i)
         result.channels.push_back({names[i], io::ChannelType::Float, std::move(maps[i])});
     io::writeExr(a.output, result);
     printReport({{"output", a.output},
-                 {"delta_e_mean", count ? sum / double(count) : 0},
-                 {"delta_e_max", most},
-                 {"share_above_1", count ? double(outside) / double(count) : 0}},
+                 {"delta_e_median", at(0.5)},
+                 {"delta_e_p90", at(0.9)},
+                 {"delta_e_p99", at(0.99)},
+                 {"delta_e_max", at(1)},
+                 {"share_above_1", double(above) / double(count)}},
                 a.json, nameWidth);
 }
 
@@ -180,7 +179,7 @@ void addSkin(CLI::App& profile) {
     command->callback([a] { skin(*a); });
     CLI::App* maps = profile.add_subcommand("pigments", "Maps of melanin and blood from an albedo map");
     option(*maps, "albedo", b->input, "picture: linear if .exr, else sRGB", required);
-    option(*maps, "--channels", b->channels, "of the albedo", Count{3}, shown);
+    option(*maps, "--channels", b->channels, "of the albedo", Count{3}, Word{"NAME"}, shown);
     addFields(*maps, *b, false);
     option(*maps, "-o,--output", b->output,
            ".exr to write: melanin, blood, and the difference that remains (CIEDE2000)", required);

@@ -1,10 +1,12 @@
 #include "lut/skin.h"
 
+#include <bit>
+
 #include "core/check_range.h"
 #include "core/struct_size.h"
 #include "core/threads.h"
 #include "fields/color_difference.h"
-#include "lut/skin_spectra.h"
+#include "fields/skin_spectra.h"
 #include "lut/skin_transport.h"
 #include "shared/skin_maps.h"
 
@@ -377,39 +379,29 @@ void skinFromAlbedo(const PelSkin& skin, const float* albedo, size_t count, floa
         for (int c = 0; c < 3; ++c) wanted[c] = std::clamp(albedo[3 * i + c], 0.0f, 1.0f);
         for (double& value : wanted) value = std::isnan(value) ? 0 : value;
         const Lab lab = labFromLinear(wanted);
-        // The nearest of a few nodes, then ever smaller steps in eight directions: by differences of
-        // lightness, chroma and hue in units of CIEDE2000 at the wanted colour, and in the end by CIEDE2000.
-        const double chroma = std::hypot(lab[1], lab[2]), l50 = (lab[0] - 50) * (lab[0] - 50),
-                     sL = 1 + 0.015 * l50 / std::sqrt(20 + l50), sC = 1 + 0.045 * chroma,
-                     sH = 1 + 0.015 * chroma;
-        const auto rough = [&](const Lab& other) {
-            const double l = other[0] - lab[0], a = other[1] - lab[1], b = other[2] - lab[2],
-                         c = std::hypot(other[1], other[2]) - chroma;
-            return std::pow(l / sL, 2) + std::pow(c / sC, 2) +
-                   std::max(0.0, a * a + b * b - c * c) / (sH * sH);
+        // From the nearest of a few nodes in L*a*b*, ever smaller steps in eight directions by CIEDE2000.
+        const auto squared = [&](const Lab& other) {
+            return std::pow(other[0] - lab[0], 2) + std::pow(other[1] - lab[1], 2) +
+                   std::pow(other[2] - lab[2], 2);
         };
-        double u = 0, v = 0, best = INFINITY;
         constexpr int last = Maps::fine - 1, every = 4;
+        double u = 0, v = 0, best = INFINITY;
         for (int y = 0; y <= last; y += every)
             for (int x = 0; x <= last; x += every)
-                if (const double e = rough(maps->lab[size_t(y) * Maps::fine + x]); e < best)
+                if (const double e = squared(maps->lab[size_t(y) * Maps::fine + x]); e < best)
                     best = e, u = double(x) / last, v = double(y) / last;
-        const auto descend = [&](double step, double end, const auto& error) {
-            best = error(mixed(maps->lab, u, v));
-            for (; step > end; step /= 2)
-                for (bool moved = true; moved;) {
-                    moved = false;
-                    const double fromU = u, fromV = v;
-                    for (int d = 0; d < 9; ++d) {
-                        const double x = std::clamp(fromU + (d % 3 - 1) * step, 0.0, 1.0),
-                                     y = std::clamp(fromV + (d / 3 - 1) * step, 0.0, 1.0);
-                        const double e = error(mixed(maps->lab, x, y));
-                        if (e < best) best = e, u = x, v = y, moved = true;
-                    }
+        best = INFINITY;
+        for (double step = double(every) / (2 * last); step > 1e-4; step /= 2)
+            for (bool moved = true; moved;) {
+                moved = false;
+                const double fromU = u, fromV = v;
+                for (int d = 0; d < 9; ++d) {
+                    const double x = std::clamp(fromU + (d % 3 - 1) * step, 0.0, 1.0),
+                                 y = std::clamp(fromV + (d / 3 - 1) * step, 0.0, 1.0),
+                                 e = deltaE2000(lab, mixed(maps->lab, x, y));
+                    if (e < best) best = e, u = x, v = y, moved = true;
                 }
-        };
-        descend(1.0 / 32, 1.0 / 2000, rough);
-        descend(1.0 / 512, 1e-4, [&](const Lab& other) { return deltaE2000(lab, other); });
+            }
         const PelSkin found = Maps::at(skin, u, v);
         melanin[i] = found.melanin;
         blood[i] = found.blood;

@@ -42,19 +42,6 @@ class CommandTest : public FolderTest {
         expectRefusal(joined(arguments), exitCode, message, environment);
     }
 
-    // A line of minutes, which Ctrl-C ends after half a second.
-    void expectInterrupted(const std::string& arguments) const {
-        // A shell ignores Ctrl-C for what it runs beside itself, so none is lost before the handler is there.
-        const std::string line = PELLUCID_COMMAND " " + arguments +
-                                 " 2>@err.txt & run=$!; until grep -q 'SigCgt:.*[2367abef]$' "
-                                 "/proc/$run/status; do sleep .05; done; "
-                                 "sleep .5; kill -INT $run; wait $run";
-        const auto start = std::chrono::steady_clock::now();
-        EXPECT_NE(std::system(filled(line).c_str()), 0);
-        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30)) << "of many minutes";
-        EXPECT_TRUE(contains(read(path("err.txt")), "interrupted"));
-    }
-
     // The keys that every report has.
     static void expectReport(const nlohmann::json& report) {
         ASSERT_TRUE(report.is_object());

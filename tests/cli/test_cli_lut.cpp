@@ -178,12 +178,20 @@ TEST_F(CliLut, SkinIsDescribedDrawnAndTakenFromAPicture) {
     EXPECT_NEAR(maps.channel("blood").pixels[0], 0.01f, 1e-3f);
 }
 
-TEST_F(CliLut, InterruptEndsTheSearchForPigments) {
+TEST_F(CliLut, TheSearchForPigmentsShowsProgressAndCanBeInterrupted) {
+    if (std::system("script --version >/dev/null 2>&1") != 0)
+        GTEST_SKIP() << "no command `script` for a terminal";
     io::Image image;
-    image.width = image.height = 4096;
-    image.addInterleaved(std::vector<std::string>{"R", "G", "B"},
-                         std::vector<float>(3 * image.pixelCount(), 0.2f));
+    image.width = image.height = 2048;
+    std::vector<float> albedo(3 * image.pixelCount(), 0.2f);
+    for (size_t i = 0; i < albedo.size(); i += 3) albedo[i] = float(i) / float(albedo.size());
+    image.addInterleaved(std::vector<std::string>{"R", "G", "B"}, albedo);
     io::writeExr(path("a.exr"), image);
-    expectInterrupted("profile pigments @a.exr -o @m.exr");
+    EXPECT_NE(std::system(filled("script -qec 'timeout --foreground -s INT 3 " PELLUCID_COMMAND
+                                 " profile pigments @a.exr -o @m.exr' /dev/null >@out.txt 2>&1")
+                              .c_str()),
+              0);
+    EXPECT_TRUE(contains(read(path("out.txt")), "% pigments"));
+    EXPECT_TRUE(contains(read(path("out.txt")), "interrupted"));
     EXPECT_FALSE(std::filesystem::exists(path("m.exr")));
 }

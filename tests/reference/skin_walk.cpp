@@ -21,13 +21,13 @@ double fresnel(double cosine, double index) {
 
 }  // namespace
 
-SkinWalk walkSkin(const std::vector<WalkLayer>& layers, double index, int walks, uint64_t seed) {
+SkinWalk walkSkin(const std::vector<WalkLayer>& layers, double index, int walks, uint64_t seed, double edge) {
     std::mt19937_64 bits(seed);
     std::uniform_real_distribution<double> uniform(0, 1);
     const auto random = [&] { return 1 - uniform(bits); };  // never 0
     std::vector<double> top{0};
     for (const WalkLayer& layer : layers) top.push_back(top.back() + layer.thickness);
-    double sum = 0, squares = 0, distance = 0;
+    double sum = 0, squares = 0, distance = 0, beyond = 0;
     for (int w = 0; w < walks; ++w) {
         // Diffuse light: the square of the sine is uniform outside.
         const double sine = std::sqrt(random()) / index;
@@ -73,10 +73,12 @@ SkinWalk walkSkin(const std::vector<WalkLayer>& layers, double index, int walks,
         }
         sum += left;
         squares += left * left;
-        distance += left * std::hypot(x, y);
+        const double away = std::hypot(x, y);
+        distance += left * away;
+        if (away > edge) beyond += left * std::acos(edge / away) / std::numbers::pi;
     }
     const double n = walks;
-    return {sum / n, distance / n, std::sqrt(squares / n - sum / n * sum / n) / std::sqrt(n)};
+    return {sum / n, distance / n, std::sqrt(squares / n - sum / n * sum / n) / std::sqrt(n), beyond / n};
 }
 
 namespace {

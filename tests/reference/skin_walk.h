@@ -14,10 +14,12 @@ struct SkinWalk {
     double reflectance;  // of diffuse light from outside, without what the surface itself reflects
     double distance;  // length, the sum over walks of what leaves times how far; over reflectance: the mean
     double error;     // standard error of reflectance
+    double beyond;    // of it, what leaves on the other side of a line at the distance `edge` > 0
 };
 
 // `index`: of all layers, against 1 outside; a smooth surface.
-SkinWalk walkSkin(const std::vector<WalkLayer>& layers, double index, int walks, uint64_t seed);
+SkinWalk walkSkin(const std::vector<WalkLayer>& layers, double index, int walks, uint64_t seed,
+                  double edge = 1);
 
 // Skin as docs/mathematics.md, section 15, describes it; without water, carotene and bilirubin.
 struct WalkedSkin {

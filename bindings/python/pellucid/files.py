@@ -129,7 +129,8 @@ def reference(mesh: Any, scene: Any, gbuffer: Any, *, walk: bool = False, sample
     walk : bool
         A random walk through the volume, instead of the surface integral.
     samples, noise, seed, reflectance, boundary
-        Of the walk. `noise`, if given, determines the number of samples.
+        Of the walk. `noise`, if given, determines the number of samples. Reflectance and boundary of skin
+        follow from its pigments.
     profile : str or path, optional
         Instead of the material's.
     parts : sequence of str

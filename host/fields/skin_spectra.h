@@ -7,11 +7,11 @@
 // Water: 1/m; Hale and Querry, Optical Constants of Water, Applied Optics 12, 1973, linear between values.
 // x, y, z: colour-matching functions of the CIE 1931 standard observer. D65: CIE standard illuminant.
 #pragma once
+#include <pellucid/pellucid.h>
+
 #include <array>
 #include <cmath>
 #include <numbers>
-
-#include "pellucid/pellucid.h"
 
 namespace pel {
 
