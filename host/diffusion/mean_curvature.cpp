@@ -1,18 +1,10 @@
 #include "diffusion/mean_curvature.h"
 
-#include <cmath>
-
 #include "core/launch_policy.h"
 #include "shading/launch_ranges.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
-
-double meanFreePath(const PelProfileInfo& profile, int channel) {
-    constexpr double pathOfBurley = 1.087;  // over Burley's d at a reflectance of 0.8 (section 12)
-    if (profile.meanFreePath[channel] > 0) return profile.meanFreePath[channel];
-    return profile.kind == PEL_PROFILE_BURLEY ? pathOfBurley / std::sqrt(7.0) * profile.width[channel] : 0;
-}
 
 cl::ProgramKey MeanCurvature::program(const Device& device) const {
     const auto code = [&](const ImageView& view) { return formatCode(view, device.info().mathWidth); };

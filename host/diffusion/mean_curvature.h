@@ -7,10 +7,6 @@
 
 namespace pel {
 
-// The mean free path of the profile's medium in the profile's unit, per channel; 0: the profile does not say.
-double meanFreePath(const PelProfileInfo& profile, int channel);
-constexpr double windowOfPath = 2.75;  // length over which curvature is measured, in mean free paths
-
 class MeanCurvature {
   public:
     struct Images {

@@ -4,6 +4,7 @@
 
 #include "diffusion/scatter_material.h"
 #include "shading/check_settings.h"
+#include "shading/material.h"
 
 namespace pel {
 namespace {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/handle_table.h"
-#include "diffusion/mean_curvature.h"
 #include "lut/luts.h"
 #include "shading/features.h"
 
@@ -18,6 +17,7 @@ constexpr float softness = 0.1f, coneSlope = 0.8f;
 // Without a profile, mm.
 constexpr double plainFilterWidth = 8, plainBias = 0.5;
 constexpr float plainSoftness = 0.25f, plainConeSlope = 0.5f;
+constexpr double pathOfBurley = 1.087;  // mean free path over Burley's d at a reflectance of 0.8 (section 12)
 constexpr float noBlend[3] = {1, 0.3f, 0};
 constexpr uint32_t transmissionTexels = 256;
 
@@ -62,6 +62,11 @@ Ref<Lut> transmissionTable(const Ref<Device>& device, const Profile& profile) {
 }
 
 }  // namespace
+
+double meanFreePath(const PelProfileInfo& profile, int channel) {
+    if (profile.meanFreePath[channel] > 0) return profile.meanFreePath[channel];
+    return profile.kind == PEL_PROFILE_BURLEY ? pathOfBurley / std::sqrt(7.0) * profile.width[channel] : 0;
+}
 
 double transmissionReach(const Profile& profile) {
     return 2 * profile.reach();

@@ -22,6 +22,11 @@ class ProfileTables {
     std::vector<Tables> all_;
 };
 
+// The mean free path of the profile's medium in the profile's unit, per channel; 0: the profile does not
+// say.
+double meanFreePath(const PelProfileInfo& profile, int channel);
+constexpr double windowOfPath = 2.75;  // length over which curvature is measured, in mean free paths
+
 // The thickness at the end of the transmission's row, mm, where no light comes through.
 double transmissionReach(const Profile& profile);
 

@@ -3,8 +3,8 @@
 // sections 10, "Controls", and 12).
 //
 // prepare_irradiance: (irradiance + through * back) * albedo^before. finish_scatter: irradiance + weight *
-// (scattered * gain - irradiance), times albedo^after, written or added. One work-item is one pixel. Variants:
-// PEL_FORMAT_... of the images, 0 for an image that is not set.
+// (scattered * gain - irradiance), times albedo^after, written or added. One work-item is one pixel.
+// Variants: PEL_FORMAT_... of the images, 0 for an image that is not set.
 #include "lib/diffusion/item.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/curvature_gain.clh"

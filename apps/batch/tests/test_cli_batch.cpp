@@ -211,19 +211,11 @@ TEST_F(BatchCommand, KilledAtAnyMomentLosesWhatWasInFlight) {
     for (int round = 0; round < 5; ++round) {
         random = random * 1664525 + 1013904223;  // [Numerical Recipes]
         const size_t before = files().size(), left = files(true).size(), enough = before + (random >> 26);
-        const pid_t child = ::fork();
-        if (child == 0) {
-            if (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr)) _exit(1);
-            execl(PELLUCID_COMMAND, PELLUCID_COMMAND, "batch", path("m.toml").c_str(), "-j",
-                  std::to_string(jobs).c_str(), "-o", path("out").c_str(), nullptr);
-            _exit(1);
-        }
-        int status = 0;
-        while (files().size() <= enough && waitpid(child, &status, WNOHANG) == 0) {
-        }
-        kill(child, SIGKILL);
-        waitpid(child, &status, 0);
-        EXPECT_TRUE(WIFSIGNALED(status)) << "round " << round << " ended before it was killed";
+        const std::string line =
+            pellucid::io::concat("'", PELLUCID_COMMAND, "' batch '", path("m.toml"), "' -j ", jobs, " -o '",
+                                 path("out"), "' >/dev/null 2>&1 & batch=$!; until [ $(ls '", path("out"),
+                                 "' | wc -l) -gt ", enough, " ]; do :; done; kill -KILL $batch; wait $batch");
+        EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 137) << "it ended before it was killed";
         EXPECT_GE(files().size(), before);
         EXPECT_LE(files(true).size(), left + jobs) << "more than was in flight";
     }

@@ -1468,8 +1468,8 @@ PEL_API PelError pelScatterSetControls(PelScatter scatter, uint32_t id, const Pe
  * by NULL: PEL_SLOT_SCATTER_WEIGHT; PEL_SLOT_IRRADIANCE_BACK; PEL_SLOT_ALBEDO, which the irradiance then is
  * without: the result has it in it, and is radiance where irradiance was irradiance / pi. One of
  * PEL_SLOT_NORMAL_GEOMETRIC and PEL_SLOT_MEAN_CURVATURE turns on the gain of curved bodies, as PelMaterial's
- * curvatureGain of 1 does, for profiles whose medium is known; the curvature is measured from normals if it is
- * not given. */
+ * curvatureGain of 1 does, for profiles whose medium is known; the curvature is measured from normals if it
+ * is not given. */
 PEL_API PelError pelScatterSetImage(PelScatter scatter, PelImageSlot slot, const PelImageDesc* image);
 
 /* `irradiance`: linear RGB, all lights together, shadows sharp, without or with albedo; `positions`: world,
