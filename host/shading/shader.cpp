@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/sized_memory.h"
 #include "shading/background_build.h"
 #include "shading/capture.h"
 #include "shading/features.h"
@@ -16,7 +17,7 @@ namespace {
 ShaderPlan planOf(const ShaderState& given, uint32_t methods, uint64_t tooMany, const Ref<Device>& device,
                   ProfileTables& tables) {
     ShaderPlan plan;
-    plan.state = given;
+    plan.state = inRegion(given);
     plan.warnings = chooseMethods(plan.state, methods, tooMany);
     if (given.options.timeBudget > 0) plan.taken = keepToBudget(plan.state, methods, *device, plan.warnings);
     withTables(plan.state, device, tables);
@@ -76,6 +77,7 @@ void Shader::commitStandIn() {
 
 void Shader::commitState(const ShaderState& state) {
     standsIn_ = false;
+    const KeepsLarger keeps(state.options.regionWidth > 0);
     allocate(state, UINT32_MAX);
     finishPlan();
 }
@@ -186,7 +188,7 @@ void Shader::execute(bool blocking) {
     if (!captured_ && !standsIn_) {
         captured_ = true;
         if (const char* folder = std::getenv("PELLUCID_CAPTURE"); folder && *folder)
-            captureFrame(*device_, state_, folder);
+            captureFrame(*device_, inRegion(state_), folder);
     }
     PassWork work = beginWork(false);
     work.interruptible = blocking && device_->hasProgress();

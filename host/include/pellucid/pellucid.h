@@ -1276,6 +1276,14 @@ typedef struct PelShaderOptions {
      * nearest to light among those that fit by the device's record: a file that PELLUCID_TUNING names, or a
      * guess (docs/guide/shading.md, "Time budget"). PelShaderStats says what was taken; 0 */
     float timeBudget;
+    /* pixels: the part of all images of the frame that is shaded, for images that are larger than the
+     * viewport (docs/guide/hosts.md, "A part of the images"). Its pixels have no neighbours outside, as if
+     * the images were cropped to it; pixels outside are not written, and the clip space of PelCamera spans
+     * it. Errors at commit: it is not inside the images. regionWidth 0: the whole images; 0 */
+    uint32_t regionX;
+    uint32_t regionY;
+    uint32_t regionWidth;
+    uint32_t regionHeight;
 } PelShaderOptions;
 
 PEL_API PelError pelShaderCreate(PelDevice device, PelShader* shader);
