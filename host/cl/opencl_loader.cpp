@@ -167,6 +167,7 @@ PEL_INFO(clGetPlatformInfo, cl_platform_id, cl_platform_info)
 PEL_INFO(clGetDeviceInfo, cl_device_id, cl_device_info)
 PEL_INFO(clGetCommandQueueInfo, cl_command_queue, cl_command_queue_info)
 PEL_INFO(clGetMemObjectInfo, cl_mem, cl_mem_info)
+PEL_INFO(clGetImageInfo, cl_mem, cl_image_info)
 PEL_INFO(clGetProgramInfo, cl_program, cl_program_info)
 PEL_INFO(clGetEventInfo, cl_event, cl_event_info)
 PEL_INFO(clGetEventProfilingInfo, cl_event, cl_profiling_info)
@@ -204,6 +205,12 @@ PEL_CALL(cl_int, clEnqueueFillBuffer,
          (a, b, c, d, e, f, waits, list, event))
 PEL_CALL(cl_int, clEnqueueCopyBuffer,
          (cl_command_queue a, cl_mem b, cl_mem c, size_t d, size_t e, size_t f, PEL_WAITS),
+         (a, b, c, d, e, f, waits, list, event))
+PEL_CALL(cl_int, clEnqueueCopyImageToBuffer,
+         (cl_command_queue a, cl_mem b, cl_mem c, const size_t* d, const size_t* e, size_t f, PEL_WAITS),
+         (a, b, c, d, e, f, waits, list, event))
+PEL_CALL(cl_int, clEnqueueCopyBufferToImage,
+         (cl_command_queue a, cl_mem b, cl_mem c, size_t d, const size_t* e, const size_t* f, PEL_WAITS),
          (a, b, c, d, e, f, waits, list, event))
 PEL_CALL(void*, clEnqueueMapBuffer,
          (cl_command_queue a, cl_mem b, cl_bool c, cl_map_flags d, size_t e, size_t f, PEL_WAITS, cl_int* g),

@@ -36,9 +36,34 @@ Ref<Buffer> Buffer::createFromCl(Ref<Device> device, cl_mem mem) {
     if (!mem) invalidArgument("a cl_mem is needed, not NULL");
     if (cl::info<cl_context>(mem, CL_MEM_CONTEXT) != device->context())
         invalidArgument("the cl_mem belongs to another cl_context than the device");
-    if (cl::info<cl_mem_object_type>(mem, CL_MEM_TYPE) != CL_MEM_OBJECT_BUFFER)
-        invalidArgument("the cl_mem is an image; a buffer is needed");
-    return make<Buffer>(std::move(device), cl::Memory::retained(mem), cl::info<size_t>(mem, CL_MEM_SIZE));
+    const auto type = cl::info<cl_mem_object_type>(mem, CL_MEM_TYPE);
+    if (type == CL_MEM_OBJECT_BUFFER)
+        return make<Buffer>(std::move(device), cl::Memory::retained(mem), cl::info<size_t>(mem, CL_MEM_SIZE));
+    if (type != CL_MEM_OBJECT_IMAGE2D)
+        invalidArgument("the cl_mem is an image of another kind than image2d; that, or a buffer, is needed");
+    const auto ofImage = [&](cl_image_info what) {
+        size_t value = 0;
+        cl::check(clGetImageInfo(mem, what, sizeof value, &value, nullptr), "clGetImageInfo");
+        return value;
+    };
+    const size_t width = ofImage(CL_IMAGE_WIDTH), height = ofImage(CL_IMAGE_HEIGHT);
+    const Ref<Buffer> copy =
+        create(std::move(device), width * height * ofImage(CL_IMAGE_ELEMENT_SIZE), nullptr);
+    copy->texture_ = cl::Memory::retained(mem);
+    copy->texels_ = {width, height, 1};
+    return copy;
+}
+
+void Buffer::copyTexture(bool back) const {
+    constexpr size_t origin[3] = {};
+    if (back)
+        cl::check(clEnqueueCopyBufferToImage(device_->queue(), memory_.get(), texture_.get(), 0, origin,
+                                             texels_.data(), 0, nullptr, nullptr),
+                  "clEnqueueCopyBufferToImage");
+    else
+        cl::check(clEnqueueCopyImageToBuffer(device_->queue(), texture_.get(), memory_.get(), origin,
+                                             texels_.data(), 0, 0, nullptr, nullptr),
+                  "clEnqueueCopyImageToBuffer");
 }
 
 void Buffer::checkRange(uint64_t offset, uint64_t bytes, const char* what) const {

@@ -15,6 +15,10 @@ class Buffer final : public Object {
     Device& device() const { return *device_; }
     size_t bytes() const { return bytes_; }
     const cl::Memory& memory() const { return memory_; }
+    // Whether it is the copy of a texture.
+    bool ofTexture() const { return bool(texture_); }
+    // Enqueues the copy from the texture, or back to it.
+    void copyTexture(bool back) const;
 
     // Where byte 0 is. Two buffers with the same `whole` are in the same memory; NULL means host memory.
     struct Place {
@@ -34,6 +38,8 @@ class Buffer final : public Object {
     ~Buffer() override;
     Ref<Device> device_;
     cl::Memory memory_;
+    cl::Memory texture_;              // that it is a copy of
+    std::array<size_t, 3> texels_{};  // its size
     size_t bytes_;
     Place place_;
     std::mutex mutex_;

@@ -4,29 +4,59 @@
 
 namespace pel {
 
+// While one that is `on` lives, resizing on this thread keeps memory that is long enough.
+class KeepsLarger {
+  public:
+    explicit KeepsLarger(bool on) { on_ = on; }
+    ~KeepsLarger() { on_ = false; }
+    KeepsLarger(const KeepsLarger&) = delete;
+    KeepsLarger& operator=(const KeepsLarger&) = delete;
+    // Memory that `held` bytes long is, for `bytes` of them.
+    static bool fits(size_t held, size_t bytes) { return held == bytes || (on_ && bytes && held > bytes); }
+    static bool on() { return on_; }
+
+  private:
+    inline static thread_local bool on_ = false;
+};
+
 class SizedMemory {
   public:
     const cl::Memory& memory() const { return memory_; }
-    size_t bytes() const { return bytes_; }
+    size_t bytes() const { return held_; }
     // Makes it this long, with anything in it or with zeros, after the old memory is gone. False, and nothing
     // is done, if it is.
     bool resize(Device& device, size_t bytes, bool zeros = false) {
         if (bytes == bytes_) return false;
-        memory_ = cl::Memory();
         bytes_ = 0;
-        if (bytes) memory_ = zeros ? device.allocateZeros(bytes) : device.allocate(bytes);
+        if (!KeepsLarger::fits(held_, bytes)) {
+            release();
+            if (bytes) memory_ = zeros ? device.allocateZeros(bytes) : device.allocate(bytes);
+            held_ = bytes;
+        } else if (zeros && bytes) {
+            device.fill(memory_.get(), 0, bytes, 0);
+        }
         bytes_ = bytes;
         return true;
     }
+    // The next resize() counts as one. Memory goes, unless what is long enough is kept.
+    void forget() {
+        bytes_ = 0;
+        if (!KeepsLarger::on()) release();
+    }
     // At least this long.
     const cl::Memory& grow(Device& device, size_t bytes) {
-        if (bytes_ < bytes) resize(device, bytes);
+        if (held_ < bytes) resize(device, bytes);
         return memory_;
     }
 
   private:
+    void release() {
+        memory_ = cl::Memory();
+        held_ = 0;
+    }
+
     cl::Memory memory_;
-    size_t bytes_ = 0;
+    size_t bytes_ = 0, held_ = 0;  // in use, and there
 };
 
 }  // namespace pel

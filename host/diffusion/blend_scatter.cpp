@@ -1,7 +1,5 @@
 #include "diffusion/blend_scatter.h"
 
-#include <cstring>
-
 #include "core/launch_policy.h"
 #include "shading/launch_ranges.h"
 #include "shading/shading_constants.h"
@@ -26,11 +24,8 @@ void BlendScatter::prepare(const std::map<uint32_t, PelBlendMaterial>& materials
         frame.materialOf[id] = uint32_t(all.size());
         all.push_back(material);
     }
-    if (!frame_ || std::memcmp(&frame, &sent_, sizeof frame))
-        frame_ = device_->allocate(sizeof frame, &frame), sent_ = frame;
-    const size_t bytes = all.size() * sizeof all[0];
-    if (all.size() != sentMaterials_.size() || std::memcmp(all.data(), sentMaterials_.data(), bytes))
-        materials_ = device_->allocate(bytes, all.data()), sentMaterials_ = all;
+    frame_.update(*device_, &frame, sizeof frame);
+    materials_.update(*device_, all.data(), all.size() * sizeof all[0]);
 }
 
 std::vector<cl::ProgramKey> BlendScatter::programs(const BlendImages& images) const {

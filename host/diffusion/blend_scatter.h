@@ -2,6 +2,7 @@
 #pragma once
 #include "core/image_view.h"
 #include "lut/profile.h"
+#include "shading/scratch_image.h"
 #include "shared/blend.h"
 
 namespace pel {
@@ -24,9 +25,7 @@ class BlendScatter {
 
   private:
     Ref<Device> device_;
-    PelBlendFrame sent_{};
-    cl::Memory frame_, materials_;
-    std::vector<PelBlendMaterial> sentMaterials_;
+    CachedUpload frame_, materials_;
 };
 
 // The share of light that a sheet transmits; `thickness` in the unit of positions, `scale`: of the profile.

@@ -66,7 +66,7 @@ void LightSpace::describeLevels() {
     const auto sameLevels = [](const PelLightMap& a, const PelLightMap& b) {
         return !std::memcmp(a.level, b.level, sizeof a.level);
     };
-    if (!std::equal(now.begin(), now.end(), sent_.begin(), sent_.end(), sameLevels)) pyramid_ = SizedMemory();
+    if (!std::equal(now.begin(), now.end(), sent_.begin(), sent_.end(), sameLevels)) pyramid_.forget();
     pyramid_.resize(*device_, bytes, true);  // no light outside of the maps
     for (SizedMemory& marks : cells_) known_ &= !marks.resize(*device_, (size_t(cells) + 3) / 4 * 4);
     known_ &= !seen_.resize(*device_, (size_t(seen) + 3) / 4 * 4);

@@ -93,10 +93,10 @@ uint64_t ScreenScatter::bytesFor(uint32_t width, uint32_t height, bool radii) {
 
 void ScreenScatter::describeLevels(uint32_t width, uint32_t height, bool radii) {
     const uint64_t floats = layOutLevels(width, height, radii, frame_.level);
-    if (floats * sizeof(float) == pyramid_.bytes() &&
+    if (pyramid_.bytes() && sums_.bytes() &&
         !std::memcmp(frame_.level, constants_.sent().level, sizeof frame_.level))
         return;
-    pyramid_ = sums_ = SizedMemory();
+    pyramid_.forget(), sums_.forget();
     pyramid_.resize(*device_, floats * sizeof(float), true);  // no area outside of the picture
     // Vectors read beyond what is set.
     sums_.resize(*device_, sumFloats(frame_.level, radii, floats) * sizeof(float), true);

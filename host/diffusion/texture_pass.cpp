@@ -30,7 +30,7 @@ class TexturePass final : public Pass {
         if (!counters_) counters_ = device->allocate(PEL_DIFFUSION_COUNTERS * sizeof(cl_uint));
         samples_.clear();
         for (const auto& [id, material] : plan.state.materials)
-            if (takes(material)) samples_.push_back({id, material.scatteredTexture, {}});
+            if (takes(material)) samples_.push_back({id, material.scatteredTexture});
     }
     size_t bytes() const override { return out_ ? out_->bytes() : 0; }
 
@@ -48,6 +48,8 @@ class TexturePass final : public Pass {
     }
 
     size_t upload(Device& device, ShaderPlan&) override {
+        constants_.resize(samples_.size());
+        size_t bytes = 0;
         for (size_t i = 0; i < samples_.size(); ++i) {
             PelTextureSample s{};
             s.width = target_.width, s.height = target_.height;
@@ -59,9 +61,9 @@ class TexturePass final : public Pass {
             s.ids = describeImage(ids_);
             s.irradiance = describeImage(irradiance_);
             s.out = describeImage(target_);
-            samples_[i].constants = device.allocate(sizeof s, &s);
+            bytes += constants_[i].update(device, &s, sizeof s);
         }
-        return samples_.size() * sizeof(PelTextureSample);
+        return bytes;
     }
 
     void enqueue(PassWork& work) override {
@@ -69,7 +71,7 @@ class TexturePass final : public Pass {
         const size_t tiles = size_t((target_.width + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE) *
                              ((target_.height + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE);
         for (size_t i = 0; i < samples_.size(); ++i)
-            work.launch(program(i), "sample_texture", groupRange(work.device, tiles), samples_[i].constants,
+            work.launch(program(i), "sample_texture", groupRange(work.device, tiles), constants_[i],
                         samples_[i].texture, uv_, ids_, irradiance_, target_, counters_);
     }
 
@@ -83,7 +85,6 @@ class TexturePass final : public Pass {
     struct Sample {
         uint32_t id;
         ImageView texture;
-        cl::Memory constants;
     };
     static bool takes(const ShaderMaterial& material) {
         return material.params.scattering == PEL_SCATTERING_TEXTURE;
@@ -93,6 +94,7 @@ class TexturePass final : public Pass {
     ImageView irradiance_, uv_, ids_, target_;
     cl::Memory counters_;
     std::vector<Sample> samples_;
+    std::vector<CachedUpload> constants_;  // of each
 };
 
 }  // namespace

@@ -182,6 +182,27 @@ uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material)
     return needs;
 }
 
+ShaderState inRegion(ShaderState state) {
+    PelShaderOptions& o = state.options;
+    const ImageView frame = state.images[PEL_SLOT_RADIANCE];
+    if (!o.regionWidth || !frame) return state;
+    checkSizes(state);
+    if (!o.regionHeight || uint64_t(o.regionX) + o.regionWidth > frame.width ||
+        uint64_t(o.regionY) + o.regionHeight > frame.height)
+        invalidArgument("the region of PelShaderOptions is ", o.regionWidth, " x ", o.regionHeight,
+                        " pixels from (", o.regionX, ", ", o.regionY, ") on, and the images are ",
+                        frame.width, " x ", frame.height, "; it must lie inside them");
+    const auto crop = [&](ImageView& view) {
+        if (!view) return;
+        view.byteOffset += o.regionY * view.rowStride + o.regionX * view.pixelStride;
+        view.width = o.regionWidth, view.height = o.regionHeight;
+    };
+    for (ImageView& view : state.images) crop(view);
+    for (ShaderLight& light : state.lights) crop(light.images[PEL_LIGHT_WIDE_SHADOW]);
+    o.regionX = o.regionY = o.regionWidth = o.regionHeight = 0;
+    return state;
+}
+
 uint32_t deriveFeatures(const ShaderState& state) {
     const auto& images = state.images;
     need(bool(images[PEL_SLOT_RADIANCE]), "radiance image", "as the output");

@@ -8,6 +8,10 @@ namespace pel {
 // support.
 constexpr uint32_t diskTapsForBlocks = 64;
 
+// The state with its images cropped to PelShaderOptions.regionX to regionHeight, and no region. Throws if it
+// is not inside them.
+ShaderState inRegion(ShaderState state);
+
 // The PelFeature bits of a state. Throws if a required input is missing or does not match.
 uint32_t deriveFeatures(const ShaderState& state);
 // The features that one material needs, as far as their other inputs exist.

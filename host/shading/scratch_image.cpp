@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "core/sized_memory.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
 
 void resize(Ref<Buffer>& buffer, const Ref<Device>& device, size_t bytes) {
-    if ((buffer ? buffer->bytes() : 0) == bytes) return;
+    if (KeepsLarger::fits(buffer ? buffer->bytes() : 0, bytes)) return;
     buffer = Ref<Buffer>();
     if (bytes) buffer = Buffer::create(device, bytes, nullptr);
 }

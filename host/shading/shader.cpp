@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/sized_memory.h"
 #include "shading/background_build.h"
 #include "shading/capture.h"
 #include "shading/features.h"
@@ -16,7 +17,7 @@ namespace {
 ShaderPlan planOf(const ShaderState& given, uint32_t methods, uint64_t tooMany, const Ref<Device>& device,
                   ProfileTables& tables) {
     ShaderPlan plan;
-    plan.state = given;
+    plan.state = inRegion(given);
     plan.warnings = chooseMethods(plan.state, methods, tooMany);
     if (given.options.timeBudget > 0) plan.taken = keepToBudget(plan.state, methods, *device, plan.warnings);
     withTables(plan.state, device, tables);
@@ -76,6 +77,7 @@ void Shader::commitStandIn() {
 
 void Shader::commitState(const ShaderState& state) {
     standsIn_ = false;
+    const KeepsLarger keeps(state.options.regionWidth > 0);
     allocate(state, UINT32_MAX);
     finishPlan();
 }
@@ -183,10 +185,11 @@ void Shader::execute(bool blocking) {
         fail(PEL_ERROR_INVALID_STATE,
              "something was set after the last pelShaderCommit, or nothing was committed yet");
     if (standsIn_ && (!background_ || background_->done())) commit();
+    copyTextures(false);
     if (!captured_ && !standsIn_) {
         captured_ = true;
         if (const char* folder = std::getenv("PELLUCID_CAPTURE"); folder && *folder)
-            captureFrame(*device_, state_, folder);
+            captureFrame(*device_, inRegion(state_), folder);
     }
     PassWork work = beginWork(false);
     work.interruptible = blocking && device_->hasProgress();
@@ -205,10 +208,32 @@ void Shader::execute(bool blocking) {
         row = work.rows.end;
         ++bands_;
     }
+    copyTextures(true);
     if (work.interruptible) device_->progress(1, "shading");
     launches_ = work.events.size();
     uploadedBefore_ = std::exchange(bytesUploaded_, 0);
     executed_ = true;
+}
+
+// Of all images, or back to those that are written; each once.
+void Shader::copyTextures(bool back) const {
+    std::vector<const Buffer*> copied;
+    const auto copy = [&](const ImageView& view) {
+        const Buffer* const buffer = view.buffer.get();
+        if (!buffer || !buffer->ofTexture() || std::ranges::count(copied, buffer)) return;
+        buffer->copyTexture(back);
+        copied.push_back(buffer);
+    };
+    for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
+        if (!back || slot == PEL_SLOT_RADIANCE || isOutput(slot)) copy(state_.images[slot]);
+    if (back) return;
+    copy(state_.ambientCube), copy(state_.reflectionCube);
+    for (const ShaderLight& light : state_.lights) std::ranges::for_each(light.images, copy);
+    for (const auto& [id, material] : state_.materials) {
+        copy(material.scatteredTexture);
+        std::ranges::for_each(material.normalMap, copy);
+        if (material.eye) copy(material.eye->iris);
+    }
 }
 
 void Shader::setRows(const PassWork& work, TileRows rows) {

@@ -65,6 +65,7 @@ class Shader final : public Object {
     void send();
     void beginOnNothing();
     void launchOnNothing(Pass& pass);
+    void copyTextures(bool back) const;
     PassWork beginWork(bool codeAlone);
     void runPasses(PassWork& work, void (Pass::*part)(PassWork&));
     void runBand(PassWork& work);

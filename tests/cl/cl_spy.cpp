@@ -224,6 +224,10 @@ cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t bytes, void
     if (buffer && (flags & CL_MEM_COPY_HOST_PTR)) ++transfers, bytesCopied += bytes;
     return made(memory, buffer);
 }
+cl_mem clCreateImage(cl_context context, cl_mem_flags flags, const cl_image_format* format,
+                     const cl_image_desc* desc, void* host, cl_int* code) {
+    return made(memory, REAL(clCreateImage)(context, flags, format, desc, host, code));
+}
 cl_mem clCreateSubBuffer(cl_mem whole, cl_mem_flags flags, cl_buffer_create_type type, const void* info,
                          cl_int* code) {
     return made(memory, REAL(clCreateSubBuffer)(whole, flags, type, info, code));

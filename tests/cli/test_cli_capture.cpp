@@ -3,7 +3,7 @@
 #include "cli_run.h"
 #include "eye/eye_frame.h"
 #include "io/image/image_file.h"
-#include "shading/pass_scene.h"
+#include "shading/scattering_frame.h"
 
 using namespace shade_test;
 using pellucid::Lut;
@@ -66,30 +66,6 @@ class Capture : public CommandTest {
     std::string said_;
     int number_ = 0;
 };
-
-// A relief whose materials scatter, under a light with a shadow map from above.
-Frame scatteringFrame(PelScattering scattering) {
-    Frame f = reliefFrame(3, 96, 64, 0.5f);
-    Light light;
-    PelLight& l = light.params;
-    l.toLight[0] = 0.6f, l.toLight[1] = 0, l.toLight[2] = 0.8f;
-    const float rows[16] = {1 / 60.0f, 0, 0, 0.1f, 0, 1 / 60.0f, 0, 0.1f, 0, 0, -0.01f, 0.5f, 0, 0, 0, 1};
-    std::copy_n(rows, 16, l.worldToShadow);
-    l.shadowDepthRange = 100;
-    l.shadowFilterTexels = 16;
-    light.mapSize = 64;
-    light.map.components = 1;
-    for (uint32_t i = 0; i < 64 * 64; ++i) light.map.values.push_back(i % 64 > 40 ? 0.2f : 0.48f);
-    f.lights.push_back(light);
-    f.camera.position[2] = 200;
-    f.ambient.constant[0] = 0.1f;
-    for (auto& [id, m] : f.materials) {
-        m = pelMaterialDefaults();
-        m.scattering = scattering;
-        m.thicknessTaps = 8;
-    }
-    return f;
-}
 
 std::vector<Profile> profiles() {
     const float paths[] = {1.2f, 0.7f, 0.31f}, albedos[] = {0.7f, 0.4f, 0.3f}, few[] = {0.02f, 0.1f, 0.3f};
@@ -158,22 +134,14 @@ TEST_F(Capture, RepeatsEveryMethodAndProfile) {
          {PEL_SCATTERING_NONE, PEL_SCATTERING_PREINTEGRATED, PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_SCREEN,
           PEL_SCATTERING_LIGHT, PEL_SCATTERING_TEXTURE, PEL_SCATTERING_AUTO}) {
         SCOPED_TRACE(int(scattering));
-        Frame f = scatteringFrame(scattering);
-        Random random(8);
-        const auto scalars = [&](PelImageSlot slot, uint32_t components) {
-            f.slots[slot].components = components;
-            for (size_t i = 0; i < components * f.pixels(); ++i)
-                f.slots[slot].values.push_back(random.uniform(0.2f, 1));
-        };
-        scalars(PEL_SLOT_SCATTER_WEIGHT, scattering == PEL_SCATTERING_SCREEN ? 2 : 1);
-        scalars(PEL_SLOT_MEAN_CURVATURE, 1);
-        scalars(PEL_SLOT_UV, 2);
+        Frame f = scatteringFrame(scattering, 96, 64);
         // Both materials have one profile, but in one frame.
         const Profile first = all[scattering], second = scattering == PEL_SCATTERING_AUTO ? all[0] : first;
         f.materials[1].profile = first.get();
         f.materials[2].profile = second.get();
         expectRepeats(f, [&](Shader& shader) {
             if (scattering != PEL_SCATTERING_TEXTURE) return;
+            Random random(8);
             std::vector<float> texels(3 * 16 * 8);
             for (float& t : texels) t = random.uniform();
             for (uint32_t id : {1u, 2u})
@@ -186,7 +154,7 @@ TEST_F(Capture, RepeatsFormsOfShadowMaps) {
     for (const auto content :
          {PEL_SHADOW_CONTENT_DEPTH, PEL_SHADOW_CONTENT_MOMENTS, PEL_SHADOW_CONTENT_EXPONENTIAL}) {
         SCOPED_TRACE(int(content));
-        Frame f = scatteringFrame(PEL_SCATTERING_PREINTEGRATED);
+        Frame f = scatteringFrame(PEL_SCATTERING_PREINTEGRATED, 96, 64);
         for (auto& [id, m] : f.materials) std::fill_n(m.deepScatterColor, 3, 0.5f);
         const uint32_t components = content == PEL_SHADOW_CONTENT_MOMENTS ? 2 : 1;
         Light light = f.lights[0];
@@ -271,6 +239,22 @@ TEST_F(Capture, RepeatsEyesCubesAndNormalMaps) {
     const Buffer target(frame.device, std::vector<float>(3 * frame.pixels()));
     shader.set(PEL_SLOT_RADIANCE, frame.image(target));
     expectRepeats(shader, target);
+}
+
+TEST_F(Capture, WritesTheRegionAlone) {
+    Frame f = randomFrame(5, 70, 40, 2);
+    f.options.regionX = 7, f.options.regionY = 3, f.options.regionWidth = 50, f.options.regionHeight = 31;
+    Shader shader(device());
+    setFrame(device(), shader, f, tables());
+    const Buffer target = setTarget(device(), shader, f);
+    capture(shader);
+    EXPECT_EQ(said_, "");
+    done("shade @captures/shader-1/scene.toml -o @again.exr");
+    const std::vector<float> all = target.readAll<float>();
+    std::vector<float> region;
+    for (size_t y = 3; y < 34; ++y)
+        region.insert(region.end(), &all[3 * (70 * y + 7)], &all[3 * (70 * y + 57)]);
+    EXPECT_TRUE(sameBits(radianceOf(path("again.exr")), region));
 }
 
 TEST_F(Capture, WritesEachShaderOnceAndNothingOver) {

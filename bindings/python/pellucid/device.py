@@ -250,7 +250,11 @@ class Buffer(OfThisProcess):
 
     @classmethod
     def from_cl(cls, device: Device, mem: Any) -> Buffer:
-        """A pyopencl.Buffer or a cl_mem handle of the device's context."""
+        """A pyopencl.Buffer, a 2D pyopencl.Image or a cl_mem handle of the device's context.
+
+        Of an image the buffer is a copy, which a Shader brings up to date when it executes; textures that it
+        writes are copied back.
+        """
         self = cls.__new__(cls)
         self._setup(device, _native.Buffer.from_cl(device._handle, _cl_address(mem, "mem")), mem)
         return self

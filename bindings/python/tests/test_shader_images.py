@@ -74,3 +74,13 @@ def test_formats_by_name(device):
             (np.zeros((4, 4), ">u2"), "r16_uint", "byte order of another machine")]:
         with pytest.raises(ValueError, match=message):
             pel.Image(device, data, name)
+
+
+def test_a_region_is_shaded_as_if_alone(device, view):
+    part = np.s_[2:HEIGHT - 1, 3:WIDTH - 2]
+    height, width = view.inside[part].shape
+    out, expected = (np.full((HEIGHT, WIDTH, 3), 7, np.float32) for _ in range(2))
+    expected[part] = np.where(view.inside[..., None], shaded(device, view), 7)[part]
+    shader = shader_for(device, view, out)
+    shader.set_options(region_x=3, region_y=2, region_width=width, region_height=height).commit().execute()
+    assert np.array_equal(out, expected)

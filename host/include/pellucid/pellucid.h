@@ -217,7 +217,12 @@ PEL_API PelError pelBufferCreate(PelDevice device, size_t bytes, const void* ini
  * devices. */
 PEL_API PelError pelBufferCreateFromHost(PelDevice device, void* memory, size_t bytes, PelBuffer* buffer);
 
-/* The caller's cl_mem buffer, of the device's context (retained). */
+/* The caller's cl_mem, of the device's context (retained): a buffer; or a 2D image, such as a texture that is
+ * shared with a graphics API. Of an image the library has a copy: rows of texels without gaps, in the image's
+ * own format, zeros at first. Each execution of a PelShader copies the textures of its images there before
+ * its work, and those that it writes back after it, whole; other calls see what the last of them left. So the
+ * host acquires shared textures before an execution and releases them after it. Errors:
+ * PEL_ERROR_INVALID_ARGUMENT for other kinds of images. */
 PEL_API PelError pelBufferCreateFromCl(PelDevice device, void* clMem, PelBuffer* buffer);
 
 PEL_API void pelBufferRetain(PelBuffer buffer);
@@ -1276,6 +1281,14 @@ typedef struct PelShaderOptions {
      * nearest to light among those that fit by the device's record: a file that PELLUCID_TUNING names, or a
      * guess (docs/guide/shading.md, "Time budget"). PelShaderStats says what was taken; 0 */
     float timeBudget;
+    /* pixels: the part of all images of the frame that is shaded, for images that are larger than the
+     * viewport (docs/guide/hosts.md, "A part of the images"). Its pixels have no neighbours outside, as if
+     * the images were cropped to it; pixels outside are not written, and the clip space of PelCamera spans
+     * it. Errors at commit: it is not inside the images. regionWidth 0: the whole images; 0 */
+    uint32_t regionX;
+    uint32_t regionY;
+    uint32_t regionWidth;
+    uint32_t regionHeight;
 } PelShaderOptions;
 
 PEL_API PelError pelShaderCreate(PelDevice device, PelShader* shader);

@@ -1,0 +1,174 @@
+// Images of the host's textures: the same bits as of buffers, read and written at each execution.
+#include <CL/cl.h>
+
+#include "cl/cl_spy.h"
+#include "shade_scene.h"
+#include "test.h"
+
+using namespace shade_test;
+
+namespace {
+
+constexpr cl_channel_order orders[] = {0, CL_R, CL_RG, CL_RGBA, CL_RGBA};
+constexpr PelFormat formats[] = {PEL_FORMAT_UNDEFINED, PEL_FORMAT_R32F, PEL_FORMAT_RG32F, PEL_FORMAT_RGBA32F,
+                                 PEL_FORMAT_RGBA32F};
+
+// A texture of floats, whose texels hold `components` values of an image; three are four with a 7.
+class Texture {
+  public:
+    Texture(const std::vector<float>& values, uint32_t components, uint32_t width, uint32_t height)
+        : components_(components), format_(formats[components]), width_(width), height_(height) {
+        void *context = nullptr, *id = nullptr;
+        pellucid::check(pelDeviceGetCl(device().get(), &context, &id, &queue_));
+        const cl_image_format format{orders[components], CL_FLOAT};
+        cl_image_desc desc{};
+        desc.image_type = CL_MEM_OBJECT_IMAGE2D;
+        desc.image_width = width, desc.image_height = height;
+        cl_int error = CL_SUCCESS;
+        image_ = clCreateImage(static_cast<cl_context>(context), CL_MEM_READ_WRITE, &format, &desc, nullptr,
+                               &error);
+        if (error) throw std::runtime_error("no texture of this format");
+        write(values);
+        buffer_ = Buffer::fromCl(device(), image_);
+    }
+    ~Texture() { clReleaseMemObject(image_); }
+    Texture(const Texture&) = delete;
+    Texture& operator=(const Texture&) = delete;
+
+    PelImageDesc desc() const { return imageDesc(buffer_, format_, width_, height_); }
+    void write(const std::vector<float>& values) {
+        const uint32_t across = components_ == 3 ? 4 : components_;
+        std::vector<float> texels(size_t(width_) * height_ * across, 7);
+        for (size_t i = 0; i < values.size(); ++i)
+            texels[i / components_ * across + i % components_] = values[i];
+        transfer(clEnqueueWriteImage, texels.data());
+    }
+    std::vector<float> texels() const {
+        std::vector<float> values(size_t(width_) * height_ * (components_ == 3 ? 4 : components_));
+        transfer(clEnqueueReadImage, values.data());
+        return values;
+    }
+
+  private:
+    template <class Call>
+    void transfer(const Call& call, float* values) const {
+        const size_t origin[3] = {}, size[3] = {width_, height_, 1};
+        ASSERT_EQ(call(static_cast<cl_command_queue>(queue_), image_, CL_TRUE, origin, size, 0, 0, values, 0,
+                       nullptr, nullptr),
+                  CL_SUCCESS);
+    }
+    uint32_t components_;
+    PelFormat format_;
+    uint32_t width_, height_;
+    void* queue_ = nullptr;
+    cl_mem image_ = nullptr;
+    Buffer buffer_;
+};
+
+}  // namespace
+
+TEST(Textures, GiveTheBitsOfBuffers) {
+    Frame f = randomFrame(3, 70, 40, 2);
+    Shader buffers(device());
+    setFrame(device(), buffers, f, tables());
+    const Buffer target = setTarget(device(), buffers, f);
+    const std::vector<float> threes(3 * f.pixels(), 3);
+    target.write(threes.data(), target.bytes());
+    buffers.commit().execute();
+
+    Shader shader(device());
+    setFrame(device(), shader, f, tables());
+    std::vector<std::unique_ptr<Texture>> textures;
+    const auto texture = [&](const std::vector<float>& values, uint32_t components, uint32_t w, uint32_t h) {
+        return textures.emplace_back(std::make_unique<Texture>(values, components, w, h))->desc();
+    };
+    for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot)
+        if (const Image& image = f.slots[slot]; !image.values.empty())
+            shader.set(PelImageSlot(slot), texture(image.values, image.components, f.width, f.height));
+    for (uint32_t i = 0; i < f.lights.size(); ++i) {
+        const Light& light = f.lights[i];
+        shader.set(i, PEL_LIGHT_WIDE_SHADOW, texture(light.wide.values, 1, f.width, f.height));
+        shader.set(i, PEL_LIGHT_SHADOW_MAP, texture(light.map.values, 1, light.mapSize, light.mapSize));
+    }
+    Texture radiance(threes, 3, f.width, f.height), diffuse(threes, 3, f.width, f.height);
+    shader.set(PEL_SLOT_RADIANCE, radiance.desc()).set(PEL_SLOT_OUT_DIFFUSE, diffuse.desc()).commit();
+    const spy::Counts before = spy::counts();
+    const PelSubmit submit{nullptr, 0, nullptr};
+    shader.execute(&submit);
+    EXPECT_EQ(spy::counts().waits, before.waits);
+    EXPECT_EQ(spy::counts().buffersMade, before.buffersMade);
+
+    const auto expectSame = [&] {
+        const std::vector<float> expected = target.readAll<float>(), texels = radiance.texels();
+        size_t others = 0;
+        for (size_t i = 0; i < f.pixels(); ++i)
+            for (size_t c = 0; c < 4; ++c)
+                others += texels[4 * i + c] != (c == 3 ? texels[3] : expected[3 * i + c]);
+        EXPECT_EQ(others, 0u) << "values";
+    };
+    expectSame();
+    EXPECT_NE(diffuse.texels()[4 * 20 * 70 + 4 * 35], 7);
+
+    // What the textures hold at the next execution.
+    for (float& a : f.slots[PEL_SLOT_ALBEDO].values) a = 1 - a;
+    const Buffer albedo(device(), f.slots[PEL_SLOT_ALBEDO].values);
+    buffers.set(PEL_SLOT_ALBEDO, imageDesc(albedo, PEL_FORMAT_RGB32F, f.width, f.height)).commit().execute();
+    size_t at = 0;
+    for (int slot = 1; slot < PEL_SLOT_ALBEDO; ++slot) at += !f.slots[slot].values.empty();
+    textures[at]->write(f.slots[PEL_SLOT_ALBEDO].values);
+    shader.execute();
+    expectSame();
+}
+
+// Irradiance that a pass replaces by what it scatters is still read from its texture.
+TEST(Textures, AreReadWhereAPassPutsAnotherImage) {
+    const uint32_t width = 64, height = 32, pixels = width * height;
+    std::vector<float> positions, irradiance;
+    for (uint32_t i = 0; i < pixels; ++i) {
+        for (const float p : {float(i % width), float(i / width), 0.0f}) positions.push_back(p);
+        for (int c = 0; c < 3; ++c) irradiance.push_back(i % width < 30 ? 1 : 0.1f);
+    }
+    std::vector<float> normals(3 * pixels);
+    for (uint32_t i = 0; i < pixels; ++i) normals[3 * i + 2] = 1;
+    const pellucid::Profile profile = pellucid::Profile::skin();
+    PelMaterial material = pelMaterialDefaults();
+    material.profile = profile.get();
+    material.scattering = PEL_SCATTERING_SCREEN;
+    Texture texture(irradiance, 3, width, height);
+    const auto shaded = [&](const PelImageDesc& light) {
+        Shader shader(device());
+        const Buffer target(device(), 12 * pixels);
+        shader.setMaterial(1, material)
+            .set(PEL_SLOT_POSITION, imageDesc(Buffer(device(), positions), PEL_FORMAT_RGB32F, width, height))
+            .set(PEL_SLOT_NORMAL_SHADING,
+                 imageDesc(Buffer(device(), normals), PEL_FORMAT_RGB32F, width, height))
+            .set(PEL_SLOT_IRRADIANCE, light)
+            .set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, width, height))
+            .commit()
+            .execute();
+        return target.readAll<float>();
+    };
+    const Buffer buffer(device(), irradiance);
+    EXPECT_EQ(shaded(texture.desc()), shaded(imageDesc(buffer, PEL_FORMAT_RGB32F, width, height)));
+}
+
+TEST(Textures, OfOtherKindsAreRefused) {
+    void *context = nullptr, *id = nullptr, *queue = nullptr;
+    pellucid::check(pelDeviceGetCl(device().get(), &context, &id, &queue));
+    const cl_image_format format{CL_RGBA, CL_FLOAT};
+    cl_image_desc desc{};
+    desc.image_type = CL_MEM_OBJECT_IMAGE3D;
+    desc.image_width = desc.image_height = desc.image_depth = 4;
+    cl_int error = CL_SUCCESS;
+    const cl_mem image =
+        clCreateImage(static_cast<cl_context>(context), CL_MEM_READ_ONLY, &format, &desc, nullptr, &error);
+    if (error) GTEST_SKIP() << "the device has no 3D images";
+    expectRefused("another kind than image2d", [&] { Buffer::fromCl(device(), image); });
+    clReleaseMemObject(image);
+    // As large as the image that is described.
+    Texture texture(std::vector<float>(16, 1), 1, 4, 4);
+    PelImageDesc larger = texture.desc();
+    larger.height = 5;
+    Shader shader(device());
+    expectRefused("of a buffer of 64", [&] { shader.set(PEL_SLOT_CURVATURE, larger); });
+}
