@@ -72,14 +72,17 @@ const char* lastErrorMessage() {
     return message.c_str();
 }
 
-void warn(const std::string& lines) {
-    if (lines.empty()) return;
+bool warn(const std::string& lines) {
+    if (lines.empty()) return true;
     const std::string object = nameInCall();  // callbacks may call the library
+    bool heard = false;
     call([&](const Callbacks& to) {
+        heard = to.log != nullptr;
         std::istringstream each(lines);
         for (std::string line; to.log && std::getline(each, line);)
             to.log(to.logUser, PEL_LOG_WARNING, object.c_str(), line.c_str());
     });
+    return heard;
 }
 
 PelError report(PelError code, const char* what) noexcept {

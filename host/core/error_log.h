@@ -7,8 +7,8 @@ namespace pel {
 void setErrorCallback(PelErrorCallback callback, void* user);
 void setLogCallback(PelLogCallback callback, void* user);
 const char* lastErrorMessage();
-// Tells the log callback of each line.
-void warn(const std::string& lines);
+// Tells the log callback of each line. False if there is none.
+bool warn(const std::string& lines);
 // Stores the message for this thread, calls the callbacks, returns the code.
 PelError report(PelError code, const char* message) noexcept;
 

@@ -1,6 +1,7 @@
 #include "shading/capture.h"
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 
 #include "cl/module.h"
@@ -132,6 +133,12 @@ std::string lost(const ShaderState& state) {
             say("PelShaderOptions.invalidColor: the scene's invalid pixels are black");
             break;
         }
+    int64_t lightImages = 0;
+    for (const ShaderLight& light : state.lights)
+        lightImages += std::ranges::count_if(light.images, [](const ImageView& v) { return bool(v); });
+    if (lightImages > PEL_LIGHT_BUFFERS)
+        say("which of the lights' ", lightImages,
+            " images share buffers: `pellucid shade` has a buffer for each, ", PEL_LIGHT_BUFFERS, " at most");
     const auto exact = [](const float(&v)[3]) {
         return std::abs(std::hypot(double(v[0]), double(v[1]), double(v[2])) - 1) < 1e-6;
     };
@@ -143,6 +150,10 @@ std::string lost(const ShaderState& state) {
                 ": a scene's reader scales it to 1");
     }
     return lines;
+}
+
+void tell(const std::string& lines) {
+    if (!warn(lines)) std::fprintf(stderr, "pellucid: %s\n", lines.c_str());
 }
 
 // A new folder: an existing one, or a link, is never written to.
@@ -165,16 +176,16 @@ void captureFrame(Device& device, const ShaderState& state, const std::string& f
     for (char& c : name)
         if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
     if (name.empty()) name = "shader";
-    warn(lost(state));
+    tell(lost(state));
     try {
         const auto write =
             reinterpret_cast<WriteCapture>(cl::moduleFunction(PELLUCID_CAPTURE, "pellucidCapture"));
         const std::string to = newFolder(folder, name);
         const Capture capture(device, state);
         if (const std::string wrong = write(capture.frame, to); !wrong.empty())
-            warn(text("PELLUCID_CAPTURE: ", wrong));
+            tell(text("PELLUCID_CAPTURE: ", wrong));
     } catch (const std::exception& e) {
-        warn(text("PELLUCID_CAPTURE: ", e.what()));
+        tell(text("PELLUCID_CAPTURE: ", e.what()));
     }
 }
 

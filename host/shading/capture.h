@@ -6,7 +6,7 @@
 namespace pel {
 
 // Writes the frame into a new folder below `folder`, named after the shader. Waits for the device. What went
-// wrong, and what a scene cannot hold, the log callback hears: the frame goes on.
+// wrong, and what a scene cannot hold, goes to the log callback, or to standard error: the frame goes on.
 void captureFrame(Device& device, const ShaderState& state, const std::string& folder);
 
 }  // namespace pel

@@ -292,25 +292,35 @@ TEST_F(Capture, SaysWhatIsLeftOut) {
     f.options.scratchBudget = 64 << 20;
     f.options.invalidColor[1] = 1;
     f.lights[0].params.toLight[0] *= 1.0001f;
+    f.lights.resize(9, f.lights[0]);
     Shader shader(device());
     setFrame(device(), shader, f, tables());
+    const Buffer map(device(), f.lights[0].map.values);
+    const PelImageDesc shared = imageDesc(map, PEL_FORMAT_R32F, 61, 61);
+    for (uint32_t i = 0; i < 9; ++i) shader.set(i, PEL_LIGHT_SHADOW_MAP, shared);
     const Buffer target = setTarget(device(), shader, f);
     capture(shader);
     for (const char* words :
          {"PelShaderOptions.accumulate", "PelShaderOptions.scratchBudget: --scratch-mib 64",
-          "PelShaderOptions.invalidColor", "PelLight 0.toLight"})
+          "PelShaderOptions.invalidColor", "PelLight 0.toLight", "lights' 18 images share buffers"})
         EXPECT_TRUE(contains(said_, words));
     const std::vector<float> expected = target.readAll<float>();
     EXPECT_TRUE(std::ranges::any_of(expected, [](float v) { return v > 0; }));
 
     write("a_file", "");
-    Shader other(device());
-    setFrame(device(), other, randomFrame(1, 32, 16, 1), tables());
-    const Buffer kept = setTarget(device(), other, f);
-    capture(other, "a_file");
+    const Frame plain = randomFrame(1, 32, 16, 1);
+    for (const char* folder : {"captures", "a_file"}) {
+        Shader other(device());
+        setFrame(device(), other, plain, tables());
+        const Buffer kept = setTarget(device(), other, plain);
+        capture(other, folder);
+        const std::vector<float> shaded = kept.readAll<float>();
+        EXPECT_TRUE(std::ranges::any_of(shaded, [](float v) { return v > 0; }));
+    }
     EXPECT_TRUE(contains(said_, "PELLUCID_CAPTURE: "));
-    const std::vector<float> shaded = kept.readAll<float>();
-    EXPECT_TRUE(std::ranges::any_of(shaded, [](float v) { return v > 0; }));
+    const Result heard =
+        done("shade @captures/shader-2/scene.toml -o @again.exr", "PELLUCID_CAPTURE=@a_file");
+    EXPECT_TRUE(contains(heard.err, "PELLUCID_CAPTURE: ")) << "there is no log callback";
 }
 
 TEST_F(Capture, SceneWithoutGBufferIsRefused) {
