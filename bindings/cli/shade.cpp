@@ -223,8 +223,12 @@ void run(Arguments a) {
             "--show: parts are shown in a picture; name one with --picture, or write -o to a .png");
     if (picture == a.output && !a.picture.empty())
         throw UsageError("--picture: -o is a picture already; write -o to an .exr, or leave --picture out");
+    if (a.scene.empty()) {
+        if (io::extensionOf(a.gbuffer) != "toml")
+            throw UsageError("--scene is needed beside a G-buffer: a scene file (TOML)");
+        a.scene = std::exchange(a.gbuffer, "");
+    }
     Run run(a.run);
-    if (a.scene.empty()) a.scene = std::exchange(a.gbuffer, "");
     io::SceneFile scene = io::readScene(a.scene);
     if (a.gbuffer.empty()) a.gbuffer = scene.gbuffer;
     if (a.gbuffer.empty())
