@@ -128,8 +128,8 @@ class Device(OfThisProcess):
         callback : callable, True or None
             Called with a fraction in [0, 1] and what is being done; returning False cancels: the call then
             raises PellucidError with the code CANCELLED. An exception cancels too and is passed on. True: a
-            `tqdm` bar, or plain lines on stderr where tqdm is not installed. None: nothing. It runs on the
-            thread of the call; where that waits for a compiler or for counts (Shader.commit,
+            `tqdm` bar, or plain lines where tqdm is not installed or stderr is no terminal. None: nothing. It
+            runs on the thread of the call; where that waits for a compiler or for counts (Shader.commit,
             warm_up_programs, curvature with a report), on a thread of its own.
         """
         self._handle.progress = progress_bar() if callback is True else (callback or None)
@@ -144,6 +144,8 @@ def progress_bar() -> Progress:
         from tqdm.auto import tqdm  # type: ignore[import-untyped,unused-ignore]
     except ImportError:
         tqdm = None
+    if not sys.stderr.isatty() and "ipykernel" not in sys.modules:  # notebooks show a bar of their own
+        tqdm = None
     bars: dict[str, Any] = {}
 
     def show(fraction: float, what: str) -> None:
@@ -153,7 +155,8 @@ def progress_bar() -> Progress:
                 bars[what] = fraction
         else:
             if what not in bars:
-                bars[what] = tqdm(total=1.0, desc=what, leave=False)
+                bars[what] = tqdm(total=1.0, desc=what, leave=False,
+                                  bar_format="{desc}: {percentage:3.0f}%|{bar}| {elapsed}<{remaining}")
             bars[what].update(fraction - bars[what].n)
         if fraction >= 1:
             bar = bars.pop(what, None)

@@ -90,13 +90,16 @@ def test_progress_is_reported_and_cancels(work, callback, error, message):
     run()
 
 
-def test_progress_is_printed_without_tqdm(work, capsys, monkeypatch):
+@pytest.mark.parametrize("installed", [True, False])
+def test_progress_is_lines_without_tqdm_or_a_terminal(work, capsys, monkeypatch, installed):
     device, run = work
-    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    if not installed:
+        monkeypatch.setitem(sys.modules, "tqdm.auto", None)
     device.set_progress(True)
     run()
     device.set_progress(None)
-    assert "%" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "%" in said and "\r" not in said
 
 
 def test_progress_bar_ends_with_its_work(monkeypatch):
@@ -115,6 +118,7 @@ def test_progress_bar_ends_with_its_work(monkeypatch):
             self.closed += 1
 
     monkeypatch.setitem(sys.modules, "tqdm.auto", types.SimpleNamespace(tqdm=Bar))
+    monkeypatch.setitem(sys.modules, "ipykernel", None)  # where a bar is shown without a terminal
     show = progress_bar()
     for again in (1, 2):
         for fraction in (0.0, 0.25, 0.5, 1.0):
