@@ -154,10 +154,11 @@ PelDeviceInfo describe(cl_device_id device, uint32_t index) {
 
     // CPUs vectorise explicit vector types, GPUs vectorise across work-items (docs/dataflow.md, "Widths"). A
     // driver without vectors on a CPU (rusticl on llvmpipe) gets one lane, since it would make eight of each.
-    // Intel's driver prefers 1 but has 16 lanes, with which shading is up to twice as fast as with 8.
+    // Intel's driver prefers 1 and has 16, but its compiler crashes on 16-wide kernels of the default method.
     const uint32_t lanes =
         std::max(d.preferredFloatWidth, info<cl_uint>(device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT));
-    d.mathWidth = d.type != PEL_DEVICE_CPU || lanes <= 1 ? 1 : lanes >= 16 ? 16 : 8;
+    const bool intel = platform.starts_with("Intel");
+    d.mathWidth = d.type != PEL_DEVICE_CPU || lanes <= 1 ? 1 : lanes >= 16 && !intel ? 16 : 8;
     d.mathWidth = requestedMathWidth().value_or(d.mathWidth);
     std::string quirks;
     if (d.mathWidth > 1) quirks += text("explicit ", d.mathWidth, "-wide arithmetic; ");

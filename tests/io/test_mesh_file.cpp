@@ -284,6 +284,7 @@ TEST_F(MeshFile, BadFilesSayWhere) {
         {"n.ply", asciiPly("0 0 0\n1 nan 0\n0 1 0\n", face), "n.ply:11: y is 'nan'"},
         {"t.ply", ply.substr(0, ply.find("0 1 0\n")), "ends early"},
         {"i.ply", asciiPly(three, "3 0 1 7\n"), "face 0 (counted from 0) refers to vertex 7"},
+        {"u.ply", asciiPly(three, "3 0 1 9223372036854775807\n"), "refers to vertex 1000000000000000"},
         {"x.ply", "nonsense", "x.ply:1: does not start with 'ply'"},
         {"f.ply", replaced(ply, "ascii 1.0", "ascii"), "f.ply:2: 'format ENCODING 1.0'"},
         {"p.ply", replaced(ply, "float z", "floot z"), "p.ply:6: has the type 'floot'"},

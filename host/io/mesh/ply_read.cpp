@@ -286,7 +286,9 @@ void readFaces(Body& body, const Element& e, RawMesh& mesh) {
                 continue;
             }
             seen = true;
-            for (size_t k = 0; k < length; ++k) mesh.corners.push_back(static_cast<int64_t>(body.number(p)));
+            constexpr double most = 1e15;  // an int64_t holds it; no vertex has such an index
+            for (size_t k = 0; k < length; ++k)
+                mesh.corners.push_back(static_cast<int64_t>(std::clamp(body.number(p), -most, most)));
         }
         body.end(e);
         mesh.faceStart.push_back(static_cast<uint32_t>(mesh.corners.size()));
