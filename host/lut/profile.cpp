@@ -10,7 +10,6 @@
 namespace pel {
 namespace {
 
-constexpr double pi = std::numbers::pi;
 #define KEY(name, number, key) key,
 constexpr const char* kindNames[] = {PEL_EACH_PROFILE_KIND(KEY)};
 #undef KEY

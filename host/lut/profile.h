@@ -11,6 +11,8 @@
 
 namespace pel {
 
+constexpr double pi = std::numbers::pi;
+
 using Rgb = std::array<double, 3>;
 inline constexpr const char* channelNames[] = {"red", "green", "blue"};
 

@@ -25,7 +25,6 @@ double besselK0(double x) {
     return step * sum * std::exp(-x);
 }
 
-constexpr double pi = std::numbers::pi;
 // Step of the trapezoid rule in log t: the error is of the order of exp(-pi^2 / 2 step) = 3e-9.
 constexpr double mixtureStep = 0.25;
 

@@ -8,8 +8,6 @@
 namespace pel {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 // R = offset + slope d on [begin, end].
 struct Piece {
     double begin, end;  // length

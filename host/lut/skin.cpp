@@ -13,8 +13,6 @@
 namespace pel {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 // ---- skinReflected as a polynomial
 
 // Evenly spaced nodes of a variable in which the logarithm of the reflectance is smooth.
