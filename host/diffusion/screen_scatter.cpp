@@ -26,7 +26,7 @@ namespace {
 // Samples of sums by levels are nearer than the light that they stand for, so that they gain less.
 constexpr double nearerByLevels = 0.925;
 
-enum Program { PYRAMIDS, SUMS, CLASSIFY };
+enum ScreenProgram { PYRAMIDS, SUMS, CLASSIFY };
 }  // namespace
 
 void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
@@ -177,7 +177,7 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
     std::vector<cl::Program> programs;
     for (const cl::ProgramKey& key : this->programs(images)) programs.push_back(device_->programs().get(key));
     const ScreenMemory screen = memory(programs[PYRAMIDS]);
-    const auto launch = [&](Program program, const char* kernel, const cl::Range& range,
+    const auto launch = [&](ScreenProgram program, const char* kernel, const cl::Range& range,
                             const auto&... values) {
         device_->launch(events, programs[program], kernel, range, constants_, values...);
     };

@@ -109,6 +109,17 @@ class Tree(unittest.TestCase):
                         wrong.append(f"{path}: {own} must not include {target} ({name})")
         self.none(wrong, checked, 100)
 
+    def test_sources_of_the_library_share_no_name_of_their_own(self):
+        """A wheel compiles several of them at once (bindings/python/CMakeLists.txt)."""
+        own = re.compile(r"^(?:static )?const(?:expr)? [\w:<>, *]*?\b(\w+)(?:\[[^\]]*\])*\s*[={;]"
+                         r"|^(?:struct|class|enum(?: class)?) (\w+)(?: final)?\s*[:{]", re.M)
+        places = {}
+        for path in sources("host"):
+            if path.suffix == ".cpp" and path.relative_to(ROOT / "host").parts[0] not in ("io", "sample", "scene"):
+                for found in own.finditer(path.read_text()):
+                    places.setdefault(found[1] or found[2], set()).add(path.name)
+        self.none([f"{name}: {', '.join(sorted(at))}" for name, at in places.items() if len(at) > 1], len(places), 50)
+
     def test_one_system_alone_has_folders_of_its_own(self):
         """bench/measure and the native module of Python are for POSIX systems (docs/guide/install.md)."""
         system = re.compile(
