@@ -110,6 +110,16 @@ bool pixelOnPixel(const ImageView& a, const ImageView& b) {
 
 }  // namespace
 
+void copyTextures(const std::vector<ImageView>& images, bool back) {
+    std::vector<const Buffer*> copied;
+    for (const ImageView& view : images) {
+        const Buffer* const buffer = view.buffer.get();
+        if (!buffer || !buffer->ofTexture() || std::ranges::count(copied, buffer)) continue;
+        buffer->copyTexture(back);
+        copied.push_back(buffer);
+    }
+}
+
 bool sharesBytes(const ImageView& a, const ImageView& b) {
     if (!overlaps(a, b)) return false;
     return !pixelOnPixel(a, b) || a.info().planar ||

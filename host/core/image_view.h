@@ -36,6 +36,9 @@ struct ImageView {
 // that the buffer is of `device`. `what` names the image in every message.
 ImageView makeImageView(const PelImageDesc* given, Device& device, const char* what);
 
+// Enqueues the copies of textures that images are of, each once; `back`: to the textures.
+void copyTextures(const std::vector<ImageView>& images, bool back);
+
 // Whether `a` and `b` share a byte of a pixel. Also finds buffers over the same host memory and parts of one
 // cl_mem.
 bool sharesBytes(const ImageView& a, const ImageView& b);

@@ -94,15 +94,14 @@ void Scatter::setImage(PelImageSlot slot, const ImageView& view) {
 }
 
 // The methods of the materials, and the steps before and after them.
-Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImages& images) {
+Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImages& images) const {
     Plan plan;
     plan.weight = image(PEL_SLOT_SCATTER_WEIGHT);
     const ImageView albedo = image(PEL_SLOT_ALBEDO), back = image(PEL_SLOT_IRRADIANCE_BACK);
     plan.finishes = params.accumulate || albedo;
     plan.other.after = albedo ? 1.0f : 0.0f;
     plan.curvature = image(PEL_SLOT_MEAN_CURVATURE);
-    const bool measures = !plan.curvature && image(PEL_SLOT_NORMAL_GEOMETRIC),
-               curved = measures || plan.curvature;
+    const bool curved = plan.curvature || image(PEL_SLOT_NORMAL_GEOMETRIC);
     for (const auto& [id, material] : materials_) {
         ScreenScatter::Material curving = material;
         const PelProfileInfo info = material.profile->info();
@@ -143,13 +142,8 @@ Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImage
         plan.prepares |= c.albedoBefore > 0 || c.thinThickness > 0;
         plan.finishes |= blend.weighs != 0 || curving.gain[0] > 0;
     }
+    plan.measures = !plan.curvature && !plan.windows.empty();
     if (plan.windows.empty()) plan.curvature = {};
-    if (measures && !plan.windows.empty()) {
-        resize(measured_, device_, size_t(images.out.width) * images.out.height * sizeof(float));
-        plan.curvature = scratchImage(measured_, images.out, PEL_FORMAT_R32F);
-        curvature_.setImages(
-            {image(PEL_SLOT_NORMAL_GEOMETRIC), images.positions, images.depth, images.ids, plan.curvature});
-    }
     for (PelImageSlot slot : keptSlots) {
         const ImageView view = image(slot);
         if (!view) continue;
@@ -178,6 +172,14 @@ ImageView Scatter::scratch(size_t index, const ImageView& like) {
     return scratchImage(scratch_[index], like, PEL_FORMAT_PLANAR_RGB32F);
 }
 
+void Scatter::execute(const PelScatterParams& params, const ScatterImages& images) {
+    std::vector<ImageView> read{images.irradiance, images.positions, images.depth, images.ids, images.out};
+    for (const auto& [slot, view] : images_) read.push_back(view);
+    copyTextures(read, false);
+    run(params, images, nullptr);
+    copyTextures({images.out}, true);
+}
+
 void Scatter::run(const PelScatterParams& params, const ScatterImages& images,
                   std::vector<cl::ProgramKey>* keys) {
     checkParams(params);
@@ -198,8 +200,12 @@ void Scatter::run(const PelScatterParams& params, const ScatterImages& images,
     };
     ScatterImages now = images;
     now.takeRadii(plan.weight);
-    now.curvature = plan.screen.empty() ? ImageView() : plan.curvature;
-    if (plan.curvature && plan.curvature.buffer.get() == measured_.get()) {
+    ImageView curvature = plan.curvature;
+    if (plan.measures) {
+        resize(measured_, device_, size_t(images.out.width) * images.out.height * sizeof(float));
+        curvature = scratchImage(measured_, images.out, PEL_FORMAT_R32F);
+        curvature_.setImages(
+            {image(PEL_SLOT_NORMAL_GEOMETRIC), images.positions, images.depth, images.ids, curvature});
         const cl::ProgramKey key = curvature_.program(*device_);
         if (keys) {
             keys->push_back(key);
@@ -208,6 +214,7 @@ void Scatter::run(const PelScatterParams& params, const ScatterImages& images,
             curvature_.enqueue(*device_, device_->programs().get(key), events_, 0, images.out.height, 0);
         }
     }
+    if (!plan.screen.empty()) now.curvature = curvature;
     if (plan.prepares) {
         const BlendImages blend{images.irradiance,
                                 {},
@@ -257,7 +264,7 @@ void Scatter::run(const PelScatterParams& params, const ScatterImages& images,
     }
     if (!plan.finishes) return;
     const BlendImages blend{arriving,    now.irradiance,         images.ids, {},
-                            plan.weight, image(PEL_SLOT_ALBEDO), images.out, plan.curvature};
+                            plan.weight, image(PEL_SLOT_ALBEDO), images.out, curvature};
     step(after_, blend, [&] {
         after_.prepare(plan.blend, plan.other, blend, params.accumulate != 0);
         after_.enqueueFinish(blend, events_);

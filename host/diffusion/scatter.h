@@ -24,9 +24,7 @@ class Scatter final : public Object {
     void setControls(uint32_t id, const PelScatterControls& controls);
     void setImage(PelImageSlot slot, const ImageView& view);
     // Enqueues everything.
-    void execute(const PelScatterParams& params, const ScatterImages& images) {
-        run(params, images, nullptr);
-    }
+    void execute(const PelScatterParams& params, const ScatterImages& images);
     // Jobs for a warm-up: they build what an execution with such images would, and scatter a small one.
     void addBuildJobs(const PelScatterParams& params, const ScatterImages& images, BuildJobs& jobs) const;
     PelScatterStats stats();
@@ -38,14 +36,15 @@ class Scatter final : public Object {
         std::map<uint32_t, GatherScatter::Material> disk, lines;
         GatherScatter::Ids sources;
         ImageView weight;
-        ImageView curvature;                // that the caller gives, or that is measured
+        ImageView curvature;                // that the caller gives, if a material has a gain
+        bool measures = false;              // there is a gain, and none is given
         std::map<uint32_t, float> windows;  // over which it is measured, by id
         std::map<uint32_t, PelBlendMaterial> blend;
         PelBlendMaterial other{};  // of ids that do not scatter
         bool prepares = false, finishes = false;
     };
     ~Scatter() override = default;
-    Plan planOf(const PelScatterParams& params, const ScatterImages& images);
+    Plan planOf(const PelScatterParams& params, const ScatterImages& images) const;
     // With `keys` the programs are named alone.
     void run(const PelScatterParams& params, const ScatterImages& images, std::vector<cl::ProgramKey>* keys);
     ImageView image(PelImageSlot slot) const;

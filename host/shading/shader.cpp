@@ -215,25 +215,21 @@ void Shader::execute(bool blocking) {
     executed_ = true;
 }
 
-// Of all images, or back to those that are written; each once.
+// Of all images, or back to those that are written.
 void Shader::copyTextures(bool back) const {
-    std::vector<const Buffer*> copied;
-    const auto copy = [&](const ImageView& view) {
-        const Buffer* const buffer = view.buffer.get();
-        if (!buffer || !buffer->ofTexture() || std::ranges::count(copied, buffer)) return;
-        buffer->copyTexture(back);
-        copied.push_back(buffer);
-    };
+    std::vector<ImageView> all;
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
-        if (!back || slot == PEL_SLOT_RADIANCE || isOutput(slot)) copy(state_.images[slot]);
-    if (back) return;
-    copy(state_.ambientCube), copy(state_.reflectionCube);
-    for (const ShaderLight& light : state_.lights) std::ranges::for_each(light.images, copy);
+        if (!back || slot == PEL_SLOT_RADIANCE || isOutput(slot)) all.push_back(state_.images[slot]);
+    if (back) return pel::copyTextures(all, true);
+    const auto add = [&](const ImageView& view) { all.push_back(view); };
+    add(state_.ambientCube), add(state_.reflectionCube);
+    for (const ShaderLight& light : state_.lights) std::ranges::for_each(light.images, add);
     for (const auto& [id, material] : state_.materials) {
-        copy(material.scatteredTexture);
-        std::ranges::for_each(material.normalMap, copy);
-        if (material.eye) copy(material.eye->iris);
+        add(material.scatteredTexture);
+        std::ranges::for_each(material.normalMap, add);
+        if (material.eye) add(material.eye->iris);
     }
+    pel::copyTextures(all, false);
 }
 
 void Shader::setRows(const PassWork& work, TileRows rows) {

@@ -172,3 +172,29 @@ TEST(Textures, OfOtherKindsAreRefused) {
     Shader shader(device());
     expectRefused("of a buffer of 64", [&] { shader.set(PEL_SLOT_CURVATURE, larger); });
 }
+
+TEST(Textures, OfAPelScatter) {
+    constexpr uint32_t side = 32;
+    std::vector<float> light, places;
+    for (uint32_t i = 0; i < side * side; ++i) {
+        for (int c = 0; c < 3; ++c) light.push_back(i % side < side / 2 ? 1.0f : 0.0f);
+        for (const uint32_t v : {i % side, i / side, 0u}) places.push_back(0.3f * float(v));
+    }
+    const auto scattered = [&](const PelImageDesc& irradiance, const PelImageDesc& positions,
+                               const PelImageDesc& out) {
+        pellucid::Scatter scatter(device());
+        scatter.setMaterial(1, pellucid::Profile::skin(), 1);
+        scatter.execute(pelScatterParamsDefaults(), irradiance, &positions, nullptr, nullptr, out);
+        device().finish();
+    };
+    const Buffer e(device(), light), p(device(), places);
+    const auto rgb = [&](const Buffer& b) { return imageDesc(b, PEL_FORMAT_RGB32F, side, side); };
+    scattered(rgb(e), rgb(p), rgb(e));
+    const Texture irradiance(light, 3, side, side), positions(places, 3, side, side),
+        result(std::vector<float>(light.size(), 5), 3, side, side);
+    scattered(irradiance.desc(), positions.desc(), result.desc());
+    const std::vector<float> expected = e.readAll<float>(), texels = result.texels();
+    EXPECT_NE(expected, light);
+    for (size_t i = 0; i < side * side; ++i)
+        for (size_t c = 0; c < 3; ++c) ASSERT_EQ(texels[4 * i + c], expected[3 * i + c]) << i;
+}

@@ -219,9 +219,9 @@ PEL_API PelError pelBufferCreateFromHost(PelDevice device, void* memory, size_t 
 
 /* The caller's cl_mem, of the device's context (retained): a buffer; or a 2D image, such as a texture that is
  * shared with a graphics API. Of an image the library has a copy: rows of texels without gaps, in the image's
- * own format, zeros at first. Each execution of a PelShader copies the textures of its images there before
- * its work, and those that it writes back after it, whole; other calls see what the last of them left. So the
- * host acquires shared textures before an execution and releases them after it. Errors:
+ * own format, zeros at first. Each execution of a PelShader or a PelScatter copies the textures of its images
+ * there before its work, and those that it writes back after it, whole; other calls see what the last of them
+ * left. So the host acquires shared textures before an execution and releases them after it. Errors:
  * PEL_ERROR_INVALID_ARGUMENT for other kinds of images. */
 PEL_API PelError pelBufferCreateFromCl(PelDevice device, void* clMem, PelBuffer* buffer);
 
