@@ -1,14 +1,11 @@
-/* Memory that a graphics interface and Pellucid use in place, by way of a cl_mem of the host's own: a buffer
- * of OpenGL (cl_khr_gl_sharing), and a dma-buf (cl_khr_external_memory_dma_buf; Vulkan's exported memory is
- * imported the same way). Each runs where a driver has it, and says so where none has: then the renderer's
- * images are copied, by pelBufferWrite or a buffer over mapped host memory. docs/guide/hosts.md has the same
- * for Vulkan. */
+/* Memory of somebody else that Pellucid uses in place, by way of a cl_mem of the host's own: a dma-buf
+ * (cl_khr_external_memory_dma_buf; Vulkan's exported memory is imported the same way). It runs where a driver
+ * has it, and says so where none has: then the renderer's images are copied, by pelBufferWrite or a buffer
+ * over mapped host memory. docs/guide/hosts.md has the same for Vulkan, deferred_gl for OpenGL. */
 #define _GNU_SOURCE
 #define CL_TARGET_OPENCL_VERSION 300
 #include <CL/cl.h>
 #include <CL/cl_ext.h>
-#include <CL/cl_gl.h>
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <math.h>
 #include <pellucid/pellucid.h>
@@ -115,77 +112,6 @@ static int shareDmaBuf(cl_platform_id platform, cl_device_id device) {
     return right;
 }
 
-/* ---- A buffer of OpenGL, on a context without a window. */
-
-typedef void* (*GetProc)(const char*);
-static GetProc getProc;
-static void* egl;
-
-static int openGl(void** display, void** glContext) {
-    egl = dlopen("libEGL.so.1", RTLD_NOW);
-    if (!egl) return 0;
-    void* (*getDisplay)(void*);
-    unsigned (*initialize)(void*, int*, int*), (*bindApi)(unsigned),
-        (*makeCurrent)(void*, void*, void*, void*);
-    void* (*createContext)(void*, void*, void*, const int*);
-    *(void**)&getProc = dlsym(egl, "eglGetProcAddress");
-    *(void**)&getDisplay = dlsym(egl, "eglGetDisplay");
-    *(void**)&initialize = dlsym(egl, "eglInitialize");
-    *(void**)&bindApi = dlsym(egl, "eglBindAPI");
-    *(void**)&makeCurrent = dlsym(egl, "eglMakeCurrent");
-    *(void**)&createContext = dlsym(egl, "eglCreateContext");
-    if (!getProc || !getDisplay || !initialize || !bindApi || !makeCurrent || !createContext) return 0;
-    *display = getDisplay(NULL);
-    if (!*display || !initialize(*display, NULL, NULL) || !bindApi(0x30A2 /* EGL_OPENGL_API */)) return 0;
-    *glContext = createContext(*display, NULL, NULL, NULL);
-    return *glContext && makeCurrent(*display, NULL, NULL, *glContext);
-}
-
-static int shareGl(cl_platform_id platform, cl_device_id device) {
-    if (!has(device, "cl_khr_gl_sharing")) return printf("  no cl_khr_gl_sharing\n"), 1;
-    void *display = NULL, *glContext = NULL;
-    if (!openGl(&display, &glContext))
-        return printf("  cl_khr_gl_sharing, but no OpenGL without a window (EGL) to try it with\n"), 1;
-    void (*genBuffers)(int, unsigned*), (*bindBuffer)(unsigned, unsigned),
-        (*bufferData)(unsigned, ptrdiff_t, const void*, unsigned),
-        (*getBufferSubData)(unsigned, ptrdiff_t, ptrdiff_t, void*), (*finish)(void);
-    *(void**)&genBuffers = getProc("glGenBuffers");
-    *(void**)&bindBuffer = getProc("glBindBuffer");
-    *(void**)&bufferData = getProc("glBufferData");
-    *(void**)&getBufferSubData = getProc("glGetBufferSubData");
-    *(void**)&finish = getProc("glFinish");
-    unsigned name = 0;
-    genBuffers(1, &name), bindBuffer(0x8892 /* GL_ARRAY_BUFFER */, name);
-    bufferData(0x8892, RESULT_BYTES, NULL, 0x88E8 /* GL_DYNAMIC_DRAW */), finish();
-    cl_int error = CL_SUCCESS;
-    const cl_context_properties properties[] = {CL_GL_CONTEXT_KHR,
-                                                (cl_context_properties)glContext,
-                                                CL_EGL_DISPLAY_KHR,
-                                                (cl_context_properties)display,
-                                                CL_CONTEXT_PLATFORM,
-                                                (cl_context_properties)platform,
-                                                0};
-    cl_context context = clCreateContext(properties, 1, &device, NULL, NULL, &error);
-    if (error)
-        return printf("  OpenGL and this device share nothing (error %d): OpenGL draws elsewhere\n", error),
-               1;
-    cl_command_queue queue = clCreateCommandQueueWithProperties(context, device, NULL, &error);
-    cl_mem memory = clCreateFromGLBuffer(context, CL_MEM_READ_WRITE, name, &error);
-    int right = 0;
-    if (error) {
-        printf("  the driver refuses OpenGL's buffer: error %d\n", error);
-    } else if (!clEnqueueAcquireGLObjects(queue, 1, &memory, 0, NULL, NULL) &&
-               curvatureInto(context, device, queue, memory) &&
-               !clEnqueueReleaseGLObjects(queue, 1, &memory, 0, NULL, NULL) && !clFinish(queue)) {
-        float seen[VERTICES];
-        getBufferSubData(0x8892, 0, sizeof seen, seen);
-        right = isRight(seen, "OpenGL");
-        clReleaseMemObject(memory);
-    }
-    clReleaseCommandQueue(queue), clReleaseContext(context);
-    return right;
-}
-
 int main(void) {
     cl_platform_id platforms[16];
     cl_uint numPlatforms = 0, p, d;
@@ -199,7 +125,6 @@ int main(void) {
             char name[256] = "";
             clGetDeviceInfo(devices[d], CL_DEVICE_NAME, sizeof name, name, NULL);
             printf("%s\n", name);
-            right = shareGl(platforms[p], devices[d]) && right;
             right = shareDmaBuf(platforms[p], devices[d]) && right;
             printf("  %s cl_khr_external_memory_opaque_fd (Vulkan)\n",
                    has(devices[d], "cl_khr_external_memory_opaque_fd") ? "has" : "no");

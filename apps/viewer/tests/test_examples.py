@@ -1,4 +1,5 @@
 """The examples that use OpenGL, as their first lines say to run them."""
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -76,3 +77,34 @@ def test_opengl_host_draws_a_ring_and_its_shadow(tmp_path):
     left, right = image[:, :480].mean(-1)[grey[:, :480]], image[:, 480:].mean(-1)[grey[:, 480:]]
     dark = np.median(image.mean(-1)[grey]) * 0.6
     assert (left < dark).sum() > 2 * (right < dark).sum() + 500
+
+
+def test_deferred_gl_shades_skin_and_nothing_else(tmp_path):
+    program = Path(os.environ.get("PELLUCID_COMMAND", "")).with_name("deferred_gl")
+    if not program.exists():
+        pytest.skip("deferred_gl is not built: it needs the headers of EGL, OpenGL and libpng")
+    head = EXAMPLES.parent / "data/heads/head_male.obj"
+    for method in ("auto", "none"):
+        made = subprocess.run([program, head, tmp_path / method, "--frames", "4", "--size", "320x320",
+                               "--method", method, "--stages"],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if made.returncode == 77:
+            pytest.skip(made.stdout)
+        assert made.returncode == 0, made.stdout
+    without = picture(tmp_path / "auto/without-skin.png")
+    scattered, plain, turned = (picture(tmp_path / name) for name in
+                                ("auto/frame-000.png", "none/frame-000.png", "auto/frame-001.png"))
+    # The renderer leaves skin black, and has the wall and the eyes, which nobody changes.
+    skin = without.max(-1) == 0
+    assert 0.2 < skin.mean() < 0.6 and not skin[:10].any()
+    np.testing.assert_array_equal(scattered[~skin], without[~skin])
+    np.testing.assert_array_equal(plain[~skin], without[~skin])
+    assert (scattered[skin].max(-1) > 0).mean() > 0.99
+    # Where it turns dark, red light has come further than blue.
+    dark = skin & (plain.max(-1) < np.quantile(plain[skin].max(-1), 0.2))
+    gain = (scattered - plain)[dark].mean(0)
+    assert gain[0] > gain[2] + 0.002
+    assert np.abs(turned - scattered)[skin].mean() > 0.02
+    wrong = subprocess.run([program, head, tmp_path / "wrong", "--frames", "0"], stderr=subprocess.PIPE,
+                           text=True)
+    assert wrong.returncode == 1 and "--frames 0" in wrong.stderr
