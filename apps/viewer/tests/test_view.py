@@ -295,7 +295,8 @@ def test_the_mouse_takes_the_object_along():
     look = Look()
     shown = types.SimpleNamespace(orbit=Orbit(distance=30), look=look, other=None,
                                   renderer=types.SimpleNamespace(radius=10.0))
-    state = Viewer(lambda: types.SimpleNamespace(set_progress=lambda report: None), lambda device: shown)
+    device = types.SimpleNamespace(set_progress=lambda report: None)
+    state = Viewer(lambda: device, lambda device: shown).opened()
 
     def place(point=(0, 0, 0)):
         """(x to the right, y down) in heights of the picture, and the distance."""

@@ -1,6 +1,7 @@
 """The viewer's controls without a browser: what the guide lists is there, and sets the look."""
 import asyncio
 import re
+import tempfile
 from dataclasses import fields
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from view_session import reset  # noqa: E402
 import pellucid  # noqa: E402
 from pellucid.view.export import export  # noqa: E402
 from pellucid.view.look import Look  # noqa: E402
+from pellucid.view.memory import Memory  # noqa: E402
 from pellucid.view.page import Page  # noqa: E402
 from pellucid.view.scene_session import SceneSession  # noqa: E402
 
@@ -23,8 +25,9 @@ from pellucid.view.scene_session import SceneSession  # noqa: E402
 class Shown:
     """What a page asks of a viewer."""
 
-    def __init__(self, session):
+    def __init__(self, session, folder):
         self.session, self.last, self.changes = session, None, 0
+        self.memory, self.histogram = Memory(Path(folder) / "view.json"), False
 
     def changed(self, moving=False):
         self.changes += 1
@@ -32,14 +35,15 @@ class Shown:
 
 def opened(session, act):
     """Calls act(elements, viewer) on a page of this session."""
-    async def run():
+    async def run(folder):
         core.loop = asyncio.get_running_loop()
-        client, viewer = Client(page("/")), Shown(session)
+        client, viewer = Client(page("/")), Shown(session, folder)
         with client:
             Page(viewer)
             act(list(client.elements.values()), viewer)
 
-    asyncio.run(run())
+    with tempfile.TemporaryDirectory() as folder:
+        asyncio.run(run(folder))
 
 
 @pytest.fixture
@@ -98,10 +102,9 @@ def test_every_control_sets_the_value_that_it_names(fresh):
                 viewer.changes = 0
             fallow.discard(channel[1] if channel else name[len("slider-"):])
         for name, e in marked(elements, ui.switch).items():
-            if name == "count":
-                continue
             lamp = re.match(r"lamp-(\d)-(\w+)", name)
-            of, field = (look.lamps[int(lamp[1])], lamp[2]) if lamp else (look, name)
+            of, field = (look.lamps[int(lamp[1])], lamp[2]) if lamp else (
+                {"count": fresh, "beside": fresh, "histogram": viewer}.get(name, look), name)
             for wanted in (not getattr(of, field), getattr(of, field)):
                 e.set_value(wanted)
                 assert getattr(of, field) is wanted and viewer.changes, name
@@ -118,7 +121,7 @@ def test_every_control_sets_the_value_that_it_names(fresh):
                 continue
             for wanted in e.options:
                 e.set_value(wanted)
-                assert getattr(look, name) == wanted, name
+                assert getattr(fresh if name == "against" else look, name) == wanted, name
             fallow.discard(name)
         assert not fallow, "values that no control sets"
 

@@ -90,6 +90,7 @@ def address(tmp_path_factory, lost):
     log = folder / "log"
     # As a program of its own: pytest's variable would make NiceGUI wait for a test client.
     environment = {k: v for k, v in os.environ.items() if not k.startswith(("PYTEST", "NICEGUI"))}
+    environment["XDG_CONFIG_HOME"] = str(folder / "config")
     process = subprocess.Popen([sys.executable, "-c", PROGRAM, str(lost), "--no-browser", "--port", str(port),
                                 "--subdivide", "1", "--look", str(folder / "look.json")],
                                stdout=log.open("w"), stderr=subprocess.STDOUT, env=environment, cwd=folder)
@@ -188,6 +189,40 @@ def test_the_wheel_zooms(page):
     before, after = act_and_compare(page,
                                     lambda: ActionChains(page).scroll_from_origin(origin, 0, -300).perform())
     assert differ(before, after)
+
+
+def press(page, *keys):
+    actions = ActionChains(page)
+    for key in keys[:-1]:
+        actions.key_down(key)
+    actions.send_keys(keys[-1])
+    for key in keys[:-1]:
+        actions.key_up(key)
+    actions.perform()
+
+
+def test_keys_frame_turn_undo_and_explain(page):
+    press(page, "f")
+    press(page, "1")
+    front = picture(page)
+    before, side = act_and_compare(page, lambda: press(page, "3"))
+    assert differ(front, side)
+    assert not differ(front, act_and_compare(page, lambda: press(page, Keys.CONTROL, "z"))[1])
+    assert not differ(side, act_and_compare(page, lambda: press(page, Keys.CONTROL, "y"))[1])
+    press(page, "1")
+    canvas = page.find_element(By.ID, "pel-canvas")
+    pivoted = act_and_compare(page, lambda: ActionChains(page, duration=0).move_to_element_with_offset(
+        canvas, 0, -60).double_click().perform())[1]
+    assert differ(front, pivoted)  # what was above the middle is the middle
+    probe = page.find_element(By.ID, "pel-probe")
+    wait_for(probe.is_displayed, "the probe")
+    assert "N·L of the key light" in probe.text and "scattering: " in probe.text
+    framed = act_and_compare(page, lambda: press(page, "f"))[1]
+    assert not differ(front, framed)
+    press(page, "?")
+    wait_for(lambda: [e for e in page.find_elements(By.XPATH, "//*[text()='frame the object']")
+                      if e.is_displayed()], "the list of keys")
+    press(page, Keys.ESCAPE)
 
 
 def unfold(page, heading):

@@ -12,6 +12,7 @@ from pellucid.view.look import Look
 
 def reset(session):
     session.look, session.other, session.orbit = Look(), None, Orbit()
+    session.against, session.beside = "", False
     session.orbit.frame(session.mesh.low, session.mesh.high, 2)
 
 

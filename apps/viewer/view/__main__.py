@@ -31,7 +31,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="pellucid view", description="A look-dev viewer in the browser.")
     parser.add_argument("mesh", nargs="?", metavar="MESH|SCENE",
                         help="OFF, OBJ, PLY or STL file, or a scene (.toml) with its G-buffer "
-                        "(default: a head that comes with pellucid)")
+                        "(default: what was open last, else a head that comes with pellucid)")
+    parser.add_argument("--fresh", action="store_true",
+                        help="begin with the head, not with what was open last")
     parser.add_argument("--gbuffer", help="of a scene (default: SCENE_gbuffer.exr or gbuffer.exr beside it)")
     parser.add_argument("--up", choices=("auto", "y", "z"), default="auto",
                         help="which way is up in the mesh (auto: y in OBJ files)")
@@ -49,27 +51,37 @@ def main() -> int:
     a = parser.parse_args()
     if not a.unit_mm > 0:
         parser.error("--unit-mm must be above 0")
-    try:
-        from nicegui import app, ui
-
-        from .guard import Guard, Keys
-        from .page import serve
-        from .server import Viewer
-    except ImportError as error:
-        print(f"pellucid view: {error}; pip install 'pellucid[view]' brings what the viewer needs",
-              file=sys.stderr)
-        return 1
     import json
 
     from .. import Device, PellucidError, files
     from .look import Look
-    from .scene_session import SceneSession
-    from .session import UNITS, Session
+    from .memory import Memory, recall, remember, standard_file
+
+    def lacking(error: ImportError) -> int:
+        print(f"pellucid view: {error}; pip install 'pellucid[view]' brings what the viewer needs",
+              file=sys.stderr)
+        return 1
+
+    try:
+        from .scene_session import SceneSession
+        from .server import Viewer
+        from .session import UNITS, Session
+    except ImportError as error:
+        return lacking(error)
+
+    memory, resumed = Memory(standard_file()), ""
+    if memory.problem:
+        print(f"pellucid view: {memory.problem}", file=sys.stderr)
 
     def opened(device: Device) -> Any:
+        nonlocal resumed
         if a.mesh and a.mesh.lower().endswith(".toml"):
             return SceneSession(a.mesh, a.gbuffer, device)
         session = Session(device, a.unit_mm)
+        if not (a.mesh or a.fresh or a.look):
+            resumed = recall(memory, session)
+            if resumed:
+                return session
         if a.look:
             with open(a.look, encoding="utf-8") as file:
                 session.look = Look.from_dict(json.load(file))
@@ -83,7 +95,15 @@ def main() -> int:
         port = free_port(a.host, a.port)
         if port != a.port:
             print(f"pellucid view: port {a.port} is in use; this is {port}", file=sys.stderr)
-        viewer = Viewer(lambda: Device(a.device), opened)
+        viewer = Viewer(lambda: Device(a.device), opened, memory)
+        try:  # while the viewer opens the mesh
+            from nicegui import app, ui
+
+            from .guard import Guard, Keys
+            from .page import serve
+        except ImportError as error:
+            return lacking(error)
+        viewer.opened().resumed = bool(resumed)
     except (OSError, ValueError, TypeError, RuntimeError, PellucidError) as error:
         print(f"pellucid view: {error}", file=sys.stderr)
         return 3
@@ -99,6 +119,18 @@ def main() -> int:
     def address(key: str) -> str:
         return f"http://{shown}:{port}/?token={key}"
 
+    if resumed:
+        print(f"pellucid view: {resumed}, as it was left (--fresh: begin anew)", file=sys.stderr)
+
+    def leave() -> None:
+        if isinstance(viewer.session, Session):
+            remember(memory, viewer.session, subdivide=a.subdivide, up=a.up)
+        try:
+            memory.save()
+        except OSError as error:
+            print(f"pellucid view: {error}", file=sys.stderr)
+
+    app.on_shutdown(leave)
     keys = Keys(port, a.token, lambda key: print(f"for another browser: {address(key)}", flush=True))
     app.add_middleware(Guard, keys=keys)
     serve(viewer)

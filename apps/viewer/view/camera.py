@@ -55,19 +55,20 @@ class Orbit:
     distance: float = 1.0    # length
     fov: float = 20.0        # degrees from bottom to top
     pan: tuple[float, float] = (0.0, 0.0)  # length the target moves to the right and up
+    pivot: tuple[float, float, float] = (0.0, 0.0, 0.0)  # from the centre to the point that it turns about
 
     def frame(self, low: ArrayLike, high: ArrayLike, aspect: float, fill: float = 0.94) -> None:
         """So far away that the box takes `fill` of the picture."""
         size = np.subtract(high, low)
         tall = max(float(np.max(size)) if aspect >= 1 else float(np.max(size)) / aspect, 1e-6)
         self.distance = float(0.5 * tall / (fill * np.tan(np.radians(self.fov) / 2)) + 0.5 * np.max(size))
-        self.pan = (0.0, 0.0)
+        self.pan, self.pivot = (0.0, 0.0), (0.0, 0.0, 0.0)
 
     def matrices(self, up: ArrayLike, front: ArrayLike, centre: ArrayLike, radius: float, aspect: float):
         """Eye, and world to clip space; near and far plane enclose a ball of `radius` about `centre`."""
-        back = direction(up, front, self.azimuth, self.elevation)
-        view = look_at(np.add(centre, back * self.distance), centre, up)
-        target = np.asarray(centre, np.float64) + self.pan[0] * view[0, :3] + self.pan[1] * view[1, :3]
+        back, about = direction(up, front, self.azimuth, self.elevation), np.add(centre, self.pivot)
+        view = look_at(about + back * self.distance, about, up)
+        target = about + self.pan[0] * view[0, :3] + self.pan[1] * view[1, :3]
         eye = target + back * self.distance
         view = look_at(eye, target, up)
         depth = float(np.linalg.norm(eye - centre))

@@ -30,6 +30,7 @@
           busy.textContent = message.busy;
           return;
         }
+        if ('probe' in message) { showProbe(message.probe); return; }
         pending = message;
         document.getElementById('pel-error').style.display = pending.error ? 'block' : 'none';
         document.getElementById('pel-message').textContent = pending.error;
@@ -53,7 +54,6 @@
       }
       if (head.at !== stamp && head.at <= now) delays = delays.slice(-19).concat(now - head.at);
       stamp = head.at;
-      shown = head.changes;
       window.pelFrames += 1;
       window.pelMoving = head.moving;
       window.pelSample = head.sample;
@@ -68,8 +68,54 @@
           (head.moving ? ', ' + times.length + ' frames/s' : '') + delay + ', ' +
           head.kernels + ' kernels compiled (' + head.compiled + ' now)';
       }
+      if (head.changes > shown) askProbe(null);
+      shown = head.changes;
+      showScale(head.scale);
+      if (head.histogram || head.sample === 0 && !head.moving) showHistogram(head.histogram);
       say({kind: 'taken'});
     };
+  }
+  function showScale(scale) {
+    document.getElementById('pel-scale').style.display = scale ? 'block' : 'none';
+    if (!scale) return;
+    document.getElementById('pel-bar').style.background = 'linear-gradient(to right,' + scale.colors.join(',') + ')';
+    document.getElementById('pel-low').textContent = scale.low;
+    document.getElementById('pel-high').textContent = scale.high;
+  }
+  function showHistogram(counts) {
+    const chart = document.getElementById('pel-histogram');
+    chart.style.display = counts ? 'block' : 'none';
+    if (!counts) return;
+    const context = chart.getContext('2d'), highest = Math.max(1, ...counts.flat());
+    context.clearRect(0, 0, chart.width, chart.height);
+    context.globalCompositeOperation = 'lighter';
+    counts.forEach((channel, c) => {
+      context.fillStyle = ['#c33', '#3a3', '#46e'][c];
+      channel.forEach((count, i) => {  // square roots: few pixels are seen too
+        const height = chart.height * Math.sqrt(count / highest);
+        context.fillRect(i * chart.width / channel.length, chart.height - height, chart.width / channel.length, height);
+      });
+    });
+  }
+  // The facts of the pixel below the mouse, which rests.
+  let asked = null, pointer = null;
+  function askProbe(e) {
+    if (e) pointer = {x: e.offsetX, y: e.offsetY};
+    if (!pointer) return;
+    showProbe('');
+    clearTimeout(asked);
+    asked = setTimeout(() => say({kind: 'probe', x: pointer.x / canvas.clientWidth, y: pointer.y / canvas.clientHeight}), 120);
+  }
+  function showProbe(text) {
+    const box = document.getElementById('pel-probe');
+    box.style.display = text && pointer ? 'block' : 'none';
+    box.textContent = text;
+    if (!text || !pointer) return;
+    const right = pointer.x > canvas.clientWidth / 2, low = pointer.y > canvas.clientHeight / 2;
+    box.style.left = right ? '' : pointer.x + 14 + 'px';
+    box.style.right = right ? canvas.clientWidth - pointer.x + 14 + 'px' : '';
+    box.style.top = low ? '' : pointer.y + 14 + 'px';
+    box.style.bottom = low ? canvas.clientHeight - pointer.y + 14 + 'px' : '';
   }
   function start() {
     canvas = document.getElementById('pel-canvas');
@@ -85,8 +131,12 @@
     canvas.addEventListener('contextmenu', (e) => e.preventDefault());
     canvas.addEventListener('pointerdown', (e) => { last = e; canvas.setPointerCapture(e.pointerId); });
     canvas.addEventListener('pointerup', () => { last = null; });
+    canvas.addEventListener('pointerleave', () => { pointer = null; clearTimeout(asked); showProbe(''); });
+    canvas.addEventListener('dblclick', (e) => {
+      say({kind: 'pivot', x: e.offsetX / canvas.clientWidth, y: e.offsetY / canvas.clientHeight});
+    });
     canvas.addEventListener('pointermove', (e) => {
-      if (!last) return;
+      if (!last) { askProbe(e); return; }
       const h = canvas.clientHeight, dx = (e.clientX - last.clientX) / h, dy = (e.clientY - last.clientY) / h;
       const pan = e.shiftKey || (e.buttons & 2);
       const kind = e.ctrlKey || e.metaKey ? 'light' : pan ? 'pan' : e.altKey ? 'wipe' : 'orbit';

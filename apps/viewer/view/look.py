@@ -10,6 +10,7 @@ from .._types import MaterialValues
 MODES = {
     "final": "Final picture",
     "lambert": "Without scattering",
+    "false_color": "False colour: luminance",
     "difference": "Scattering difference (x 4, grey: none)",
     "error": "Error against the reference (x 10, grey: none)",
     "reference": "Reference: the surface integral",
@@ -37,6 +38,8 @@ METHODS = {
 
 # Material ids of the heads that come with the package.
 SKIN, EYES, TEETH, TONGUE, CUT, RIGHT_EYE = MATERIALS = 1, 2, 3, 4, 5, 6  # EYES: the left one
+NAMES = {SKIN: "skin", EYES: "left eye", TEETH: "teeth", TONGUE: "tongue", CUT: "other",
+         RIGHT_EYE: "right eye"}
 
 
 def skin_triangles(mesh: Any) -> Any:
@@ -105,6 +108,7 @@ class Look(MaterialValues):
     curve: str = "soft"              # tone mapping
     shoulder: float = 0.8            # of "soft"
     mode: str = "final"
+    white: float = 1.0               # luminance at the end of the false colours
 
     def copy(self) -> Look:
         return copy.deepcopy(self)
@@ -137,7 +141,8 @@ SKINS = (("Skin, pale", 0.026, 0.006), ("Skin, light", 0.03, 0.008), ("Skin, med
          ("Skin, brown", 0.082, 0.013), ("Skin, dark", 0.097, 0.026), ("Skin, very dark", 0.133, 0.037))
 
 # What a preset leaves as it is: lights and view.
-KEPT_BY_PRESETS = ("lamps", "ambient", "shadow_size", "exposure", "curve", "shoulder", "mode", "target_error")
+KEPT_BY_PRESETS = ("lamps", "ambient", "shadow_size", "exposure", "curve", "shoulder", "mode", "white",
+                   "target_error")
 
 # Tints are chosen by eye, for a mesh of skin's albedo; profiles are those of the library.
 PRESETS: dict[str, dict[str, Any]] = {

@@ -22,6 +22,13 @@ from .session import UNITS
 from .widgets import Panel, fail
 
 HERE = Path(__file__).parent
+VIEWS = {"1": (0.0, 0.0), "3": (90.0, 0.0), "7": (0.0, 89.0)}  # azimuth and elevation
+KEYS = (("drag", "turn"), ("shift and drag", "move"), ("wheel", "nearer, further"),
+        ("ctrl and drag", "move the key light"), ("alt and drag", "move the line between two settings"),
+        ("double click", "turn about this point"), ("F", "frame the object"),
+        ("1, 3, 7", "from the front, its left, above; with ctrl from the other side"),
+        ("ctrl-Z, ctrl-Y", "undo, redo"), ("arrow keys", "step the slider that was clicked last"),
+        ("?", "this list"))
 
 
 class StatisticsPanel(Panel):
@@ -74,7 +81,12 @@ class MeshPanel(Panel):
 
     async def load(self, path: Any) -> None:
         session = self.viewer.session
-        if await self.change(lambda: session.load(path)):
+
+        def act() -> None:
+            session.load(path)
+            self.viewer.new_object()
+
+        if await self.change(act):
             ui.notify(f"{len(session.mesh.positions)} vertices, {len(session.mesh.triangles)} triangles")
             self.question()
 
@@ -176,12 +188,12 @@ class Page:
         ui.add_body_html(f"<script>\n{HERE.joinpath('client.js').read_text()}</script>")
         style, picture = HERE.joinpath("client.html").read_text().split("</style>")
         ui.add_head_html(style + "</style>")
-        ui.query("body").style("margin:0;overflow:hidden")
+        ui.query("body").style("margin:0")
         ui.query(".nicegui-content").classes("p-0 gap-0")
         ui.dark_mode(True)
-        with ui.row().classes("w-full no-wrap gap-0").style("height:100vh"):
-            ui.html(picture, sanitize=False).style("flex:1;min-width:0;height:100%")
-            self.column = ui.column().classes("p-3 gap-1").style("width:23rem;height:100%;overflow-y:auto")
+        with ui.element("div").classes("pel-page"):
+            ui.html(picture, sanitize=False).classes("pel-picture")
+            self.column = ui.column().classes("pel-panels p-3 gap-1")
         self.statistics = StatisticsPanel(self)
         self.panels: list[Panel]
         if isinstance(viewer.session, SceneSession):
@@ -197,6 +209,43 @@ class Page:
             mesh.question()
         self.build()
         ui.timer(0.5, self.statistics.update)
+        ui.keyboard(self.key)
+        with ui.dialog().props("data-pel=keys") as self.keys, ui.card():
+            for key, meaning in KEYS:
+                with ui.row().classes("no-wrap gap-2"):
+                    ui.label(key).classes("text-xs").style("width:9rem;color:#9cf")
+                    ui.label(meaning).classes("text-xs")
+
+    def key(self, e: events.KeyEventArguments) -> None:
+        """A key that is pressed outside of entry fields."""
+        if not e.action.keydown:
+            return
+        viewer, name = self.viewer, str(e.key).lower()
+        if e.modifiers.ctrl or e.modifiers.meta:
+            again = name == "y" or (name == "z" and e.modifiers.shift)
+            if name in ("z", "y") and (viewer.redo() if again else viewer.undo()):
+                self.build()
+                viewer.changed()
+                return
+        if name == "?":
+            self.keys.open()
+        if not hasattr(viewer.session, "orbit"):
+            return
+        away = e.modifiers.ctrl or e.modifiers.meta
+        if name == "f":
+            viewer.frame_object()
+            viewer.changed()
+        elif name in VIEWS:
+            azimuth, elevation = VIEWS[name]
+            viewer.look_from(azimuth + 180 * away * (name != "7"), elevation * (-1 if away else 1))
+
+    @property
+    def opened(self) -> dict[str, Any]:
+        """Whether a panel is open, by its name; those that nobody folded are not in it."""
+        return self.viewer.memory.part("open")
+
+    def fold(self, name: str, open: bool) -> None:
+        self.opened[name] = open
 
     def follow(self) -> None:
         """Has the widgets show values that another one has set."""
@@ -210,7 +259,9 @@ class Page:
             ui.label("Pellucid").classes("text-lg")
             for panel in self.panels:
                 if panel.name:
-                    with ui.expansion(panel.name, value=panel.open).classes("w-full"):
+                    with ui.expansion(panel.name, value=self.opened.get(panel.name, panel.open),
+                                      on_value_change=lambda e, name=panel.name: self.fold(
+                                          name, e.value)).classes("w-full"):
                         panel.build()
                 else:
                     panel.build()

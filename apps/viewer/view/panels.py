@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Optional
 
 import numpy as np
 from nicegui import events, ui
@@ -28,15 +28,46 @@ def tone_mapping(panel: Panel) -> None:
 
 class PicturePanel(Panel):
     def build(self) -> None:
-        shown = next((name for name in PRESETS if self.of_preset(name) == self.look), None)
-        ui.select(list(PRESETS), label="Preset", value=shown, on_change=lambda e: self.preset(e.value)).props(
+        own = self.viewer.memory.part("presets")
+        names = [*PRESETS, *own]
+        shown = next((name for name in names if self.of_preset(name) == self.look), None)
+        ui.select(names, label="Preset", value=shown, on_change=lambda e: self.preset(e.value)).props(
             "dense options-dense data-pel=preset").classes("w-full")
+        with ui.row().classes("w-full items-center no-wrap gap-2"):
+            name = ui.input("Preset of your own", value=shown if shown in own else "").props(
+                "dense data-pel=own-name").style("flex:1")
+            ui.button("Save", on_click=lambda: self.keep(name.value.strip())).props("dense data-pel=own-save")
+            ui.button("Delete", on_click=lambda: self.drop(name.value.strip())).props(
+                "dense flat data-pel=own-delete")
         self.select("Picture", MODES, "mode")
+        self.slider("False-colour white", self.look, "white", 0.05, 4, 0.05)
+        self.switch("Histogram", self.viewer, "histogram")
         tone_mapping(self)
 
-    def of_preset(self, name: str) -> Look:
-        """The preset's material with the light and the view of now."""
-        new = Look.from_dict(PRESETS[name])
+    def keep(self, name: str) -> None:
+        if not name or name in PRESETS:
+            fail(f"{name} is a preset of the program: choose another name" if name else "name the preset")
+            return
+        self.viewer.memory.part("presets")[name] = self.look.to_dict()
+        self.saved()
+
+    def drop(self, name: str) -> None:
+        if self.viewer.memory.part("presets").pop(name, None) is not None:
+            self.saved()
+
+    def saved(self) -> None:
+        try:
+            self.viewer.memory.save()
+        except OSError as error:
+            fail(error)
+        self.rebuild()
+
+    def of_preset(self, name: str) -> Optional[Look]:
+        """The preset's material with the light and the view of now; None where it is damaged."""
+        try:
+            new = Look.from_dict(PRESETS.get(name) or self.viewer.memory.part("presets").get(name, {}))
+        except (TypeError, ValueError):
+            return None
         for kept in KEPT_BY_PRESETS:
             setattr(new, kept, getattr(self.look, kept))
         if new.profile == "pigments":
@@ -44,8 +75,9 @@ class PicturePanel(Panel):
         return new
 
     def preset(self, name: str) -> None:
-        if name in PRESETS:
-            self.viewer.session.look = self.of_preset(name)
+        new = self.of_preset(name) if name else None
+        if new is not None:
+            self.viewer.session.look = new
             self.rebuild()
 
 
@@ -190,8 +222,10 @@ class ComparePanel(Panel):
                 session.look, session.other = session.other, session.look
                 self.rebuild()
 
-        ui.label("Keep shows the current settings right of a divider; change those on the left. "
-                 "Alt and drag moves the divider.").classes("text-xs")
+        ui.label("On the right of a divider: another method, or the current settings by Keep. Alt and drag "
+                 "moves it. Change the settings on the left.").classes("text-xs")
+        self.select("On the right", {"": "What Keep kept, if anything", **METHODS}, "against", owner=session)
+        self.switch("Side by side", session, "beside")
         with ui.row():
             for name, act in (("Keep", lambda: keep(self.look.copy())), ("Swap", swap),
                               ("Drop", lambda: keep(None))):

@@ -35,6 +35,7 @@ class Pass:
         self._structure: Any = None
         self._texture: Texture | None = None
         self._uv = np.zeros((0, 0, 2), np.float32)
+        self.stands_in = False  # whether kernels are still being built, and the picture has no scattering
 
     def _update(self, what: str, value: Any, how: Callable[[], Any]) -> None:
         if what not in self._set or self._set[what] != value:
@@ -92,20 +93,24 @@ class Pass:
         eye, _ = session.camera(width / height)
         self._update("camera", eye.tobytes(), lambda: self.shader.set_camera(Camera(position=eye)))
         options = {"target_error": look.target_error, "millimetres_per_unit": session.mm,
-                   "count_pixels": int(session.count)}
+                   "count_pixels": int(session.count), "build_in_background": int(session.background)}
         self._update("options", options, lambda: self.shader.set_options(**options))
         self._scattered_texture(session, g, look, small)
         if not self._set.get("committed"):
             structure = (outputs, albedo, len(eyes), look.method, look.ggx, len(lights),
                          [m.specular > 0 for m in materials.values()],
                          any(look.deep_scatter), look.transmission > 0)
-            if structure != self._structure:  # only then may kernels have to be compiled: with progress
+            if structure != self._structure and not session.background:
+                # Only then may kernels have to be compiled: with progress.
                 warm_up_programs(self.device, shaders=[self.shader])
                 self._structure = structure
             self.shader.commit()
             self._set["committed"] = True
         self.outputs["radiance"][...] = 0
         self.shader.execute()
+        self.stands_in = session.background and bool(self.shader.stats().stands_in)
+        if self.stands_in:
+            self._set["committed"] = False  # the next picture asks again
         return self
 
     def _images(self, g: GBuffer, look: Look, albedo: bool) -> None:

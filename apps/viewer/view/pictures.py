@@ -20,11 +20,14 @@ if TYPE_CHECKING:
 LINEAR = linear(np.arange(256) / 255)  # of sRGB bytes
 _ENCODED = srgb(np.arange(4096) / 4095)
 
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # of linear sRGB [ITU-R BT.709]
 _LINEAR_MODES = ("final", "lambert", "diffuse", "specular", "deep_scatter", "irradiance", "reference",
                  "albedo")
 _ID_COLORS = np.array([[0, 0, 0], [.8, .4, .3], [.2, .5, .9], [.9, .9, .5], [.9, .2, .4], [.2, .2, .2],
                        [.2, .8, .9]], np.float32)
 _TILE = 16  # pixels a side
+# Even steps of the colour scale of all figures, from 0 to 1 (host/io/image/color_map.cpp).
+SCALE = ("#001577", "#3a1197", "#681e9d", "#952a99", "#bf388b", "#e44b75", "#ff6a5b", "#ff9960", "#ffc075")
 # By method, in the order of METHODS without auto.
 TILE_COLORS = {m: c for m, c in zip([m for m in METHODS if m != "auto"], (
     (.45, .45, .45), (.90, .65, .15), (.20, .60, .95), (.15, .80, .45), (.90, .30, .60), (.60, .40, .95)))}
@@ -33,6 +36,19 @@ TILE_COLORS = {m: c for m, c in zip([m for m in METHODS if m != "auto"], (
 def srgb_bytes(linear: NDArray[np.float32]) -> NDArray[np.uint8]:
     """Light from 0 to 1 as sRGB bytes, by a table of 4096 steps."""
     return _ENCODED[np.minimum(linear * 4095 + 0.5, 4095).astype(np.uint16)]
+
+
+def false_colors(values: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """Values from 0 to 1 in the colours of SCALE, sRGB."""
+    stops = np.array([[int(color[i:i + 2], 16) for i in (1, 3, 5)] for color in SCALE], np.float32)
+    at = np.linspace(0, 1, len(SCALE))
+    return np.stack([np.interp(values, at, stops[:, c]) for c in range(3)], -1).astype(np.uint8)
+
+
+def histogram(pixels: NDArray[np.uint8], bins: int = 64) -> list[list[int]]:
+    """How often each sRGB value is shown, by channel; black pixels are background and do not count."""
+    seen = pixels[pixels.any(-1)]
+    return [np.bincount(seen[:, c] // (256 // bins), minlength=bins).tolist() for c in range(3)]
 
 
 def plain(look: Look) -> Look:
@@ -51,10 +67,20 @@ def chosen_method(p: Pass, look: Look) -> str:
     return Scattering(int(np.argmax(counts))).name.lower() if counts.any() else "none"
 
 
-def tiles(session: Session, look: Look, width: int, height: int,
-          small: bool) -> tuple[NDArray[np.float32], Pass]:
-    """Tiles of 16 x 16 pixels: bright in the colour of the method where it changed the light, dark where all
-    of it was kept."""
+def _spread(mask: NDArray[Any]) -> NDArray[Any]:
+    """To whole tiles."""
+    height, width = mask.shape
+    rows, columns = -(-height // _TILE), -(-width // _TILE)
+    whole = np.zeros((rows * _TILE, columns * _TILE), bool)
+    whole[:height, :width] = mask
+    any_in = whole.reshape(rows, _TILE, columns, _TILE).any((1, 3))
+    return any_in.repeat(_TILE, 0).repeat(_TILE, 1)[:height, :width]
+
+
+def scattered_tiles(session: Session, look: Look, width: int, height: int,
+                    small: bool) -> tuple[str, NDArray[Any], Pass, Pass]:
+    """The method, (height, width) whether it changed the light of a pixel's tile, and the passes with and
+    without scattering."""
     scattered, bare = look.copy(), plain(look)
     scattered.transmission = 0.0
     counting, session.count = session.count, True
@@ -65,21 +91,19 @@ def tiles(session: Session, look: Look, width: int, height: int,
     finally:
         session.count = counting
     skin = session.gbuffer(width, height, small).material == SKIN
-    changed = skin & (p.outputs["out_diffuse"] != q.outputs["out_diffuse"]).any(2)
+    return method, _spread(skin & (p.outputs["out_diffuse"] != q.outputs["out_diffuse"]).any(2)), p, q
 
-    def spread(mask: NDArray[Any]) -> NDArray[Any]:  # to whole tiles
-        rows, columns = -(-height // _TILE), -(-width // _TILE)
-        whole = np.zeros((rows * _TILE, columns * _TILE), bool)
-        whole[:height, :width] = mask
-        any_in = whole.reshape(rows, _TILE, columns, _TILE).any((1, 3))
-        return any_in.repeat(_TILE, 0).repeat(_TILE, 1)[:height, :width]
 
-    seen, has_skin, tapped = spread(session.gbuffer(width, height,
-                                                    small).material > 0), spread(skin), spread(changed)
+def tiles(session: Session, look: Look, width: int, height: int,
+          small: bool) -> tuple[NDArray[np.float32], Pass]:
+    """Tiles of 16 x 16 pixels: bright in the colour of the method where it changed the light, dark where all
+    of it was kept."""
+    method, tapped, p, q = scattered_tiles(session, look, width, height, small)
+    material = session.gbuffer(width, height, small).material
     color = np.asarray(TILE_COLORS[method], np.float32)
     shown = np.zeros((height, width, 3), np.float32)
-    shown[seen] = 0.08
-    shown[has_skin] = 0.25 * color
+    shown[_spread(material > 0)] = 0.08
+    shown[_spread(material == SKIN)] = 0.25 * color
     shown[tapped] = color
     shade = np.clip(q.outputs["radiance"].mean(2, keepdims=True), 0, 1)  # so that one sees where one is
     shown *= 0.6 + 0.4 * shade
@@ -132,6 +156,10 @@ def picture(session: Session, name: str, look: Look, width: int, height: int,
         shown = np.repeat(p.outputs["out_thickness"][..., None] * (session.mm / 20), 3, 2)
     elif mode in OUTPUTS:
         shown = p.outputs[OUTPUTS[mode]]
+    elif mode == "false_color":
+        shown = false_colors(p.outputs["radiance"] @ LUMINANCE / max(look.white, 1e-6))
+        shown[g.material == 0] = 0
+        return shown, p
     elif mode in ("curvature", "normals", "albedo", "materials"):
         shown = _of_gbuffer(mode, g, session.mm)
     else:

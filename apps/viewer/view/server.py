@@ -16,6 +16,10 @@ from PIL import Image
 
 from .._errors import PellucidError
 from ..device import Device
+from .history import History
+from .memory import Memory, standard_file
+from .pictures import SCALE, histogram
+from .probe import describe_pixel, place
 from .session import Frame
 
 T = TypeVar("T")
@@ -64,23 +68,36 @@ class Pace:
 class Viewer:
     """One session, and the state that all open pages share. All but `on_thread` belongs to the event loop."""
 
-    def __init__(self, open_device: Callable[[], Device], make: Callable[[Device], Any]) -> None:
+    def __init__(self, open_device: Callable[[], Device], make: Callable[[Device], Any],
+                 memory: Optional[Memory] = None) -> None:
         self._open = open_device
+        self.memory = Memory(standard_file()) if memory is None else memory
         self.changes = 0
         self._preparing: Optional[int] = None  # kernels, after that many changes: the next one ends it
         self._thread = ThreadPoolExecutor(1, "pellucid-view")  # OpenGL contexts belong to a thread
-        # a Session or a SceneSession
-        self.session: Any = self._thread.submit(lambda: make(self._device())).result()
+        self._opening = self._thread.submit(lambda: make(self._device()))
         self._folder, self._kept = tempfile.TemporaryDirectory(), 0
         self.error = ""
         self.last: Optional[Frame] = None
         self.busy = ""  # what takes long just now
         self.stamp = 0.0  # of the browser's clock: the last motion that was applied
+        self.histogram = False  # whether pictures at rest come with theirs
+        self.resumed = False  # whether the session shows what was open last
+        self._placed = False  # whether the camera was moved: until then it frames the object
+        self._aspect = 16 / 9
         self._pace = Pace()
         self._changed: set[asyncio.Event] = set()
         self._loop: Optional[asyncio.AbstractEventLoop] = None
         self._moved = 0.0
+
+    def opened(self) -> Viewer:
+        """Waits until there is a session. Raises what opening it raised."""
+        self.session: Any = self._opening.result()  # a Session or a SceneSession
         self.session.report = self._advanced
+        self._history = History(self.session)
+        # So that programs and memory are there when a page asks for the first picture.
+        self._thread.submit(lambda: self.session.frame(960, 540))
+        return self
 
     def _device(self) -> Device:
         device = self._open()
@@ -106,6 +123,7 @@ class Viewer:
         """Tells every page to draw again. `moving`: soon once more, so that a rougher picture serves now."""
         self._moved = time.monotonic() if moving else 0.0
         self.changes += 1
+        self._history.note(self.session)
         for event in self._changed:
             event.set()
 
@@ -122,6 +140,27 @@ class Viewer:
     @property
     def moving(self) -> bool:
         return time.monotonic() - self._moved < SETTLED
+
+    def undo(self) -> bool:
+        """Takes the last change back; whether there was one."""
+        return self._history.undo(self.session)
+
+    def redo(self) -> bool:
+        return self._history.redo(self.session)
+
+    def frame_object(self) -> None:
+        """Moves the camera back so that the whole object is in the picture."""
+        session = self.session
+        session.orbit.frame(session.mesh.low, session.mesh.high, self._aspect)
+
+    def new_object(self) -> None:
+        """After another mesh has been loaded: the camera frames it until it is moved."""
+        self._placed = self.resumed = False
+        self.frame_object()
+
+    def look_from(self, azimuth: float, elevation: float) -> None:
+        self.session.orbit.azimuth, self.session.orbit.elevation = azimuth, elevation
+        self.changed()
 
     async def restart(self) -> None:
         """A new device and OpenGL context, with the same mesh, look and camera."""
@@ -173,12 +212,31 @@ class Viewer:
                 lamp = look.lamps[0]
                 lamp.azimuth = (lamp.azimuth + 120 * dx + 180) % 360 - 180
                 lamp.elevation = max(-89.0, min(89.0, lamp.elevation - 120 * dy))
+        elif kind == "size":
+            self._aspect = float(message["width"]) / max(float(message["height"]), 1)
+            if not (self._placed or self.resumed) and orbit is not None:
+                self.frame_object()
         elif kind == "wipe":
             self.session.wipe = max(0.0, min(1.0, float(message.get("x", 0.5))))
-        elif kind != "size":
+        else:
             return
+        self._placed = self._placed or kind in ("orbit", "pan", "zoom")
         self.stamp = float(message.get("at", self.stamp))
         self.changed(moving=kind != "size")
+
+    async def point(self, message: dict[str, Any]) -> Optional[str]:
+        """The facts of the pixel at `x`, `y`; for a pivot the camera turns about it from now on."""
+        session, x, y = self.session, float(message.get("x", -1)), float(message.get("y", -1))
+        if not hasattr(session, "shown"):
+            return None
+        if message["kind"] == "probe":
+            return await self.on_thread(lambda: describe_pixel(session, x, y))
+        at = await self.on_thread(lambda: place(session, x, y))
+        if at is not None:
+            px, py, pz = (at - session.centre).tolist()
+            session.orbit.pan, session.orbit.pivot, self._placed = (0.0, 0.0), (px, py, pz), True
+            self.changed()
+        return None
 
     async def _prepare(self, width: int, height: int) -> None:
         """Builds kernels while nobody wants a picture; the one that is being built is waited for, the rest
@@ -215,6 +273,10 @@ class Viewer:
                     except Exception as error:
                         self.error = f"{type(error).__name__}: {error}"
                         event.set()
+                elif kind in ("probe", "pivot"):
+                    facts = await self.point(message)
+                    if facts is not None:
+                        await socket.send_text(json.dumps({"probe": facts}))
                 else:
                     if kind == "size":
                         size[:] = (max(16, min(4096, int(message["width"]))),
@@ -242,6 +304,11 @@ class Viewer:
                     frame = made[0]
                     head |= {"milliseconds": frame.milliseconds, "kernels": frame.kernels,
                              "compiled": frame.compiled}
+                    if self.session.look.mode == "false_color":
+                        head["scale"] = {"colors": SCALE, "low": "0",
+                                         "high": f"{self.session.look.white:.3g}"}
+                    if self.histogram and not small:
+                        head["histogram"] = histogram(frame.pixels)
                 sent += 1
                 await socket.send_text(json.dumps(head))
                 if made is not None:
@@ -252,9 +319,13 @@ class Viewer:
                         await asyncio.wait_for(news.wait(), 5)
                     except asyncio.TimeoutError:
                         taken = sent
-                if made is not None and not small and sample >= self.session.samples and not event.is_set():
+                if made is not None and made[0].stands_in:
+                    sample = 0  # until the kernels are there, one picture is as good as eight
+                elif made is not None and not small and sample >= self.session.samples and not event.is_set():
                     await self._prepare(width, height)
-                if small and not event.is_set():
+                if made is not None and made[0].stands_in and not event.is_set():
+                    asyncio.get_running_loop().call_later(SETTLED, event.set)
+                elif small and not event.is_set():
                     asyncio.get_running_loop().call_later(SETTLED, event.set)
 
         async def report_busy() -> None:

@@ -19,7 +19,7 @@ from ..skin import skin_info
 from .camera import Orbit, direction
 from .look import CUT, EYES, PIGMENTS, RIGHT_EYE, SKIN, TEETH, TONGUE, Lamp, Look, skin_triangles
 from .passes import Pass
-from .pictures import LINEAR, picture, srgb_bytes
+from .pictures import LINEAR, picture, scattered_tiles, srgb_bytes
 from .reference import Reference
 from .renderer import SKIN_ALBEDO, GBuffer, Renderer
 from .texture import Texture
@@ -37,6 +37,7 @@ class Frame:
     warnings: list[str] = field(default_factory=list)
     kernels: int = 0                                            # programs that the device has compiled
     compiled: int = 0                                           # of them, for this picture
+    stands_in: bool = False  # without scattering, for its kernels are being built
 
 
 @dataclass
@@ -125,7 +126,9 @@ class Session:
         self.orbit = Orbit()
         self.look = Look()
         self.other: Optional[Look] = None  # on the right of the wipe
+        self.against = ""  # a method: the right side is the left one with it, in place of `other`
         self.wipe = 0.5
+        self.beside = False  # two whole pictures, in place of the wipe
         self.count = False  # fill every counter of the shader, at some cost
         self._passes: dict[str, Pass] = {}
         self._maps: dict[Any, ShadowMap] = {}
@@ -136,10 +139,14 @@ class Session:
         self._textures: dict[bool, Texture] = {}  # by whether something moves
         self._sum: Optional[tuple[int, NDArray[np.float32]]] = None  # of pictures shifted by parts of a pixel
         self.references: dict[str, Reference] = {}  # by pass
-        # called as references advance; None: pictures wait for them
+        # called as references advance; None: pictures wait for them, and for kernels
         self.report: Optional[Callable[[], None]] = None
+        self._preparing = False
         self._shift = (0.0, 0.0)
         self._prepared: Any = None
+        self.shown: Optional[GBuffer] = None  # of the last picture, and the pass that shaded its left side
+        self.last_pass: Optional[Pass] = None
+        self._scattered: Any = None  # the state that `scattering_at` was asked for, and its tiles
 
     def load(self, path: Any, subdivide: Optional[int] = None, up: str = "auto") -> files.Mesh:
         """Shows another mesh. Raises what files.load_mesh and MeshTopology raise; the mesh before it then
@@ -162,6 +169,11 @@ class Session:
             self.cancel_reference(name)
         self.orbit.frame(mesh.low, mesh.high, 16 / 9)
         return mesh
+
+    @property
+    def background(self) -> bool:
+        """Whether kernels are built while pictures without scattering stand in."""
+        return self.report is not None and not self._preparing
 
     def size(self) -> float:
         """Largest extent of the mesh, mm."""
@@ -202,7 +214,8 @@ class Session:
         for name in list(self.references):
             self.cancel_reference(name)
         fresh = Session(device, self.mm)
-        fresh.look, fresh.other, fresh.wipe, fresh.count = self.look, self.other, self.wipe, self.count
+        for name in ("look", "other", "against", "wipe", "beside", "count"):
+            setattr(fresh, name, getattr(self, name))
         fresh.report = self.report
         fresh.show(self.mesh)
         fresh.orbit = self.orbit
@@ -357,15 +370,18 @@ class Session:
         started = time.perf_counter()
         self._shift = (_HALTON[sample - 1][0] - 0.5, _HALTON[sample - 1][1] - 0.5) if sample else (0.0, 0.0)
         try:
-            self.gbuffer(width, height, small)
+            right = self.right()
+            if right is not None and self.beside:
+                width = max(width // 2, 1)
+            self.shown = self.gbuffer(width, height, small)
             self.lights(self.look, small)
             drawn = time.perf_counter()
             pixels, p = picture(self, "main", self.look, width, height, small)
-            stats = p.shader.stats()
-            if self.other is None:
+            self.last_pass, stats = p, p.shader.stats()
+            if right is None:
                 self.cancel_reference("other")
             else:
-                pixels = self._beside(pixels, picture(self, "other", self.other, width, height, small)[0])
+                pixels = self._joined(pixels, picture(self, "other", right, width, height, small)[0])
         finally:
             self._shift = (0.0, 0.0)
         if not small:
@@ -375,7 +391,7 @@ class Session:
                  "on the device": stats.device_milliseconds}
         after = self.device.stats().programs_built
         return Frame(pixels, times, stats.to_dict(), p.shader.warnings() + list(self.mesh.warnings), after,
-                     after - built)
+                     after - built, p.stands_in)
 
     def prepare(self, width: int, height: int) -> None:
         """Builds the kernels that a slider of material will want when it leaves 0 or comes to it, so that
@@ -389,14 +405,40 @@ class Session:
             other = base.copy()
             for name, value in change.items():
                 setattr(other, name, value)
-            picture(self, "main", other, width, height, False)
+            self._preparing = True
+            try:
+                picture(self, "main", other, width, height, False)
+            finally:
+                self._preparing = False
         self._prepared = structure
 
-    def _beside(self, left: NDArray[np.uint8], right: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    def right(self) -> Optional[Look]:
+        """What is shown on the right, if anything."""
+        if not self.against:
+            return self.other
+        look = self.look.copy()
+        look.method = self.against
+        return look
+
+    @property
+    def side_by_side(self) -> bool:
+        return self.beside and (bool(self.against) or self.other is not None)
+
+    def scattering_at(self, row: int, column: int) -> str:
+        """How the last picture scatters the light of a pixel of skin."""
+        assert self.shown is not None
+        height, width = self.shown.material.shape
+        key = (self.drawn_state(width, height), self.look.copy())
+        if self._scattered is None or self._scattered[0] != key:
+            self._scattered = (key, *scattered_tiles(self, self.look, width, height, False)[:2])
+        _, method, changed = self._scattered
+        return method if changed[row, column] else f"{method}, which leaves this tile as it is"
+
+    def _joined(self, left: NDArray[np.uint8], right: NDArray[np.uint8]) -> NDArray[np.uint8]:
         width = left.shape[1]
-        x = int(np.clip(round(self.wipe * width), 0, width))
-        both = left.copy()
-        both[:, x:] = right[:, x:]
+        x = width if self.beside else int(np.clip(round(self.wipe * width), 0, width))
+        both = np.concatenate([left, right], 1) if self.beside else left.copy()
+        both[:, x:] = right if self.beside else right[:, x:]
         both[:, max(x - 1, 0):x + 1] = 255
         return both
 

@@ -1,0 +1,78 @@
+"""What the viewer keeps between two runs: presets of one's own, and what was open last."""
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from .._errors import PellucidError
+from .camera import Orbit
+from .look import Look
+
+
+def standard_file() -> Path:
+    base = os.environ.get("APPDATA" if os.name == "nt" else "XDG_CONFIG_HOME")
+    return (Path(base) if base else Path.home() / ".config") / "pellucid" / "view.json"
+
+
+class Memory:
+    """A JSON file: {"presets": {name: look}, "last": {...}, "open": {panel: bool}}."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.values: dict[str, Any] = {}
+        self.problem = ""  # why the file was not read; it is left alone until something is saved
+        try:
+            found = json.loads(path.read_text(encoding="utf-8"))
+            if not isinstance(found, dict):
+                raise ValueError("it holds no JSON object")
+            self.values = found
+        except FileNotFoundError:
+            pass
+        except (OSError, ValueError) as error:
+            self.problem = f"{path} was not read: {error}"
+
+    def part(self, name: str) -> dict[str, Any]:
+        """A part that may be changed before `save`."""
+        if not isinstance(self.values.get(name), dict):
+            self.values[name] = {}
+        return self.values[name]
+
+    def save(self) -> None:
+        """Replaces the file as a whole. Raises OSError."""
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=self.path.parent, suffix=".json",
+                                         delete=False) as file:
+            json.dump(self.values, file, indent=1)
+        try:
+            os.replace(file.name, self.path)
+        except OSError:
+            os.unlink(file.name)
+            raise
+
+
+def remember(memory: Memory, session: Any, **opened: Any) -> None:
+    """Notes what a session shows, and how its mesh was `opened`."""
+    memory.values["last"] = {"mesh": str(Path(session.mesh.source).absolute()) if session.mesh.source else "",
+                             "mm": session.mm, "look": session.look.to_dict(), "orbit": asdict(session.orbit),
+                             **opened}
+
+
+def recall(memory: Memory, session: Any) -> str:
+    """Shows what was remembered. Returns the mesh's file; "" where there is nothing, or no such file any
+    more, or it cannot be shown."""
+    last = memory.part("last")
+    try:
+        if not Path(last["mesh"]).is_file():
+            return ""
+        look, orbit = Look.from_dict(last["look"]), Orbit(**{
+            k: tuple(v) if isinstance(v, list) else v for k, v in last["orbit"].items()})
+        session.mm = float(last["mm"])
+        session.load(last["mesh"], last.get("subdivide"), last.get("up", "auto"))
+    except (KeyError, TypeError, ValueError, OSError, PellucidError):
+        return ""
+    session.look, session.orbit = look, orbit
+    return str(last["mesh"])
