@@ -298,4 +298,5 @@ def test_a_bad_mesh_is_shown_and_the_old_one_stays(page, tmp_path):
     shown = wait_for(lambda: [e.text for e in page.find_elements(By.CSS_SELECTOR, ".q-notification")
                              if "obj" in e.text], "a message")
     assert "3" in shown[0] or "vertex" in shown[0]
+    wait_for(lambda: not page.find_elements(By.CSS_SELECTOR, ".q-uploader__file--uploaded"), "no tick")
     assert not differ(before, picture(page))

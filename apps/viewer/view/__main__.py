@@ -30,7 +30,7 @@ def free_port(host: str, port: int) -> int:
 def main() -> int:
     parser = argparse.ArgumentParser(prog="pellucid view", description="A look-dev viewer in the browser.")
     parser.add_argument("mesh", nargs="?", metavar="MESH|SCENE",
-                        help="OFF, OBJ, PLY or STL file, or a scene (.toml) with its G-buffer "
+                        help="OFF, OBJ, PLY, STL or glTF file, or a scene (.toml) with its G-buffer "
                         "(default: what was open last, else a head that comes with pellucid)")
     parser.add_argument("--fresh", action="store_true",
                         help="begin with the head, not with what was open last")

@@ -1,6 +1,7 @@
 """The page: the picture, and panels of what can be tuned."""
 from __future__ import annotations
 
+import functools
 import io
 import json
 import tempfile
@@ -22,6 +23,7 @@ from .session import UNITS
 from .widgets import Panel, fail
 
 HERE = Path(__file__).parent
+MESHES = ".obj", ".ply", ".stl", ".off", ".glb"
 VIEWS = {"1": (0.0, 0.0), "3": (90.0, 0.0), "7": (0.0, 89.0)}  # azimuth and elevation
 KEYS = (("drag", "turn"), ("shift and drag", "move"), ("wheel", "nearer, further"),
         ("ctrl and drag", "move the key light"), ("alt and drag", "move the line between two settings"),
@@ -69,26 +71,29 @@ class StatisticsPanel(Panel):
 class MeshPanel(Panel):
     name = "Mesh"
 
-    async def change(self, act: Callable[[], Any]) -> bool:
+    async def change(self, act: Callable[[], Any], of: str = "") -> bool:
         """Changes the mesh on the session's thread; where that fails, the previous one stays."""
         try:
             await self.viewer.on_thread(act)
         except Exception as error:
-            fail(error)
+            fail(f"{of}{error}")
             return False
         self.rebuild()
         return True
 
-    async def load(self, path: Any) -> None:
+    async def load(self, path: Any) -> bool:
         session = self.viewer.session
 
         def act() -> None:
             session.load(path)
             self.viewer.new_object()
 
-        if await self.change(act):
-            ui.notify(f"{len(session.mesh.positions)} vertices, {len(session.mesh.triangles)} triangles")
-            self.question()
+        if not await self.change(act):
+            return False
+        counts = f"{len(session.mesh.positions)} vertices, {len(session.mesh.triangles)} triangles"
+        ui.notify(f"{counts}; {session.told}" if session.told else counts, multi_line=True)
+        self.question()
+        return True
 
     def question(self) -> None:
         """Where the object is too small or too large for its unit to be right: which one it is."""
@@ -109,18 +114,32 @@ class MeshPanel(Panel):
     def build(self) -> None:
         session = self.viewer.session
 
-        async def dropped(e: events.UploadEventArguments) -> None:
+        async def dropped(e: events.UploadEventArguments) -> bool:
+            ending = Path(e.file.name).suffix.lower()
+            if ending not in MESHES:
+                fail(f"{e.file.name}: a mesh is needed, {', '.join(MESHES)}")
+                return False
             with tempfile.TemporaryDirectory() as folder:
-                path = Path(folder) / ("mesh" + Path(e.file.name).suffix.lower())
+                path = Path(folder) / ("mesh" + ending)
                 path.write_bytes(await e.file.read())
-                await self.load(path)
+                return await self.load(path)
+
+        async def painted(kind: str, e: events.UploadEventArguments) -> bool:
+            path = self.viewer.keep(e.file.name, await e.file.read())
+            return await self.change(lambda: session.paint_skin(kind, path), f"{e.file.name}: ")
 
         for which in ("female", "male"):
             async def head(which: str = which) -> None:
                 await self.load(files.standard_head(which))
 
             self.button(f"Head, {which}", head, f"head-{which}")
-        self.upload("Drop an OFF, OBJ, PLY or STL file here", dropped, "upload")
+        self.upload("Drop an OFF, OBJ, PLY, STL or GLB file here", dropped, "upload")
+        for kind, name in (("albedo", "Drop a picture of skin's albedo here"),
+                           ("normal", "Drop a normal map of skin here")):
+            self.upload(name, functools.partial(painted, kind), f"{kind}-upload", 1 << 28)
+        if session.paint:
+            self.button("Take all pictures off", lambda: self.change(lambda: session.show_bare()),
+                        "bare", flat=True)
 
         async def unit(e: events.ValueChangeEventArguments) -> None:
             await self.change(lambda: session.set_unit(e.value))
@@ -169,13 +188,14 @@ class ExportPanel(Panel):
 
             self.button(label, give, marker)
 
-        async def read(e: events.UploadEventArguments) -> None:
+        async def read(e: events.UploadEventArguments) -> bool:
             try:
                 self.viewer.session.look = Look.from_dict(json.loads(await e.file.read()))
             except (ValueError, TypeError) as error:
                 fail(f"{e.file.name}: {error}")
-                return
+                return False
             self.rebuild()
+            return True
 
         self.upload("Load a look (.json)", read, "look-upload")
 

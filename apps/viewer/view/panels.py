@@ -141,15 +141,16 @@ class EyesPanel(Panel):
         self.slider("Gaze to the left, degrees", self.look, "gaze", -40, 40, 1, index=0)
         self.slider("Gaze up, degrees", self.look, "gaze", -30, 30, 1, index=1)
 
-        async def dropped(e: events.UploadEventArguments) -> None:
+        async def dropped(e: events.UploadEventArguments) -> bool:
             path = self.viewer.keep(e.file.name, await e.file.read())
             try:
                 await self.viewer.on_thread(lambda: iris_image(path))
             except Exception as error:  # the previous iris stays
                 fail(f"{e.file.name}: {error}")
-                return
+                return False
             self.look.iris_texture, self.look.iris_color = str(path), (1.0, 1.0, 1.0)
             self.rebuild()
+            return True
 
         def fibres() -> None:
             self.look.iris_texture, self.look.iris_color = "", Look().iris_color

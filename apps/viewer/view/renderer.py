@@ -10,14 +10,15 @@ from typing import Any
 import moderngl
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from PIL import Image
 
+from .._show import linear
 from ..conventions import light_from_view_projection
 from ..files import Mesh
 from . import shaders
 from .camera import look_at, parallel, unit
+from .paint import SKIN_ALBEDO, Paint
 from .preview import levels
-
-SKIN_ALBEDO = 0.76, 0.54, 0.44  # of meshes that have none
 
 
 @dataclass
@@ -69,6 +70,7 @@ class Renderer:
         self._targets: dict[tuple[int, int], _Target] = {}
         self._levels: list[_Level] = []
         self._shadow_targets: dict[int, Any] = {}  # by size
+        self._pictures: list[Any] = []
         self.mesh: Mesh | None = None
 
     @property
@@ -76,11 +78,12 @@ class Renderer:
         return str(self.context.info["GL_RENDERER"])
 
     def set_mesh(self, mesh: Mesh, curvature: ArrayLike, millimetres_per_unit: float = 1.0,
-                 albedo: ArrayLike = SKIN_ALBEDO) -> None:
+                 albedo: ArrayLike = SKIN_ALBEDO, paint: Paint | None = None) -> None:
         """Takes a mesh and its curvature per vertex (1/length). `albedo`: of meshes that have none."""
         self.context.__enter__()
+        paint = Paint() if paint is None else paint
         n = len(mesh.positions)
-        vertices = np.zeros((n, 13), np.float32)
+        vertices = np.zeros((n, 14), np.float32)
         vertices[:, 0:3] = mesh.positions
         vertices[:, 3:6] = mesh.normals
         vertices[:, 6:9] = np.asarray(albedo, np.float32) if mesh.albedo is None else mesh.albedo
@@ -88,23 +91,43 @@ class Renderer:
         vertices[:, 10] = curvature
         if mesh.uvs is not None:
             vertices[:, 11:13] = mesh.uvs
+        vertices[:, 13] = -1 if paint.layers is None else paint.layers
         fresh = [self._upload(*level)
                  for level in levels(vertices, np.ascontiguousarray(mesh.triangles, np.uint32))]
         for old in self._levels:
             _release(old)
         self._levels = fresh
+        self._set_pictures(paint)
         self.mesh = mesh
         used = mesh.positions[np.unique(mesh.triangles)]
         low, high = used.min(0).astype(float), used.max(0).astype(float)
         self.centre, self.radius = (low + high) / 2, max(float(np.linalg.norm(high - low)) / 2, 1e-6)
         self._mm = millimetres_per_unit
 
+    def _set_pictures(self, paint: Paint) -> None:
+        for old in self._pictures:
+            old.release()
+        size = tuple(max((p.shape[i] for p in paint.albedo), default=1) for i in (1, 0))  # width, height
+        layers = [np.asarray(Image.fromarray(p).resize(size)) for p in paint.albedo] or [
+            np.full((1, 1, 3), 255, np.uint8)]
+        light = linear(np.arange(256) / 255).astype(np.float16)[np.stack(layers)]
+        pictures = self.context.texture_array((*size, len(layers)), 3, light.tobytes(), alignment=1,
+                                              dtype="f2")
+        normal = np.full((1, 1, 3), 128, np.uint8) if paint.normal is None else paint.normal
+        bumps = self.context.texture(normal.shape[1::-1], 3, np.ascontiguousarray(normal).tobytes(),
+                                     alignment=1)
+        self._pictures = [pictures, bumps]
+        for made in self._pictures:
+            made.build_mipmaps()
+            made.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
+        self._bumps_up = 0.0 if paint.normal is None else 1.0 if paint.v_up else -1.0
+
     def _upload(self, spacing: float, vertices: NDArray[np.float32], triangles: NDArray[np.uint32]) -> _Level:
         buffer, indices = self.context.buffer(vertices.tobytes()), self.context.buffer(triangles.tobytes())
         draw = self.context.vertex_array(self._gbuffer_program,
-            [(buffer, "3f 3f 3f 2f 2f", "in_position", "in_normal", "in_albedo", "in_material", "in_uv")],
+            [(buffer, "3f 3f 3f 2f 3f", "in_position", "in_normal", "in_albedo", "in_material", "in_uv")],
             indices)
-        shadow = self.context.vertex_array(self._shadow_program, [(buffer, "3f 40x", "in_position")], indices)
+        shadow = self.context.vertex_array(self._shadow_program, [(buffer, "3f 44x", "in_position")], indices)
         return _Level(spacing, [draw, shadow, buffer, indices])
 
     def level(self, length: float) -> int:
@@ -145,6 +168,10 @@ class Renderer:
         turned[:2, 3] = 2 * shift[0] / width, 2 * shift[1] / height
         program["clip"].write((turned @ np.asarray(view_projection, np.float64)).T.astype("f4").tobytes())
         program["pores"].value, program["mm"].value = pores, self._mm
+        for unit_, name in enumerate(("pictures", "bumps")):
+            self._pictures[unit_].use(unit_)
+            program[name].value = unit_
+        program["bumps_up"].value = self._bumps_up
         program["eyes"].value = bool(self.mesh.eyes)
         if self.mesh.eyes:
             program["sclera"].value = tuple(self.mesh.eyes[0]["sclera"])

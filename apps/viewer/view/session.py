@@ -1,7 +1,6 @@
 """Mesh, look and camera in, picture out: what the page shows, and what a program can use without it."""
 from __future__ import annotations
 
-import copy
 import time
 from dataclasses import dataclass, field, fields
 from typing import Any, Callable, Optional, TypeVar
@@ -18,10 +17,11 @@ from ..profile import Profile
 from ..skin import skin_info
 from .camera import Orbit, direction
 from .look import CUT, EYES, PIGMENTS, RIGHT_EYE, SKIN, TEETH, TONGUE, Lamp, Look, skin_triangles
+from .paint import SKIN_ALBEDO, Paint, load, painted, read
 from .passes import Pass
 from .pictures import LINEAR, picture, scattered_tiles, srgb_bytes
 from .reference import Reference
-from .renderer import SKIN_ALBEDO, GBuffer, Renderer
+from .renderer import GBuffer, Renderer
 from .texture import Texture
 
 T = TypeVar("T")
@@ -123,6 +123,7 @@ class Session:
         self.device = Device() if device is None else device
         self.renderer = Renderer()
         self.mm = millimetres_per_unit
+        self.told = ""  # of the materials of a file
         self.orbit = Orbit()
         self.look = Look()
         self.other: Optional[Look] = None  # on the right of the wipe
@@ -151,24 +152,39 @@ class Session:
     def load(self, path: Any, subdivide: Optional[int] = None, up: str = "auto") -> files.Mesh:
         """Shows another mesh. Raises what files.load_mesh and MeshTopology raise; the mesh before it then
         stays."""
-        return self.show(files.load_mesh(path, subdivide, up))
+        mesh, paint, told = load(path, subdivide, up)
+        self.show(mesh, paint)
+        self.told = told
+        return mesh
 
-    def show(self, mesh: files.Mesh) -> files.Mesh:
+    def paint_skin(self, kind: str, path: Any) -> None:
+        """Draws a picture on skin: "albedo" or "normal". Raises ValueError and OSError."""
+        self._draw(*painted(self.paint, self.mesh, kind, read(path)))
+
+    def show_bare(self) -> None:
+        """Takes all pictures off the mesh."""
+        self._draw(self._bare, Paint())
+
+    def show(self, mesh: files.Mesh, paint: Optional[Paint] = None) -> files.Mesh:
         """The same with a mesh in memory."""
+        self._draw(mesh, Paint() if paint is None else paint)
+        self._bare = mesh
+        self.orbit.frame(mesh.low, mesh.high, 16 / 9)
+        return mesh
+
+    def _draw(self, mesh: files.Mesh, paint: Paint) -> None:
         if len(mesh.triangles) == 0:
             raise ValueError(f"{mesh.source or 'the mesh'} has no triangles")
         topology = MeshTopology(self.device, mesh.triangles, len(mesh.positions), weld="exact",
                                 positions=mesh.positions)
         curvature = topology.curvature(mesh.positions, mesh.normals, smoothing_passes=2)
-        self.renderer.set_mesh(mesh, curvature, self.mm)
-        self.mesh = mesh
+        self.renderer.set_mesh(mesh, curvature, self.mm, paint=paint)
+        self.mesh, self.paint = mesh, paint
         self.centre = (np.asarray(mesh.low, float) + mesh.high) / 2
         for made in (self._maps, self._gbuffers, self._textures):
             made.clear()
         for name in list(self.references):
             self.cancel_reference(name)
-        self.orbit.frame(mesh.low, mesh.high, 16 / 9)
-        return mesh
 
     @property
     def background(self) -> bool:
@@ -193,10 +209,8 @@ class Session:
 
     def set_unit(self, mm: float) -> None:
         """Takes the lengths of the mesh in units of `mm` millimetres; the camera stays."""
-        orbit, self.mm = self.orbit, mm
-        self.orbit = copy.copy(orbit)
-        self.show(self.mesh)
-        self.orbit = orbit
+        self.mm = mm
+        self._draw(self.mesh, self.paint)
 
     def cancel_reference(self, name: str) -> None:
         made = self.references.pop(name, None)
@@ -217,7 +231,8 @@ class Session:
         for name in ("look", "other", "against", "wipe", "beside", "count"):
             setattr(fresh, name, getattr(self, name))
         fresh.report = self.report
-        fresh.show(self.mesh)
+        fresh._draw(self.mesh, self.paint)
+        fresh._bare, fresh.told = self._bare, self.told
         fresh.orbit = self.orbit
         return fresh
 
@@ -236,7 +251,7 @@ class Session:
         """Which version of the mesh serves: while something moves, one whose edges are few pixels of a small
         picture long."""
         # A texture has seams that a coarser mesh would tear apart.
-        if not small or self.look.method == "texture":
+        if not small or self.look.method == "texture" or self.paint:
             return 0
         return self.renderer.level(5 * 2 * self.orbit.distance * np.tan(np.radians(self.orbit.fov) / 2) / 270)
 
@@ -254,6 +269,8 @@ class Session:
         info, own = skin_info(pigments(look)), np.asarray(SKIN_ALBEDO)
         if self.mesh.albedo is not None:
             own = self.mesh.albedo[np.unique(skin_triangles(self.mesh))].mean(0)
+        if self.paint.albedo:
+            own = own * LINEAR[self.paint.albedo[0]].reshape(-1, 3).mean(0)
         red, green, blue = np.clip(info.albedo / np.maximum(own, 1e-3), 0, 2).round(3).tolist()
         look.profile, look.albedo = "pigments", (red, green, blue)
 

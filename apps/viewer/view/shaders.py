@@ -5,14 +5,15 @@ GBUFFER_VERTEX = """
 uniform mat4 clip;           // world to clip space, y turned round: the first row of the image is its top
 in vec3 in_position, in_normal, in_albedo;
 in vec2 in_material;         // id, curvature
-in vec2 in_uv;
+in vec3 in_uv;               // u, v, and the albedo picture
 out vec3 position, normal, albedo;
 out vec2 uv;
 out float curvature;
-flat out float id;
+flat out float id, layer;
 void main() {
+    layer = in_uv.z;
     position = in_position; normal = in_normal; albedo = in_albedo;
-    id = in_material.x; curvature = in_material.y; uv = in_uv;
+    id = in_material.x; curvature = in_material.y; uv = in_uv.xy;
     gl_Position = clip * vec4(in_position, 1.0);
 }
 """
@@ -24,10 +25,13 @@ uniform float pores;          // root mean square slope, about
 uniform float mm;             // millimetres per unit
 uniform bool eyes;
 uniform vec3 sclera;          // the shader's eyes have irises of their own
+uniform sampler2DArray pictures;  // of albedo
+uniform sampler2D bumps;      // normal map of skin
+uniform float bumps_up;       // 1 or -1: whether v grows towards the top of that picture; 0: there is none
 in vec3 position, normal, albedo;
 in vec2 uv;
 in float curvature;
-flat in float id;
+flat in float id, layer;
 layout(location = 0) out vec4 out_position;   // xyz, id
 layout(location = 1) out vec4 out_geometric;  // Ng, curvature
 layout(location = 2) out vec4 out_shading;    // N, u
@@ -49,14 +53,28 @@ vec3 slope(vec3 p) {
     }
     return s;
 }
+// The normal of the map, by the directions in which u and v grow.
+vec3 mapped(vec3 n) {
+    vec3 px = dFdx(position), py = dFdy(position);
+    vec2 tx = dFdx(uv), ty = dFdy(uv);
+    float turn = tx.x * ty.y - ty.x * tx.y;
+    vec3 t = (px * ty.y - py * tx.y) * sign(turn), b = (py * tx.x - px * ty.x) * sign(turn) * bumps_up;
+    t -= n * dot(n, t);
+    b -= n * dot(n, b);
+    vec3 m = texture(bumps, uv).xyz * 2.0 - 1.0;
+    if (dot(t, t) == 0.0 || dot(b, b) == 0.0 || dot(m, m) == 0.0) return n;
+    return normalize(normalize(t) * m.x + normalize(b) * m.y + n * max(m.z, 0.05));
+}
 void main() {
     vec3 ng = normalize(normal), n = ng, color = albedo;
+    if (layer >= 0.0) color *= texture(pictures, vec3(uv, layer)).rgb;
+    if (id == 1.0 && bumps_up != 0.0) n = mapped(ng);
     float pixel = length(fwidth(position)) * mm;
     if (id == 1.0 && pores > 0.0) {
         vec3 p = position * mm;
         float fine = 1.0 - smoothstep(0.3, 0.9, pixel), coarse = 1.0 - smoothstep(1.5, 5.0, pixel);
         vec3 bump = 1.6 * fine * slope(p / 0.7) + 0.5 * coarse * slope(p / 4.0);
-        n = normalize(ng - pores * (bump - ng * dot(ng, bump)));
+        n = normalize(n - pores * (bump - n * dot(n, bump)));
     } else if ((id == 2.0 || id == 6.0) && eyes) {
         color = sclera;
     }

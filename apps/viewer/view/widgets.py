@@ -151,5 +151,9 @@ class Panel:
         ui.button(name, on_click=act).props(style).classes("w-full")
 
     def upload(self, name: str, act: Any, marker: str, largest: int = 1 << 30) -> None:
-        ui.upload(label=name, auto_upload=True, on_upload=act, max_file_size=largest).props(
+        async def take(e: events.UploadEventArguments) -> None:
+            if await act(e) is False:
+                e.sender.reset()  # or the list would show the file as taken
+
+        ui.upload(label=name, auto_upload=True, on_upload=take, max_file_size=largest).props(
             f"dense flat data-pel={marker}").classes("w-full")
