@@ -8,10 +8,10 @@ using namespace pel;
 
 // The passes of every shader, in the order in which they run: a pass reads what earlier passes made.
 static const PassKind shadingPasses[] = {
-    ambientCubePass, reflectionCubePass, irisesPass,       classifyTilesPass, tapCellsPass,
-    blurNormalsPass, normalMapPass,      shadowBoundsPass, wideShadowPass,    irradiancePass,
-    skinMapsPass,    prepareScatterPass, curvaturePass,    diskPass,          separablePass,
-    texturePass,     scatterPass,        lightScatterPass, weighScatterPass,  shadePass};
+    ambientCubePass,    reflectionCubePass, environmentPass,  irisesPass,     classifyTilesPass, tapCellsPass,
+    blurNormalsPass,    normalMapPass,      shadowBoundsPass, wideShadowPass, irradiancePass,    skinMapsPass,
+    prepareScatterPass, curvaturePass,      diskPass,         separablePass,  texturePass,       scatterPass,
+    lightScatterPass,   weighScatterPass,   shadePass};
 
 PelError pelShaderCreate(PelDevice device, PelShader* shader) {
     return create(shader, "shader", [&] { return make<Shader>(fromHandle<Device>(device), shadingPasses); });
@@ -66,6 +66,10 @@ PelError pelShaderSetIrisTexture(PelShader shader, uint32_t id, const PelImageDe
 
 PelError pelShaderSetReflectionCube(PelShader shader, const PelImageDesc* faces) {
     return entry([&] { fromHandle<Shader>(shader)->setReflectionCube(faces); });
+}
+
+PelError pelShaderSetEnvironment(PelShader shader, const PelImageDesc* image, const float* axes) {
+    return entry([&] { fromHandle<Shader>(shader)->setEnvironment(image, axes); });
 }
 
 PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t count) {

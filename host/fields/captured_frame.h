@@ -59,7 +59,8 @@ struct CapturedFrame {
     std::vector<ProfileRecipe> profiles;
     PelAmbient ambient{};
     PelCamera camera{};
-    CapturedImage ambientCube, reflectionCube;
+    CapturedImage ambientCube, reflectionCube, environment;
+    std::array<float, 9> environmentAxes{};
 };
 
 // The module's function, named "pellucidCapture": writes a scene into an empty folder. Returns what went

@@ -229,6 +229,15 @@ void SceneFrame::set(const SceneFile& scene, LutStore& luts, const PelShaderOpti
         shader_.clearReflectionCube();
     else
         shader_.setReflectionCube(cubeImage(scene.reflectionCube));
+    if (scene.environment != environment_.first ||
+        !std::ranges::equal(scene.environmentAxes, environment_.second)) {
+        environment_ = {scene.environment, std::to_array(scene.environmentAxes)};
+        if (scene.environment.empty())
+            shader_.clearEnvironment();
+        else
+            shader_.setEnvironment(colorImage(scene.environment, "an environment needs three"),
+                                   scene.environmentAxes);
+    }
     shader_.set(scene.camera);
 }
 

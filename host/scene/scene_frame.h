@@ -143,6 +143,8 @@ class SceneFrame {
     // Curvature from normals and positions or depth of the G-buffer (pelScreenCurvature).
     PelImageDesc measureCurvature(const SceneFile& scene);
     PelImageDesc cubeImage(const std::string& file);
+    // What is set, file and axes: setting it again would have it reduced again.
+    std::pair<std::string, std::array<float, 9>> environment_;
     void setEye(const SceneFile& scene, const SceneEye& e);
     PelImageDesc upload(const Image& image, const std::vector<std::string>& channels,
                         std::vector<Buffer>& to);

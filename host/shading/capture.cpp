@@ -114,6 +114,8 @@ Capture::Capture(Device& device, const ShaderState& state) {
     frame.camera = state.camera;
     frame.ambientCube = valuesOf(device, state.ambientCube, 3);
     frame.reflectionCube = valuesOf(device, state.reflectionCube, 3);
+    frame.environment = valuesOf(device, state.environment, 3);
+    frame.environmentAxes = state.environmentAxes;
 }
 
 // What a scene cannot hold, one sentence a line.

@@ -163,6 +163,26 @@ void checkCube(const ImageView& faces, const char* what) {
                         "; six square faces one below the other are n x 6n pixels, side by side 6n x n");
 }
 
+void checkEnvironment(const ImageView& image) {
+    checkContent(image, Content::COLOR, "environment");
+    if (image.width != 2 * image.height && image.height != 6 * image.width && image.width != 6 * image.height)
+        invalidArgument("the environment image is ", image.width, " x ", image.height,
+                        "; an equirectangular one is 2n x n pixels, six square faces are n x 6n or 6n x n");
+}
+
+void checkAxes(const std::array<float, 9>& axes) {
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k <= i; ++k) {
+            double product = 0;
+            for (int c = 0; c < 3; ++c) product += double(axes[3 * i + c]) * axes[3 * k + c];
+            if (!(std::abs(product - (i == k)) < 1e-3))
+                invalidArgument(
+                    "the axes of the environment must be three unit vectors at right angles; the "
+                    "product of rows ",
+                    k, " and ", i, " is ", product);
+        }
+}
+
 void checkCamera(const PelCamera& camera) {
     checkFinite("PelCamera", "position", camera.position, 3);
     checkFinite("PelCamera", "inverseViewProjection", camera.inverseViewProjection, 16);

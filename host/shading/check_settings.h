@@ -21,6 +21,8 @@ void checkLightMap(const ShaderLight& light, uint32_t index);
 void checkAmbient(const PelAmbient& ambient);
 // Of six faces; `what` names it.
 void checkCube(const ImageView& faces, const char* what);
+void checkEnvironment(const ImageView& image);
+void checkAxes(const std::array<float, 9>& axes);  // of it
 void checkCamera(const PelCamera& camera);
 void checkOptions(const PelShaderOptions& options);
 

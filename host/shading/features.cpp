@@ -44,6 +44,7 @@ void checkSizes(const ShaderState& state) {
     };
     checkApart(state.ambientCube, "ambient cube");
     checkApart(state.reflectionCube, "reflection cube");
+    checkApart(state.environment, "environment");
     for (const auto& [id, material] : state.materials)
         if (material.eye) checkApart(material.eye->iris, text("iris texture of material ", id));
     for (size_t i = 0; i < state.lights.size(); ++i) {
@@ -175,8 +176,11 @@ uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material)
         if (m.specular > 0) needs |= PEL_FEATURE_SPECULAR;
         if (m.specular > 0 && m.specularModel == PEL_SPECULAR_GGX) needs |= PEL_FEATURE_GGX;
     }
-    if (material.eye) needs |= PEL_FEATURE_EYE | (state.reflectionCube ? PEL_FEATURE_REFLECTION_CUBE : 0);
-    const bool ambient = !isBlack(state.ambient) || state.ambientCube;
+    if (m.specular > 0 && state.environment) needs |= PEL_FEATURE_ENVIRONMENT;
+    if (material.eye)
+        needs |=
+            PEL_FEATURE_EYE | (state.reflectionCube || state.environment ? PEL_FEATURE_REFLECTION_CUBE : 0);
+    const bool ambient = !isBlack(state.ambient) || state.ambientCube || state.environment;
     if (ambient && images[PEL_SLOT_THICKNESS] && m.deepScatterAmbient > 0 && !isBlack(m.deepScatterColor))
         needs |= PEL_FEATURE_AMBIENT_SCATTER;
     return needs;
@@ -232,7 +236,7 @@ uint32_t deriveFeatures(const ShaderState& state) {
     if (wide) features |= PEL_FEATURE_SHADOW;
     if (filtered) features |= PEL_FEATURE_FILTER_SHADOW;
     if (!isBlack(state.ambient)) features |= PEL_FEATURE_AMBIENT;
-    if (state.ambientCube) features |= PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_CUBE;
+    if (state.ambientCube || state.environment) features |= PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_CUBE;
     for (const auto& [id, material] : state.materials) features |= materialNeeds(state, material);
     if (features & (PEL_FEATURE_THICKNESS_TAPS | PEL_FEATURE_FILTER_SHADOW)) features |= forms;
     if (makesIrradiance(state)) features |= PEL_FEATURE_MAKE_IRRADIANCE;
@@ -257,7 +261,8 @@ uint32_t deriveFeatures(const ShaderState& state) {
     const bool position = images[PEL_SLOT_POSITION] || images[PEL_SLOT_DEPTH];
     constexpr const char* what = "position image (or the depth image)";
     if (features & PEL_FEATURE_THICKNESS_TAPS) need(position, what, "to measure thickness in the shadow map");
-    if (features & PEL_FEATURE_SPECULAR) need(position, what, "by the specular term");
+    if (features & (PEL_FEATURE_SPECULAR | PEL_FEATURE_ENVIRONMENT))
+        need(position, what, "by the specular term");
     if (features & PEL_FEATURE_BLUR_NORMALS) need(position, what, "to blur normals over a length");
     if (filtered) need(position, what, "to filter a wide shadow from a shadow map");
     if (features & PEL_FEATURE_EYE) need(position, what, "by eyes");
@@ -285,7 +290,8 @@ bool lightIsMapped(const ShaderState& state) {
         if (!shines(light)) return false;
         maps += mapsOf(light);
     }
-    return maps > 0 && maps <= PEL_LIGHT_MAPS && isBlack(state.ambient) && !state.ambientCube;
+    return maps > 0 && maps <= PEL_LIGHT_MAPS && isBlack(state.ambient) && !state.ambientCube &&
+           !state.environment;
 }
 
 }  // namespace pel

@@ -124,6 +124,6 @@ class PassList {
 
 // The passes of this folder, each in a file beside its kernel's.
 extern const PassKind ambientCubePass, classifyTilesPass, blurNormalsPass, normalMapPass, shadowBoundsPass,
-    wideShadowPass, irradiancePass, reflectionCubePass, irisesPass, tapCellsPass, shadePass;
+    wideShadowPass, irradiancePass, reflectionCubePass, environmentPass, irisesPass, tapCellsPass, shadePass;
 
 }  // namespace pel

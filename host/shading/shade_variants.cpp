@@ -123,7 +123,7 @@ void sceneArguments(cl::Launch& launch, const PassWork& work) {
     const ShadingConstants& constants = work.constants;
     launch.args(constants.frameMemory(), constants.materials(), constants.lights(), constants.luts(),
                 work.plan.tileLists, work.plan.counters, work.plan.ambientNodes, constants.eyes(),
-                work.plan.irises, work.plan.reflectionNodes, work.plan.tapCells);
+                work.plan.irises, work.plan.reflectionNodes, work.plan.environmentNodes, work.plan.tapCells);
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
         if (imageSlot(slot).role != SlotRole::PASS) launch.arg(work.plan.state.images[slot]);
     lightBufferArguments(launch, constants.lightBuffers());

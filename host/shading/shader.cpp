@@ -222,7 +222,7 @@ void Shader::copyTextures(bool back) const {
         if (!back || slot == PEL_SLOT_RADIANCE || isOutput(slot)) all.push_back(state_.images[slot]);
     if (back) return pel::copyTextures(all, true);
     const auto add = [&](const ImageView& view) { all.push_back(view); };
-    add(state_.ambientCube), add(state_.reflectionCube);
+    add(state_.ambientCube), add(state_.reflectionCube), add(state_.environment);
     for (const ShaderLight& light : state_.lights) std::ranges::for_each(light.images, add);
     for (const auto& [id, material] : state_.materials) {
         add(material.scatteredTexture);

@@ -27,6 +27,7 @@ class Shader final : public Object {
     void setEye(uint32_t id, const PelEye* eye, Lut* caustics);
     void setIrisTexture(uint32_t id, const PelImageDesc* texture);
     void setReflectionCube(const PelImageDesc* faces);
+    void setEnvironment(const PelImageDesc* image, const float* axes);
     void setLights(const PelLight* lights, uint32_t count);
     void setLightImage(uint32_t light, PelLightSlot slot, const PelImageDesc* image);
     void setAmbient(const PelAmbient& ambient);

@@ -32,15 +32,16 @@ struct ShaderPlan {
     bool wholeFrame = false;
     bool scratch = false;  // whether a pass makes images, which hold the rows of a band and of its halo
 
-    cl::Memory counters;         // PEL_COUNTERS, of tileLists if there are some
-    cl::Memory tileLists;        // lists of tiles; none without a material image
-    cl::Memory ambientNodes;     // of the ambient cube
-    cl::Memory reflectionNodes;  // of the cube that eyes reflect
-    cl::Memory irises;           // texels of all eyes' irises
-    cl::Memory tapCells;         // what thickness taps read, at nodes (tap_cells.h)
-    uint32_t scratchPlane = 0;   // floats from plane to plane of images that passes make (scratch_image.h)
-    ImageView radii;             // factors of the profile's radius, where maps of skin make them
-    ImageView arriving;          // irradiance before it is scattered, where a pass needs it later
+    cl::Memory counters;          // PEL_COUNTERS, of tileLists if there are some
+    cl::Memory tileLists;         // lists of tiles; none without a material image
+    cl::Memory ambientNodes;      // of the ambient cube
+    cl::Memory reflectionNodes;   // of the cube that eyes reflect
+    cl::Memory environmentNodes;  // of shared/environment.h
+    cl::Memory irises;            // texels of all eyes' irises
+    cl::Memory tapCells;          // what thickness taps read, at nodes (tap_cells.h)
+    uint32_t scratchPlane = 0;    // floats from plane to plane of images that passes make (scratch_image.h)
+    ImageView radii;              // factors of the profile's radius, where maps of skin make them
+    ImageView arriving;           // irradiance before it is scattered, where a pass needs it later
     std::vector<uint32_t> filteredLights;  // of state.lights: wide shadows are made from their shadow maps
     cl::Memory wideShadows;                // PelWideShadow of their maps, room for PEL_CASCADES each
     std::vector<BoundedMap> boundedMaps;

@@ -177,6 +177,16 @@ void Shader::setReflectionCube(const PelImageDesc* faces) {
             [](const ImageView& v) { checkCube(v, "reflection cube"); });
 }
 
+void Shader::setEnvironment(const PelImageDesc* image, const float* axes) {
+    std::array<float, 9> set = ShaderState().environmentAxes;
+    if (axes) std::copy_n(axes, 9, set.begin());
+    checkAxes(set);
+    setView(state_.environment, image, "environment", checkEnvironment);
+    state_.environmentAxes = set;
+    static std::atomic<uint64_t> last;
+    state_.environmentNumber = ++last;
+}
+
 const PelMaterial& Shader::material(uint32_t id) const {
     const auto found = state_.materials.find(id);
     if (found == state_.materials.end()) invalidArgument("material ", id, " is not set");

@@ -52,6 +52,9 @@ struct ShaderState {
     std::vector<ShaderLight> lights;
     PelAmbient ambient = pelAmbientDefaults();
     ImageView ambientCube, reflectionCube;  // six faces
+    ImageView environment;                  // equirectangular, or six faces
+    std::array<float, 9> environmentAxes{1, 0, 0, 0, 1, 0, 0, 0, 1};
+    uint64_t environmentNumber = 0;  // no other call that set one has it
     PelCamera camera = pelCameraDefaults();
 };
 

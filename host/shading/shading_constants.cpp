@@ -8,6 +8,7 @@
 #include "shading/features.h"
 #include "shading/material.h"
 #include "shading/tap_cells.h"
+#include "shared/environment.h"
 
 namespace pel {
 namespace {
@@ -135,6 +136,10 @@ void ShadingConstants::fillFrame(const ShaderState& state) {
     copy(frame_.invalidColor, state.options.invalidColor);
     frame_.cubeSize = std::min(state.ambientCube.width, state.ambientCube.height);
     frame_.reflectionSize = std::min(state.reflectionCube.width, state.reflectionCube.height);
+    if (state.environment) {
+        if (!state.ambientCube) frame_.cubeSize = PEL_ENVIRONMENT_LEAST;
+        if (!state.reflectionCube) frame_.reflectionSize = PEL_ENVIRONMENT_SIZE;
+    }
     // Factors of the orthonormal real spherical harmonics.
     const double pi = 3.14159265358979323846, one = std::sqrt(3 / (4 * pi)), two = std::sqrt(15 / (4 * pi));
     const double factors[9] = {std::sqrt(1 / (4 * pi)),  one, one,      one, two, two,

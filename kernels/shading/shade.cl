@@ -75,6 +75,8 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
             if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = deep;
         }
     }
+    if (HAS(PEL_BIT_ENVIRONMENT) && material->specular != 0.0f)
+        specular = environmentGloss(scene, material, p);
     const bool isEye = HAS(PEL_BIT_EYE) && material->eye;
     __global const PelShadeEye* eye = &scene->eyes[isEye ? material->eye - 1 : 0];
     EyeLight inEye;

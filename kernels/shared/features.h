@@ -29,7 +29,8 @@
     X(SHADOW_EXPONENTIAL, 26, 0, 0, "shadow_exponential") \
     X(SHADOW_MOMENTS, 27, 0, 0, "shadow_moments")    \
     X(EYE, 28, 1, 1, "eye")                          \
-    X(REFLECTION_CUBE, 29, 1, 1, "reflection_cube")
+    X(REFLECTION_CUBE, 29, 1, 1, "reflection_cube") \
+    X(ENVIRONMENT, 30, 1, 1, "environment")
 
 // Bits of PEL_FEATURES.
 #define PEL_FEATURE_BIT_(name, bit, kernel, material, key) PEL_BIT_##name = 1 << bit,

@@ -7,7 +7,8 @@
 // Features whose terms read the blurred normal, or the geometric one if there is no blurred one.
 #define PEL_BITS_BLURRED_ \
     (PEL_BIT_DIRECT_SCATTER | PEL_BIT_AMBIENT | PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER)
-#define PEL_BITS_POSITION_ (PEL_BIT_SPECULAR | PEL_BIT_THICKNESS_TAPS | PEL_BIT_POSITIONAL | PEL_BIT_EYE)
+#define PEL_BITS_SPECULAR_ (PEL_BIT_SPECULAR | PEL_BIT_ENVIRONMENT)
+#define PEL_BITS_POSITION_ (PEL_BITS_SPECULAR_ | PEL_BIT_THICKNESS_TAPS | PEL_BIT_POSITIONAL | PEL_BIT_EYE)
 #define PEL_BITS_ALL_ 0x7fffffff
 
 // clang-format off
@@ -33,8 +34,8 @@
     X(AMBIENT_OCCLUSION, 9, SHADE, SCALAR, 1, "ambient_occlusion", "ambient occlusion", PEL_BIT_AMBIENT) \
     X(THICKNESS, 10, SHADE, SCALAR, 1, "thickness", "thickness", \
       PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER | PEL_BIT_TRANSMISSION) \
-    X(ROUGHNESS, 11, SHADE, SCALAR, 1, "roughness", "roughness", PEL_BIT_SPECULAR) \
-    X(SPECULAR, 12, SHADE, SCALAR, 1, "specular", "specular", PEL_BIT_SPECULAR) \
+    X(ROUGHNESS, 11, SHADE, SCALAR, 1, "roughness", "roughness", PEL_BITS_SPECULAR_) \
+    X(SPECULAR, 12, SHADE, SCALAR, 1, "specular", "specular", PEL_BITS_SPECULAR_) \
     X(UV, 13, PASS, UV, 2, "uv", "UV", 0) \
     X(UV_GRADIENT, 14, PASS, GRADIENT, 4, "uv_gradient", "UV gradient", 0) \
     X(TANGENT, 15, PASS, NORMAL, 4, "tangent", "tangent", 0) \

@@ -218,6 +218,8 @@ TEST_F(Capture, RepeatsEyesCubesAndNormalMaps) {
     shader.setIrisTexture(2, imageDesc(colors(32 * 32), PEL_FORMAT_RGB32F, 32, 32));
     shader.setReflectionCube(imageDesc(colors(6 * 16), PEL_FORMAT_RGB32F, 4, 24));
     shader.setAmbientCube(imageDesc(colors(6 * 4), PEL_FORMAT_RGB32F, 12, 2));
+    const float axes[9] = {0, 1, 0, 0, 0, 1, 1, 0, 0};
+    shader.setEnvironment(imageDesc(colors(8 * 4), PEL_FORMAT_RGB32F, 8, 4), axes);
     const auto set = [&](PelImageSlot slot, PelFormat format, uint32_t components, float low) {
         std::vector<float> values(components * frame.pixels());
         for (float& v : values) v = random.uniform(low, 1);

@@ -181,6 +181,24 @@ TEST_F(ShadeFeatures, AnAmbientCubeIsReadFromAFile) {
     refuses("six square faces");
 }
 
+TEST_F(ShadeFeatures, AnEnvironmentIsReadFromAFile) {
+    const auto sky = [](int, int y, size_t) { return y < 2 ? 1.0 : 0.0; };  // the upper half is lit
+    io::writeExr(path("sky.exr"), imageOf(8, 4, colorNames, sky));
+    scene_.environment = "sky.exr";
+    scene_.lights.clear();
+    const std::vector<float> above = shaded("--stats");
+    EXPECT_TRUE(contains(said_.json().at("stats").at("features").dump(), "ambient_cube"));
+    // The image's y axis is the world's -y: the lower half.
+    const float turned[9] = {1, 0, 0, 0, -1, 0, 0, 0, -1};
+    std::ranges::copy(turned, scene_.environmentAxes);
+    const std::vector<float> below = shaded();
+    for (size_t i = 0; i < above.size(); ++i) EXPECT_NEAR(above[i] + below[i], 0.5, 2e-3) << i;
+    scene_.environmentAxes[0] = 2;
+    refuses("unit vectors at right angles");
+    io::writeExr(path("sky.exr"), imageOf(8, 5, colorNames, sky));
+    refuses("equirectangular");
+}
+
 // A shelf in the left half of a cube's lowest face shades the left half of a floor; a cube of another shape
 // is named.
 TEST_F(ShadeFeatures, ACubeShadowMapFromTheSceneFile) {

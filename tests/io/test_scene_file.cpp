@@ -162,6 +162,8 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     scene.channels[PEL_SLOT_TANGENT] = {"T.X", "T.Y", "T.Z", "T.W"};
     scene.ambientCube = path("sky.exr");
     scene.reflectionCube = path("around.exr");
+    scene.environment = path("sky.hdr");
+    for (int i = 0; i < 9; ++i) scene.environmentAxes[i] = float(i % 4 == 2);
     scene.outputs[PEL_SLOT_OUT_SPECULAR] = path("parts/shine.exr");
     scene.outputs[PEL_SLOT_OUT_THICKNESS] = path("t.exr");
     PelShadowLutDesc& table = scene.luts[1].info.shadow;
@@ -178,6 +180,8 @@ TEST_F(SceneFileTest, WrittenIsRead) {
               std::tie(skin.preset, skin.profile, skin.normalMap, skin.scatteredTexture));
     EXPECT_EQ(again.ambientCube, scene.ambientCube);
     EXPECT_EQ(again.reflectionCube, scene.reflectionCube);
+    EXPECT_EQ(again.environment, scene.environment);
+    EXPECT_EQ(std::to_array(again.environmentAxes), std::to_array(scene.environmentAxes));
     EXPECT_EQ(again.lights.at(0).shadowMapChannel, sun.shadowMapChannel);
     EXPECT_EQ(again.eyes.at(0).irisTexture, eye.irisTexture);
     EXPECT_EQ(again.eyes[0].irisProfile, eye.irisProfile);

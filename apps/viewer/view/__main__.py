@@ -85,9 +85,10 @@ def main() -> int:
         if a.look:
             with open(a.look, encoding="utf-8") as file:
                 session.look = Look.from_dict(json.load(file))
-            beside = Path(a.look).parent / session.look.iris_texture
-            if session.look.iris_texture and beside.is_file():  # as the viewer exports it
-                session.look.iris_texture = str(beside)
+            for name in ("iris_texture", "surroundings"):
+                beside = Path(a.look).parent / getattr(session.look, name)
+                if getattr(session.look, name) and beside.is_file():  # as the viewer exports it
+                    setattr(session.look, name, str(beside))
         session.load(a.mesh or files.standard_head(), a.subdivide, a.up)
         return session
 

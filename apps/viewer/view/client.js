@@ -139,7 +139,7 @@
       if (!last) { askProbe(e); return; }
       const h = canvas.clientHeight, dx = (e.clientX - last.clientX) / h, dy = (e.clientY - last.clientY) / h;
       const pan = e.shiftKey || (e.buttons & 2);
-      const kind = e.ctrlKey || e.metaKey ? 'light' : pan ? 'pan' : e.altKey ? 'wipe' : 'orbit';
+      const kind = e.ctrlKey || e.metaKey ? (e.shiftKey ? 'surroundings' : 'light') : pan ? 'pan' : e.altKey ? 'wipe' : 'orbit';
       last = e;
       if (kind === 'wipe') say({kind: 'wipe', x: e.offsetX / canvas.clientWidth}); else move(kind, dx, dy);
     });

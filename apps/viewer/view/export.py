@@ -13,6 +13,7 @@ from ..files import _files, write_image
 from .look import PIGMENTS, SKIN, Look
 from .passes import tinted
 from .session import Session
+from .surroundings import STUDIO
 
 CHANNELS = {"material": ("Id", "I"), "position": ("Position", "XYZ"),
             "normal_geometric": ("NormalGeometric", "XYZ"), "normal_shading": ("NormalShading", "XYZ"),
@@ -24,6 +25,7 @@ def write_scene(path: Path, session: Session, look: Look, width: int, height: in
     eye, _ = session.camera(width / height)
     channels = {key: [f"{name}.{c}" for c in components] for key, (name, components) in CHANNELS.items()
                 if key != "uv" or look.method == "texture"}
+    around = session.surroundings(look)
     options = ShaderOptions(target_error=look.target_error, millimetres_per_unit=session.mm)
     profile = "profile.toml" if look.profile in ("custom", "pigments") else look.profile
     _files.write_scene(
@@ -36,7 +38,8 @@ def write_scene(path: Path, session: Session, look: Look, width: int, height: in
         [(id, eye._data.tobytes(), "iris.exr" if look.iris_texture else "", look.iris_profile)
          for id, eye in session.eyes(look).items()],
         Ambient(constant=[session.ambient(look)] * 3)._data.tobytes(),
-        Camera(position=eye)._data.tobytes(), options._data.tobytes())
+        Camera(position=eye)._data.tobytes(), options._data.tobytes(),
+        "surroundings.exr" if around else "", [] if around is None else around[1].reshape(9).tolist())
 
 
 def profile_text(look: Look) -> str:
@@ -76,6 +79,11 @@ def export(session: Session, folder: Any, width: int = 1280, height: int = 720) 
         if iris is not None:
             write_image(out / "iris.exr", iris)
             look.iris_texture = "iris.exr"
+        around = session.surroundings(look)
+        if around is not None:
+            write_image(out / "surroundings.exr", around[0])
+            if look.surroundings != STUDIO:
+                look.surroundings, look.surroundings_light = "surroundings.exr", 1.0
         write_image(out / "picture.exr", radiance)
         write_image(out / "picture.png", radiance, exposure=look.exposure, shoulder=look.shoulder,
                     curve=look.curve)

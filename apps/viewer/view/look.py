@@ -102,6 +102,9 @@ class Look(MaterialValues):
     tear_roughness: float = 0.03
     gaze: tuple[float, float] = (0.0, 0.0)  # degrees to its left and up
     ambient: float = 0.12            # irradiance / pi from everywhere
+    surroundings: str = ""           # "studio" or an image file; "": none
+    surroundings_light: float = 0.5  # factor of its radiance
+    surroundings_turn: float = 0.0   # degrees about the vertical axis
     lamps: list[Lamp] = field(default_factory=_lamps)
     shadow_size: int = 1024          # texels a side
     exposure: float = 1.0
@@ -132,6 +135,13 @@ class Look(MaterialValues):
         return look
 
 
+# Azimuth, elevation and intensity of key, fill and rim, as photographers place them.
+ARRANGEMENTS = {"Three points": ((55, 30, 1.0), (-50, 10, 0.15), (160, 15, 0.2)),
+                "Rembrandt": ((45, 45, 1.1), (-60, 0, 0.08), (-150, 25, 0.15)),
+                "Split": ((90, 10, 1.1), (-90, 0, 0.04), (180, 30, 0.1)),
+                "Butterfly": ((0, 50, 1.0), (0, -30, 0.15), (170, 30, 0.2)),
+                "From behind": ((150, 20, 1.5), (-40, 10, 0.12), (-150, 20, 1.0))}
+
 PIGMENTS = "melanin", "eumelanin", "blood", "oxygenation", "epidermis"
 
 # Name, melanin and blood: the skins nearest to mean colours of arms, L* 63.0, 60.9 (inner arms; Xiao et
@@ -141,7 +151,8 @@ SKINS = (("Skin, pale", 0.026, 0.006), ("Skin, light", 0.03, 0.008), ("Skin, med
          ("Skin, brown", 0.082, 0.013), ("Skin, dark", 0.097, 0.026), ("Skin, very dark", 0.133, 0.037))
 
 # What a preset leaves as it is: lights and view.
-KEPT_BY_PRESETS = ("lamps", "ambient", "shadow_size", "exposure", "curve", "shoulder", "mode", "white",
+KEPT_BY_PRESETS = ("lamps", "ambient", "surroundings", "surroundings_light", "surroundings_turn",
+                   "shadow_size", "exposure", "curve", "shoulder", "mode", "white",
                    "target_error")
 
 # Tints are chosen by eye, for a mesh of skin's albedo; profiles are those of the library.

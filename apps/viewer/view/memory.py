@@ -11,6 +11,7 @@ from typing import Any
 from .._errors import PellucidError
 from .camera import Orbit
 from .look import Look
+from .surroundings import STUDIO
 
 
 def standard_file() -> Path:
@@ -74,5 +75,8 @@ def recall(memory: Memory, session: Any) -> str:
         session.load(last["mesh"], last.get("subdivide"), last.get("up", "auto"))
     except (KeyError, TypeError, ValueError, OSError, PellucidError):
         return ""
+    for name in ("iris_texture", "surroundings"):  # files that a page was given went with that run
+        if getattr(look, name) not in ("", STUDIO) and not Path(getattr(look, name)).is_file():
+            setattr(look, name, "")
     session.look, session.orbit = look, orbit
     return str(last["mesh"])

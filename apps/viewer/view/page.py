@@ -26,7 +26,8 @@ HERE = Path(__file__).parent
 MESHES = ".obj", ".ply", ".stl", ".off", ".glb"
 VIEWS = {"1": (0.0, 0.0), "3": (90.0, 0.0), "7": (0.0, 89.0)}  # azimuth and elevation
 KEYS = (("drag", "turn"), ("shift and drag", "move"), ("wheel", "nearer, further"),
-        ("ctrl and drag", "move the key light"), ("alt and drag", "move the line between two settings"),
+        ("ctrl and drag", "move the key light"), ("ctrl, shift and drag", "turn the surroundings"),
+        ("alt and drag", "move the line between two settings"),
         ("double click", "turn about this point"), ("F", "frame the object"),
         ("1, 3, 7", "from the front, its left, above; with ctrl from the other side"),
         ("ctrl-Z, ctrl-Y", "undo, redo"), ("arrow keys", "step the slider that was clicked last"),

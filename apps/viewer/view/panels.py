@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 import numpy as np
@@ -10,8 +11,9 @@ from nicegui import events, ui
 from .._types import MaterialValues
 from ..profile import Profile
 from ..skin import skin_info
-from .look import KEPT_BY_PRESETS, METHODS, MODES, PIGMENTS, PRESETS, Look
+from .look import ARRANGEMENTS, KEPT_BY_PRESETS, METHODS, MODES, PIGMENTS, PRESETS, Look
 from .session import iris_image, pigments
+from .surroundings import STUDIO, read
 from .widgets import Panel, fail
 
 if TYPE_CHECKING:
@@ -165,7 +167,16 @@ class LightsPanel(Panel):
     name = "Lights"
 
     def build(self) -> None:
+        ui.select(list(ARRANGEMENTS), label="Arrangement", on_change=lambda e: self.arrange(e.value)).props(
+            "dense options-dense data-pel=arrangement").classes("w-full")
         self.slider("Ambient", self.look, "ambient", 0, 1, 0.01)
+        around = self.look.surroundings
+        names = {"": "None", **({around: Path(around).name} if around else {}), STUDIO: "Studio"}
+        self.select("Surroundings", names, "surroundings")
+        self.slider("Surroundings, light", self.look, "surroundings_light", 0, 4, 0.05)
+        self.slider("Surroundings, turn", self.look, "surroundings_turn", -180, 180, 1)
+        self.upload("Drop an image of the surroundings here (HDR, EXR)", self.surround, "around-upload",
+                    1 << 29)
         self.select("Shadow map, texels", [512, 1024, 2048, 4096], "shadow_size")
         for i, lamp in enumerate(self.look.lamps):
             self.switch(lamp.name, lamp, "on", f"lamp-{i}-on")
@@ -174,6 +185,25 @@ class LightsPanel(Panel):
             self.slider("Elevation", lamp, "elevation", -89, 89, 1, f"lamp-{i}-elevation")
             self.color("Colour", lamp, "color", f"lamp-{i}-color")
             self.switch("Shadow", lamp, "shadow", f"lamp-{i}-shadow")
+
+
+    def arrange(self, name: str) -> None:
+        """Places the lamps; colours and shadows stay."""
+        for lamp, (azimuth, elevation, intensity) in zip(self.look.lamps, ARRANGEMENTS.get(name, ())):
+            lamp.azimuth, lamp.elevation, lamp.intensity, lamp.on = azimuth, elevation, intensity, True
+        self.page.follow()
+        self.viewer.changed()
+
+    async def surround(self, e: events.UploadEventArguments) -> bool:
+        path = self.viewer.keep(e.file.name, await e.file.read())
+        try:
+            await self.viewer.on_thread(lambda: read(path))
+        except Exception as error:  # the surroundings before stay
+            fail(f"{e.file.name}: {error}")
+            return False
+        self.look.surroundings = str(path)
+        self.rebuild()
+        return True
 
 
 class ProfilePanel(Panel):

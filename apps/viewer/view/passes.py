@@ -90,6 +90,12 @@ class Pass:
         self._update("lights", [(light._data.tobytes(), id(map)) for light, map in lights], set_lights)
         ambient = session.ambient(look)
         self._update("ambient", ambient, lambda: self.shader.set_ambient(Ambient(constant=[ambient] * 3)))
+        around = (look.surroundings, look.surroundings_light, look.surroundings_turn, session.mesh.up)
+
+        def set_surroundings() -> None:
+            self.shader.set_environment(*(session.surroundings(look) or (None,)))
+
+        self._update("surroundings", around, set_surroundings)
         eye, _ = session.camera(width / height)
         self._update("camera", eye.tobytes(), lambda: self.shader.set_camera(Camera(position=eye)))
         options = {"target_error": look.target_error, "millimetres_per_unit": session.mm,
@@ -97,8 +103,8 @@ class Pass:
         self._update("options", options, lambda: self.shader.set_options(**options))
         self._scattered_texture(session, g, look, small)
         if not self._set.get("committed"):
-            structure = (outputs, albedo, len(eyes), look.method, look.ggx, len(lights),
-                         [m.specular > 0 for m in materials.values()],
+            structure = (outputs, albedo, len(eyes), bool(look.surroundings), look.method, look.ggx,
+                         len(lights), [m.specular > 0 for m in materials.values()],
                          any(look.deep_scatter), look.transmission > 0)
             if structure != self._structure and not session.background:
                 # Only then may kernels have to be compiled: with progress.

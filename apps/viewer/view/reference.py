@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ..scatter import surface_integral
 from .look import SKIN, Look, skin_triangles
 from .passes import tinted
+from .surroundings import irradiance
 
 if TYPE_CHECKING:
     from .session import Session
@@ -40,6 +41,9 @@ def vertex_irradiance(session: Session, look: Look) -> NDArray[np.float32]:
     mesh = session.mesh
     p, n = mesh.positions.astype(float), mesh.normals.astype(float)
     e = np.full((len(p), 3), look.ambient, np.float32)
+    around = session.surroundings(look)
+    if around is not None:
+        e += irradiance(*around, mesh.normals)
     for light, map in session.lights(look):
         cosine = np.maximum(n @ np.asarray(light.to_light, float), 0).astype(np.float32)
         if map is not None:
@@ -128,7 +132,8 @@ def reference(session: Session, name: str, look: Look, width: int, height: int,
     g = session.gbuffer(width, height, small)
     lights = [(lamp.azimuth, lamp.elevation, lamp.color, lamp.intensity, lamp.shadow, lamp.on)
               for lamp in look.lamps]
-    key = (session.drawn_state(width, height, small), lights, look.ambient, look.profile, look.distance,
+    key = (session.drawn_state(width, height, small), lights, look.ambient, look.surroundings,
+           look.surroundings_light, look.surroundings_turn, look.profile, look.distance,
            look.radius_scale, look.shadow_size)
     made = session.references.get(name)
     if made is None or made.key != key:

@@ -207,6 +207,9 @@ class Viewer:
         elif kind == "zoom":
             orbit.distance = max(0.24 * self.session.renderer.radius,
                                  min(50 * self.session.renderer.radius, orbit.distance * 1.2 ** (5 * dy)))
+        elif kind == "surroundings" and hasattr(self.session.look, "surroundings_turn"):
+            for look in filter(None, (self.session.look, self.session.other)):
+                look.surroundings_turn = (look.surroundings_turn + 120 * dx + 180) % 360 - 180
         elif kind == "light":
             for look in filter(None, (self.session.look, self.session.other)):
                 lamp = look.lamps[0]

@@ -15,6 +15,7 @@ from ..device import Device
 from ..mesh import MeshTopology
 from ..profile import Profile
 from ..skin import skin_info
+from . import surroundings
 from .camera import Orbit, direction
 from .look import CUT, EYES, PIGMENTS, RIGHT_EYE, SKIN, TEETH, TONGUE, Lamp, Look, skin_triangles
 from .paint import SKIN_ALBEDO, Paint, load, painted, read
@@ -137,6 +138,7 @@ class Session:
         # by size: the state they were drawn in
         self._gbuffers: dict[tuple[int, int], tuple[Any, GBuffer]] = {}
         self._irises: dict[str, NDArray[np.float32]] = {}  # by file
+        self._surroundings: dict[str, NDArray[np.float32]] = {}  # by file
         self._textures: dict[bool, Texture] = {}  # by whether something moves
         self._sum: Optional[tuple[int, NDArray[np.float32]]] = None  # of pictures shifted by parts of a pixel
         self.references: dict[str, Reference] = {}  # by pass
@@ -351,6 +353,15 @@ class Session:
         """Irradiance / pi from everywhere; at 0 so little that nobody sees it: a frame without any needs
         other kernels."""
         return max(look.ambient, 1e-6)
+
+    def surroundings(self, look: Look) -> Optional[tuple[NDArray[np.float32], NDArray[np.float32]]]:
+        """Radiance, and its axes in the mesh's coordinates. Raises what files.read_image raises, and
+        ValueError."""
+        if not look.surroundings or look.surroundings_light <= 0:
+            return None
+        image = _kept(self._surroundings, look.surroundings, 2, lambda: surroundings.read(look.surroundings))
+        return (image * np.float32(look.surroundings_light),
+                surroundings.axes(self.mesh.up, self.mesh.front, look.surroundings_turn))
 
     def texture(self, look: Look, small: bool = False) -> Texture:
         """The look's light, scattered in the mesh's texture."""

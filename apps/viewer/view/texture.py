@@ -45,12 +45,14 @@ class Texture:
         lights = session.lights(look, small)
         profile = session.profile(look)
         key = ([(light._data.tobytes(), id(map)) for light, map in lights], session.ambient(look),
-               id(profile), look.radius_scale)
+               id(profile), look.radius_scale, look.surroundings, look.surroundings_light,
+               look.surroundings_turn)
         if key != self._key:
             self._shader.set_lights([light for light, _ in lights])
             for i, (_, map) in enumerate(lights):
                 self._shader.set_light_image(i, "shadow_map", None if map is None else map.depth)
             self._shader.set_ambient(Ambient(constant=[session.ambient(look)] * 3))
+            self._shader.set_environment(*(session.surroundings(look) or (None,)))
             self._irradiance[...] = 0
             self._shader.commit().execute()
             params = TextureScatterParams(scale=look.radius_scale / session.mm)

@@ -147,7 +147,7 @@ class Scene {
         }
         for (io::SceneLut& l : scene.luts) move(l.file), move(l.profile);
         for (io::SceneEye& e : scene.eyes) move(e.irisProfile), move(e.irisTexture), move(e.caustics);
-        move(scene.gbuffer), move(scene.ambientCube), move(scene.reflectionCube);
+        move(scene.gbuffer), move(scene.ambientCube), move(scene.reflectionCube), move(scene.environment);
         io::writeScene(path, scene);
     }
 
@@ -212,12 +212,14 @@ class Scene {
 };
 
 // A scene made by a program: materials with their profile and scattered texture, lights with their shadow
-// map, eyes with the texture and the profile of their iris, by names of files. Complete or not at all.
+// map, eyes with the texture and the profile of their iris, surroundings, by names of files. Complete or not
+// at all.
 void writeScene(const std::string& path, const std::map<std::string, std::vector<std::string>>& channels,
                 const std::vector<std::tuple<uint32_t, std::string, std::string, std::string>>& materials,
                 const std::vector<std::tuple<std::string, std::string>>& lights,
                 const std::vector<std::tuple<uint32_t, std::string, std::string, std::string>>& eyes,
-                const std::string& ambient, const std::string& camera, const std::string& options) {
+                const std::string& ambient, const std::string& camera, const std::string& options,
+                const std::string& environment, const std::vector<float>& axes) {
     io::SceneFile scene;
     for (const io::SlotKey& k : io::slotKeys)
         if (const auto found = channels.find(std::string(k.key)); found != channels.end())
@@ -238,6 +240,8 @@ void writeScene(const std::string& path, const std::map<std::string, std::vector
     scene.ambient = structOf<PelAmbient>(ambient);
     scene.camera = structOf<PelCamera>(camera);
     scene.options = structOf<PelShaderOptions>(options);
+    scene.environment = environment;
+    if (axes.size() == std::size(scene.environmentAxes)) std::ranges::copy(axes, scene.environmentAxes);
     io::writeScene(path, scene);
 }
 

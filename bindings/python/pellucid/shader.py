@@ -215,6 +215,28 @@ class Shader(OfThisProcess):
                    self._handle.set_reflection_cube)
         return self
 
+    def set_environment(self, image: Any, axes: Any = None) -> Shader:
+        """Sets the surroundings as light: ambient light, specular light, and what eyes reflect.
+
+        Parameters
+        ----------
+        image : array, Image or None
+            Radiance: equirectangular, (n, 2 n, 3 or 4), the upper row +y, the middle column +z, +x to the
+            left of it; or six faces as for `set_ambient_cube`. Read at the first execution after the next
+            commit. None removes it.
+        axes : array, (3, 3), optional
+            Rows: the image's x, y and z axis in the world; without it the world's.
+
+        Raises
+        ------
+        PellucidError
+            An image of another shape; axes that are not unit vectors at right angles.
+        """
+        rows = None if axes is None else np.asarray(axes, np.float32).reshape(9).tolist()
+        self._keep("environment", _below(image, "environment"), "environment", False, False,
+                   lambda view: self._handle.set_environment(view, rows))
+        return self
+
     def set_camera(self, camera: Camera) -> Shader:
         """Sets the viewpoint, which specular and depth images need."""
         self._handle.set_camera(Camera._bytes_of(camera))

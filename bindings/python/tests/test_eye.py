@@ -38,3 +38,12 @@ def test_eye_with_an_iris_and_a_reflection(device):
     assert shader.stats().features & pel.Feature.REFLECTION_CUBE and out[48, 48, 2] > 0 == out[48, 48, 0]
     with pytest.raises(ValueError, match="six faces"):
         shader.set_reflection_cube(faces[:5])
+    sky = np.zeros((8, 16, 3), np.float32)
+    sky[4:, :, 0] = 10  # red from below, or, with other axes, from the camera
+    shader.set_reflection_cube(None).set_environment(sky, [[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+    shader.commit().execute()
+    assert out[48, 48, 0] > 0.2 and out[48, 48, 2] == 0
+    shader.set_environment(None).commit().execute()
+    assert not out[48, 48].any()
+    with pytest.raises(pel.PellucidError, match="right angles"):
+        shader.set_environment(sky, np.ones((3, 3)))

@@ -1146,7 +1146,8 @@ typedef enum PelFeature {
     PEL_FEATURE_SHADOW_EXPONENTIAL = 1 << 26, /* PEL_SHADOW_CONTENT_EXPONENTIAL, for the same */
     PEL_FEATURE_SHADOW_MOMENTS = 1 << 27,     /* PEL_SHADOW_CONTENT_MOMENTS, for the same */
     PEL_FEATURE_EYE = 1 << 28,                /* a material is an eye (pelShaderSetEye) */
-    PEL_FEATURE_REFLECTION_CUBE = 1 << 29     /* an eye, and a cube map that it reflects */
+    PEL_FEATURE_REFLECTION_CUBE = 1 << 29,    /* an eye, and a cube map that it reflects */
+    PEL_FEATURE_ENVIRONMENT = 1 << 30         /* specular light of the surroundings */
 } PelFeature;
 
 /* What a shader did: counts of its last execution unless they say total. */
@@ -1329,6 +1330,16 @@ PEL_API PelError pelShaderSetIrisTexture(PelShader shader, uint32_t id, const Pe
  * film of tears should show them. Bilinear; negative values count as 0. Read at each execution. NULL removes
  * it. Other materials do not read it. */
 PEL_API PelError pelShaderSetReflectionCube(PelShader shader, const PelImageDesc* faces);
+/* The surroundings as light: radiance, in an equirectangular image (2n x n pixels, the upper edge +y, the
+ * middle column +z, +x to the left of it, as in OpenEXR) or in six faces as in pelShaderSetAmbientCube; a
+ * colour format. Gives ambient light, beside PelAmbient; specular light to materials with `specular`, for
+ * which positions or depth are needed; and reflections to eyes. An ambient cube or a reflection cube that is
+ * set takes its part. `axes`: three rows of three, the image's x, y and z axis in the world; NULL: the
+ * world's. It is reduced to 64 x 64 texels a face at the first execution after the commit that follows this
+ * call. Negative values, NaN and Inf count as 0. NULL for `image` removes it. Errors:
+ * PEL_ERROR_INVALID_ARGUMENT for another shape, or axes that are not unit vectors at right angles. Sources:
+ * Karis, SIGGRAPH courses 2013; docs/mathematics.md, section 6. */
+PEL_API PelError pelShaderSetEnvironment(PelShader shader, const PelImageDesc* image, const float* axes);
 /* Replaces all lights, 0 to 64 of them; images of lights beyond the count are cleared. */
 PEL_API PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t count);
 PEL_API PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot slot,

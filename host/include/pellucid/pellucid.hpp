@@ -532,6 +532,11 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
     Shader& setReflectionCube(const ImageRef& faces) {
         return done(pelShaderSetReflectionCube(h_, faces.get()));
     }
+    // `axes`: 9 numbers, or nullptr.
+    Shader& setEnvironment(const ImageRef& image, const float* axes = nullptr) {
+        return done(pelShaderSetEnvironment(h_, image.get(), axes));
+    }
+    Shader& clearEnvironment() { return done(pelShaderSetEnvironment(h_, nullptr, nullptr)); }
     Shader& clearReflectionCube() { return done(pelShaderSetReflectionCube(h_, nullptr)); }
     Shader& set(const std::vector<PelLight>& lights) {
         return done(pelShaderSetLights(h_, lights.data(), uint32_t(lights.size())));

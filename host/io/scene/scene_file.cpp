@@ -199,6 +199,7 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
         for (SceneCascade& c : l.cascades) besideScene(c.file);
     }
     besideScene(scene.gbuffer), besideScene(scene.reflectionCube), besideScene(scene.ambientCube);
+    besideScene(scene.environment);
     for (std::string& output : scene.outputs) besideScene(output);
     return scene;
 }

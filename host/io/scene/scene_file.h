@@ -76,6 +76,8 @@ struct SceneFile {
     // Scenes set the fields in optionKeys() of scene_keys.h
     PelShaderOptions options = pelShaderOptionsDefaults();
     std::string reflectionCube;  // image of the surroundings that eyes reflect, as ambientCube; "": none
+    std::string environment;     // image of pelShaderSetEnvironment; "": none
+    float environmentAxes[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     // Image of an irradiance cube map, six faces below or beside one another; "": none
     std::string ambientCube;
     // EXR files to write per output slot beside radiance; "": none

@@ -135,6 +135,8 @@ void optionKeys(Visitor& v, Scene& scene) {
     auto& s = scene.options;
     PEL_EACH_OPTION_FIELD(PELLUCID_FIELD_KEY)
     v.text("reflection_cube", scene.reflectionCube);
+    v.text("environment", scene.environment);
+    v.numbers("environment_axes", scene.environmentAxes, 9, range::any);
 }
 
 template <class Visitor, class Eye>

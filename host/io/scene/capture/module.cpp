@@ -31,6 +31,9 @@ class Writer {
         scene_.camera = frame_.camera;
         scene_.ambientCube = colors("ambient_cube", frame_.ambientCube);
         scene_.reflectionCube = colors("reflection_cube", frame_.reflectionCube);
+        scene_.environment = colors("environment", frame_.environment);
+        if (frame_.environment)
+            std::copy(frame_.environmentAxes.begin(), frame_.environmentAxes.end(), scene_.environmentAxes);
         for (size_t i = 0; i < frame_.profiles.size(); ++i)
             writeWholeFile(folder_ + profile(int(i)), profileText(frame_.profiles[i]));
         for (const SlotKey& k : slotKeys) scene_.channels[k.slot] = add(k.key, frame_.images[k.slot]);

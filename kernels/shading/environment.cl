@@ -1,0 +1,207 @@
+// The surroundings of a frame, from the host's image to what shading reads (shared/environment.h; section 6
+// of the mathematics, "environment").
+//
+// environment_texels: the image, equirectangular or six faces, averaged over each texel of a cube.
+// environment_halve: one mip of it from the finer one. environment_level: nodes of one level, or of
+// irradiance, by samples of the lobe that read the mip whose texels are as large as a sample's share of the
+// sphere [Krivanek, Colbert, Real-time Shading with Filtered Importance Sampling, EGSR 2008].
+//
+// One work-item: one texel or node, PEL_WIDTH 1. Variants: PEL_FORMAT_ENVIRONMENT, PEL_GROUP.
+#include "lib/image/cube_map.clh"
+#include "shared/environment.h"
+
+#define PEL_LARGEST_FOOTPRINT 32  // samples along a side of a texel
+
+// The host's image: `width` x `height` texels, or faces of `width` texels along an edge, `step` bytes apart.
+typedef struct Surroundings {
+    __global const uchar* first;
+    ulong step, row, plane;
+    uint pixel, width, height;
+} Surroundings;
+
+// The texel that a direction in the image's space meets.
+static inline float3 surroundingsAlong(const Surroundings* s, float3 d) {
+    uint x, y, face = 0;
+    if (s->step) {
+        const CubePoint p = cubePoint(vec3(d.x, d.y, d.z));
+        face = (uint)p.face;
+        x = (uint)clamp((p.u * 0.5f + 0.5f) * (float)s->width, 0.0f, (float)(s->width - 1));
+        y = (uint)clamp((p.v * 0.5f + 0.5f) * (float)s->width, 0.0f, (float)(s->width - 1));
+    } else {
+        // +y is the upper edge and +z the middle of the row, as in OpenEXR's latitude-longitude maps.
+        const float u = 0.5f - 0.5f * M_1_PI_F * atan2(d.x, d.z);
+        const float v = M_1_PI_F * acos(clamp(d.y * rsqrt(dot(d, d)), -1.0f, 1.0f));
+        x = (uint)clamp(u * (float)s->width, 0.0f, (float)(s->width - 1));
+        y = (uint)clamp(v * (float)s->height, 0.0f, (float)(s->height - 1));
+    }
+    __global const uchar* p = s->first + face * s->step + (ulong)y * s->row + (ulong)x * s->pixel;
+    const float3 value = (float3)(pixelComponent(PEL_FORMAT_ENVIRONMENT, p, s->plane, 0),
+                                  pixelComponent(PEL_FORMAT_ENVIRONMENT, p, s->plane, 1),
+                                  pixelComponent(PEL_FORMAT_ENVIRONMENT, p, s->plane, 2));
+    return select((float3)(0.0f), min(value, PEL_ENVIRONMENT_LARGEST), (value > 0.0f) & isfinite(value));
+}
+
+// Texels before a mip, in all finer ones.
+static inline uint mipStart(uint mip) {
+    uint start = 0;
+    for (uint m = 0; m < mip; ++m) start += 6 * (PEL_ENVIRONMENT_SIZE >> m) * (PEL_ENVIRONMENT_SIZE >> m);
+    return start;
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment_texels(
+    __global const uchar* restrict image, ulong offset, ulong step, ulong row, ulong plane, uint pixel,
+    uint width, uint height, float4 axisX, float4 axisY, float4 axisZ, __global float4* restrict texels) {
+    const uint size = PEL_ENVIRONMENT_SIZE, x = get_global_id(0), line = get_global_id(1);
+    if (x >= size || line >= 6 * size) return;
+    const Surroundings s = {image + offset, step, row, plane, pixel, width, height};
+    const uint across = step ? width : width / 4;  // texels of the image along an edge of the cube, about
+    const uint samples = clamp((across + size - 1) / size, 1u, (uint)PEL_LARGEST_FOOTPRINT);
+    float3 sum = (float3)(0.0f);
+    for (uint i = 0; i < samples * samples; ++i) {
+        const float perSide = 2.0f / (float)(size * samples);
+        const float u = ((float)(x * samples + i % samples) + 0.5f) * perSide - 1.0f;
+        const float v = ((float)(line % size * samples + i / samples) + 0.5f) * perSide - 1.0f;
+        const Vec3w way = cubeVector((int)(line / size), u, v, 1.0f);
+        const float3 d = (float3)(way.x, way.y, way.z);
+        sum += surroundingsAlong(&s, (float3)(dot(axisX.xyz, d), dot(axisY.xyz, d), dot(axisZ.xyz, d)));
+    }
+    texels[line * size + x] = (float4)(sum / (float)(samples * samples), 0.0f);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment_halve(
+    uint mip, __global float4* restrict texels) {
+    const uint size = PEL_ENVIRONMENT_SIZE >> mip, x = get_global_id(0), line = get_global_id(1);
+    if (x >= size || line >= 6 * size) return;
+    __global const float4* from = texels + mipStart(mip - 1) + 4 * line * size + 2 * x;
+    texels[mipStart(mip) + line * size + x] =
+        0.25f * (from[0] + from[1] + from[2 * size] + from[2 * size + 1]);
+}
+
+// Bilinear in one face of a mip.
+static inline float4 mipAlong(__global const float4* texels, uint mip, float3 d) {
+    const uint size = PEL_ENVIRONMENT_SIZE >> mip;
+    const CubePoint p = cubePoint(vec3(d.x, d.y, d.z));
+    const float x = clamp(fma(p.u, 0.5f * (float)size, 0.5f * (float)size - 0.5f), 0.0f, (float)(size - 1));
+    const float y = clamp(fma(p.v, 0.5f * (float)size, 0.5f * (float)size - 0.5f), 0.0f, (float)(size - 1));
+    const uint i = (uint)x, j = (uint)y, i1 = min(i + 1, size - 1), j1 = min(j + 1, size - 1);
+    __global const float4* face = texels + mipStart(mip) + (uint)p.face * size * size;
+    const float4 upper = mix(face[j * size + i], face[j * size + i1], x - (float)i);
+    const float4 lower = mix(face[j1 * size + i], face[j1 * size + i1], x - (float)i);
+    return mix(upper, lower, y - (float)j);
+}
+
+static inline float4 texelsAlong(__global const float4* texels, float mip, float3 d) {
+    const float at = clamp(mip, 0.0f, (float)(PEL_ENVIRONMENT_MIPS - 1));
+    const uint finer = min((uint)at, (uint)(PEL_ENVIRONMENT_MIPS - 2));
+    return mix(mipAlong(texels, finer, d), mipAlong(texels, finer + 1, d), at - (float)finer);
+}
+
+// The second coordinate of Hammersley's points, which are evenly spread: the digits of k in base 2, reversed.
+static inline float radicalInverse(uint k) {
+    k = (k & 0x55555555u) << 1 | (k >> 1 & 0x55555555u);
+    k = (k & 0x33333333u) << 2 | (k >> 2 & 0x33333333u);
+    k = (k & 0x0f0f0f0fu) << 4 | (k >> 4 & 0x0f0f0f0fu);
+    k = (k & 0x00ff00ffu) << 8 | (k >> 8 & 0x00ff00ffu);
+    return (float)(k << 16 | k >> 16) * 0x1p-32f;
+}
+
+// `first`: floats of the levels before.
+// Of the node of a work-item: its direction, and where it is stored.
+static inline bool nodeOf(uint size, Vec3w* n, size_t* at) {
+    const uint i = get_global_id(0), across = size + 2, face = get_global_id(1) / across,
+               j = get_global_id(1) % across;
+    if (i >= across || face >= 6) return false;
+    const float u = i == 0 ? -1.0f : i > size ? 1.0f : ((float)(2 * i) - 1.0f) / (float)size - 1.0f;
+    const float v = j == 0 ? -1.0f : j > size ? 1.0f : ((float)(2 * j) - 1.0f) / (float)size - 1.0f;
+    *n = normalize3(cubeVector((int)face, u, v, 1.0f));
+    *at = (face * across + j) * across + i;
+    return true;
+}
+
+static inline void storeNode(__global float* nodes, size_t at, uint size, float4 value) {
+    const size_t plane = (size_t)6 * (size + 2) * (size + 2);
+    nodes[at] = value.x;
+    nodes[at + plane] = value.y;
+    nodes[at + 2 * plane] = value.z;
+}
+
+// Irradiance / pi: the sum over the texels of a mip.
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment_irradiance(
+    __global const float4* restrict texels, uint size, uint mip, __global float* restrict nodes) {
+    Vec3w n;
+    size_t at;
+    if (!nodeOf(size, &n, &at)) return;
+    const uint edge = PEL_ENVIRONMENT_SIZE >> mip;
+    float4 sum = (float4)(0.0f);
+    float whole = 0.0f;
+    for (uint k = 0; k < 6 * edge * edge; ++k) {
+        const float u = ((float)(2 * (k % edge)) + 1.0f) / (float)edge - 1.0f;
+        const float v = ((float)(2 * (k / edge % edge)) + 1.0f) / (float)edge - 1.0f;
+        const Vec3w d = cubeVector((int)(k / (edge * edge)), u, v, 1.0f);
+        const float r2 = fma(u, u, fma(v, v, 1.0f));
+        const float weight = max(dot3(n, d), 0.0f) / (r2 * r2);  // cosine times solid angle
+        sum += weight * texels[mipStart(mip) + k];
+        whole += weight;
+    }
+    storeNode(nodes, at, size, sum / whole);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment_level(
+    __global const float4* restrict texels, uint size, float roughness, uint samples, uint first,
+    __global float* restrict nodes) {
+    Vec3w n;
+    size_t at;
+    if (!nodeOf(size, &n, &at)) return;
+    Vec3w right, down;
+    cubeTangents(n, &right, &down);
+    const float a2 = roughness * roughness;
+    float4 sum = (float4)(0.0f);
+    float weights = 0.0f;
+    for (uint k = 0; k < samples; ++k) {
+        const float along = ((float)k + 0.5f) / (float)samples, turn = radicalInverse(k);
+        // The view is along the normal, so the half vector's angle is half the direction's.
+        const float half2 = (1.0f - along) / fma(a2 - 1.0f, along, 1.0f), cosine = 2.0f * half2 - 1.0f;
+        const float spread = fma(half2, a2 - 1.0f, 1.0f);
+        if (!(cosine > 0.0f)) continue;
+        const float sine = sqrt(max(fma(-cosine, cosine, 1.0f), 0.0f));
+        const float x = sine * cospi(2.0f * turn), y = sine * sinpi(2.0f * turn);
+        const float3 d = (float3)(fma(right.x, x, fma(down.x, y, n.x * cosine)),
+                                  fma(right.y, x, fma(down.y, y, n.y * cosine)),
+                                  fma(right.z, x, fma(down.z, y, n.z * cosine)));
+        // Solid angles: of a sample, and of a texel of the finest mip on average.
+        const float share = 4.0f * M_PI_F * spread * spread / ((float)samples * a2);
+        const float texel = 4.0f * M_PI_F / (6.0f * PEL_ENVIRONMENT_SIZE * PEL_ENVIRONMENT_SIZE);
+        const float mip = samples > 1 ? 0.5f * log2(share / texel) : 0.0f;
+        sum += cosine * texelsAlong(texels, mip, d);
+        weights += cosine;
+    }
+    storeNode(nodes + first, at, size, sum / max(weights, 1e-30f));
+}
+
+// The shares of both models (shared/environment.h), by half vectors that are spread as the distribution is.
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment_shares(
+    uint samples, uint first, __global float* restrict nodes) {
+    const uint i = get_global_id(0), j = get_global_id(1) % PEL_SHARE_NODES,
+               ggx = get_global_id(1) / PEL_SHARE_NODES;
+    if (i >= PEL_SHARE_NODES || ggx > 1) return;
+    const float nv = max((float)i / (float)(PEL_SHARE_NODES - 1), 0.02f), across = sqrt(1.0f - nv * nv);
+    const float root = (float)j / (float)(PEL_SHARE_NODES - 1), a = max(root * root, 1e-3f), a2 = a * a;
+    float ofF0 = 0.0f, rest = 0.0f;
+    for (uint k = 0; k < samples; ++k) {
+        const float along = ((float)k + 0.5f) / (float)samples, turn = radicalInverse(k);
+        // The squared tangent of the half vector: of GGX, and of Beckmann's distribution.
+        const float tangent2 = ggx ? a2 * along / (1.0f - along) : -a2 * log(1.0f - along);
+        const float nh = rsqrt(1.0f + tangent2), sine = sqrt(max(1.0f - nh * nh, 0.0f));
+        const float vh = fma(nh, nv, sine * across * cospi(2.0f * turn));
+        const float nl = fma(2.0f * vh, nh, -nv);
+        if (!(nl > 0.0f && vh > 0.0f)) continue;
+        const float masking = nl * sqrt(fma(nv * nv, 1.0f - a2, a2)) + nv * sqrt(fma(nl * nl, 1.0f - a2, a2));
+        const float weight = ggx ? 2.0f * nl * vh / (masking * nh) : nl / (vh * nh);
+        const float base = 1.0f - vh, base5 = base * base * base * base * base;
+        ofF0 = fma(weight, 1.0f - base5, ofF0);
+        rest = fma(weight, base5, rest);
+    }
+    const uint at = first + ggx * PEL_SHARE_FLOATS + j * PEL_SHARE_NODES + i;
+    nodes[at] = ofF0 / (float)samples;
+    nodes[at + PEL_SHARE_NODES * PEL_SHARE_NODES] = rest / (float)samples;
+}

@@ -1,0 +1,272 @@
+// Light of the surroundings: ambient, specular and in eyes, against integrals over the sphere in doubles.
+#include <functional>
+
+#include "cl/cl_spy.h"
+#include "reference/shade.h"
+#include "shader_ready.h"
+#include "test.h"
+
+using namespace shade_test;
+using reference::Rgb;
+using reference::Vec3;
+
+namespace {
+
+using Sky = std::function<Rgb(Vec3)>;
+constexpr double pi = reference::pi;
+
+Vec3 unit(Vec3 v) {
+    return v / std::sqrt(dot(v, v));
+}
+
+// Equirectangular, the upper edge +y, the middle column +z, +x left of it.
+std::vector<float> picture(const Sky& sky, uint32_t height) {
+    std::vector<float> values;
+    for (uint32_t y = 0; y < height; ++y)
+        for (uint32_t x = 0; x < 2 * height; ++x) {
+            const double down = pi * (y + 0.5) / height, turn = pi * (1 - (x + 0.5) / height);
+            const Rgb c =
+                sky({std::sin(down) * std::sin(turn), std::cos(down), std::sin(down) * std::cos(turn)});
+            for (int k = 0; k < 3; ++k) values.push_back(float(c[k]));
+        }
+    return values;
+}
+
+// The integral of sky times `weight` over all directions.
+Rgb integral(const Sky& sky, const std::function<double(Vec3)>& weight) {
+    constexpr int rows = 400, columns = 800;
+    Rgb sum;
+    for (int i = 0; i < rows; ++i)
+        for (int k = 0; k < columns; ++k) {
+            const double z = 1 - 2 * (i + 0.5) / rows, across = std::sqrt(1 - z * z),
+                         turn = 2 * pi * (k + 0.5) / columns;
+            const Vec3 d{across * std::cos(turn), z, across * std::sin(turn)};
+            if (const double w = weight(d); w > 0) sum = sum + w * sky(d);
+        }
+    return (4 * pi / (rows * columns)) * sum;
+}
+
+// Normals all round, each seen at another angle by a camera at the origin of the positions' coordinates.
+struct Pixels {
+    std::vector<Vec3> normals, views;
+    std::vector<float> n, p;
+    explicit Pixels(int count) {
+        for (int i = 0; i < count; ++i) {
+            const double z = 1 - 2 * (i + 0.5) / count, turn = 2.4 * i, across = std::sqrt(1 - z * z);
+            normals.push_back({across * std::cos(turn), z, across * std::sin(turn)});
+            const Vec3 side =
+                unit(cross(normals[size_t(i)], std::abs(z) < 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0}));
+            const double cosine = 0.25 + 0.75 * (i * 7 % count) / count;
+            views.push_back(cosine * normals[size_t(i)] + std::sqrt(1 - cosine * cosine) * side);
+            for (int c = 0; c < 3; ++c) {
+                n.push_back(float(normals[size_t(i)][c]));
+                p.push_back(float(-10 * views[size_t(i)][c]));
+            }
+        }
+    }
+};
+
+class Environment : public testing::Test {
+  protected:
+    static constexpr uint32_t count = 48;
+    Pixels pixels_{count};
+    Shader shader_{device()};
+    Buffer target_{device(), count * 12}, specular_{device(), count * 12};
+
+    PelMaterial material_ = [] {
+        PelMaterial m = pelMaterialDefaults();
+        for (float& a : m.albedo) a = 0.5f;
+        m.scattering = PEL_SCATTERING_NONE;
+        m.specular = 1;
+        m.specularModel = PEL_SPECULAR_GGX;
+        m.lobeMix = 0;
+        return m;
+    }();
+
+    void SetUp() override {
+        shader_.set(PEL_SLOT_RADIANCE, imageDesc(target_, PEL_FORMAT_RGB32F, count, 1))
+            .set(PEL_SLOT_OUT_SPECULAR, imageDesc(specular_, PEL_FORMAT_RGB32F, count, 1))
+            .set(PEL_SLOT_NORMAL_SHADING, imageDesc(Buffer(device(), pixels_.n), PEL_FORMAT_RGB32F, count, 1))
+            .set(PEL_SLOT_POSITION, imageDesc(Buffer(device(), pixels_.p), PEL_FORMAT_RGB32F, count, 1))
+            .setMaterial(1, material_);
+    }
+    void surround(const Sky& sky, const float* axes = nullptr, uint32_t height = 128) {
+        shader_.setEnvironment(
+            imageDesc(Buffer(device(), picture(sky, height)), PEL_FORMAT_RGB32F, 2 * height, height), axes);
+    }
+    Rgb at(const Buffer& buffer, size_t i) const {
+        const auto v = buffer.readAll<float>();
+        return {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
+    }
+    Rgb diffuse(size_t i) const { return at(target_, i) - at(specular_, i); }
+};
+
+// Bright above, a warm side, a soft lamp.
+Rgb studio(Vec3 d) {
+    const double lamp = std::exp(8 * (dot(d, unit({1, 1, 1})) - 1));
+    return Rgb{0.3, 0.35, 0.4} + (0.25 * d.y) * Rgb{1, 1, 1} + lamp * Rgb{3, 2.5, 2};
+}
+
+TEST_F(Environment, AmbientLightIsTheIntegralOverTheHemisphere) {
+    surround(studio);
+    shader_.commit().execute();
+    EXPECT_TRUE(shader_.stats().features & PEL_FEATURE_ENVIRONMENT);
+    for (size_t i = 0; i < count; i += 5) {
+        const Vec3 n = pixels_.normals[i];
+        const Rgb expected = integral(studio, [&](Vec3 d) { return std::max(dot(n, d), 0.0) / pi; });
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(diffuse(i)[c], 0.5 * expected[c], tolerance::environmentAmbient) << i;
+    }
+}
+
+TEST_F(Environment, SpecularLightIsTheIntegralOverTheLobe) {
+    for (const PelSpecularModel model : {PEL_SPECULAR_GGX, PEL_SPECULAR_KSK})
+        for (const float roughness : {0.1f, 0.3f, 0.6f}) {
+            material_.specularModel = model, material_.roughness = roughness, material_.f0 = 0.5f;
+            shader_.setMaterial(1, material_);
+            surround(studio);
+            shader_.commit().execute();
+            double squares = 0, whole = 0;
+            for (size_t i = 0; i < count; i += 3) {
+                const Vec3 n = pixels_.normals[i], v = pixels_.views[i];
+                const Rgb expected = integral(studio, [&](Vec3 d) {
+                    return (model == PEL_SPECULAR_GGX
+                                ? reference::specularGgx(n, d, v, roughness, roughness, 0, 1, 0.5)
+                                : reference::specular(n, d, v, roughness, 1, 0.5)) /
+                           pi;
+                });
+                for (int c = 0; c < 3; ++c) {
+                    squares += std::pow(at(specular_, i)[c] - expected[c], 2);
+                    whole += expected[c] * expected[c];
+                }
+            }
+            EXPECT_LT(std::sqrt(squares / whole), tolerance::environmentSpecular)
+                << model << ' ' << roughness;
+        }
+}
+
+TEST_F(Environment, EvenLightIsReflectedEvenly) {
+    surround([](Vec3) { return Rgb{1, 1, 1}; });
+    shader_.commit().execute();
+    for (size_t i = 0; i < count; i += 5) {
+        const Vec3 n = pixels_.normals[i], v = pixels_.views[i];
+        const double share = integral(
+                                 [](Vec3) {
+                                     return Rgb{1, 1, 1};
+                                 },
+                                 [&](Vec3 d) { return reference::specularGgx(n, d, v, 0.3, 0.3, 0, 1) / pi; })
+                                 .x;
+        EXPECT_NEAR(diffuse(i).x, 0.5, 1e-4);
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(at(specular_, i)[c], share, tolerance::environmentShare) << i;
+    }
+}
+
+TEST_F(Environment, AxesTurnTheImage) {
+    surround(studio);
+    shader_.commit().execute();
+    const auto plain = target_.readAll<float>();
+    // The image's x axis is the world's y, its y the world's z, its z the world's x.
+    const float axes[9] = {0, 1, 0, 0, 0, 1, 1, 0, 0};
+    surround([](Vec3 d) { return studio({d.z, d.x, d.y}); }, axes);
+    shader_.commit().execute();
+    const auto turned = target_.readAll<float>();
+    for (size_t i = 0; i < plain.size(); ++i) EXPECT_NEAR(plain[i], turned[i], 0.01) << i;
+}
+
+TEST_F(Environment, SixFacesAreTheSameLight) {
+    surround(studio);
+    shader_.commit().execute();
+    const auto round = target_.readAll<float>();
+    constexpr int n = 64;
+    std::vector<float> faces(size_t(3) * 6 * n * n), beside(faces.size());
+    for (int face = 0; face < 6; ++face)
+        for (int y = 0; y < n; ++y)
+            for (int x = 0; x < n; ++x) {
+                const double u = (2 * x + 1.0) / n - 1, v = (2 * y + 1.0) / n - 1;
+                const Vec3 ways[] = {{1, -v, -u}, {-1, -v, u}, {u, 1, v},
+                                     {u, -1, -v}, {u, -v, 1},  {-u, -v, -1}};
+                const Rgb c = studio(unit(ways[face]));
+                for (int k = 0; k < 3; ++k) {
+                    faces[size_t(3 * ((face * n + y) * n + x) + k)] = float(c[k]);
+                    beside[size_t(3 * ((y * 6 + face) * n + x) + k)] = float(c[k]);
+                }
+            }
+    const auto seen = [&](const std::vector<float>& values, uint32_t width, uint32_t height) {
+        shader_.setEnvironment(imageDesc(Buffer(device(), values), PEL_FORMAT_RGB32F, width, height))
+            .commit()
+            .execute();
+        return target_.readAll<float>();
+    };
+    const auto below = seen(faces, n, 6 * n);
+    for (size_t i = 0; i < round.size(); ++i) EXPECT_NEAR(below[i], round[i], 0.01) << i;
+    EXPECT_EQ(below, seen(beside, 6 * n, n));
+}
+
+TEST_F(Environment, ItIsReducedOnceAndTakenAwayAgain) {
+    shader_.set(pellucid::directionalLight({0, 1, 0}, {1, 1, 1})).commit().execute();
+    const auto without = target_.readAll<float>();
+    surround(studio);
+    shader_.commit().execute();
+    const auto with = target_.readAll<float>();
+    const uint64_t before = spy::launchesOf("environment_level");
+    shader_.set(pellucid::directionalLight({0, 1, 0}, {1, 1, 1})).commit().execute();
+    shader_.execute();
+    EXPECT_EQ(spy::launchesOf("environment_level"), before);
+    EXPECT_EQ(target_.readAll<float>(), with);
+    shader_.clearEnvironment().commit().execute();
+    EXPECT_EQ(target_.readAll<float>(), without);
+    EXPECT_FALSE(shader_.stats().features & (PEL_FEATURE_ENVIRONMENT | PEL_FEATURE_AMBIENT_CUBE));
+}
+
+TEST_F(Environment, OcclusionAndRoughnessImagesCount) {
+    surround(studio);
+    std::vector<float> open(count), rough(count);
+    for (size_t i = 0; i < count; ++i) open[i] = i % 2 ? 1.0f : 0.0f, rough[i] = i % 3 ? 1.0f : 2.0f;
+    shader_.commit().execute();
+    const auto plain = specular_.readAll<float>();
+    shader_.set(PEL_SLOT_AMBIENT_OCCLUSION, imageDesc(Buffer(device(), open), PEL_FORMAT_R32F, count, 1))
+        .set(PEL_SLOT_ROUGHNESS, imageDesc(Buffer(device(), rough), PEL_FORMAT_R32F, count, 1))
+        .commit()
+        .execute();
+    const auto changed = specular_.readAll<float>();
+    for (size_t i = 0; i < count; ++i) {
+        if (!(i % 2))
+            EXPECT_LT(changed[3 * i], 0.6f * plain[3 * i]) << i;
+        else if (i % 3)
+            EXPECT_NEAR(changed[3 * i], plain[3 * i], 1e-5) << i;
+        else
+            EXPECT_NE(changed[3 * i], plain[3 * i]) << i;
+    }
+}
+
+TEST_F(Environment, WhatIsNoLightCountsAsNone) {
+    const auto holes = [](Vec3 d) { return d.x > 0.2 ? Rgb{NAN, -1, INFINITY} : Rgb{0.5, 0.5, 0.5}; };
+    surround(holes);
+    shader_.commit().execute();
+    const auto seen = target_.readAll<float>();
+    surround([&](Vec3 d) { return d.x > 0.2 ? Rgb{0, 0, 0} : Rgb{0.5, 0.5, 0.5}; });
+    shader_.commit().execute();
+    EXPECT_EQ(seen, target_.readAll<float>());
+    surround([](Vec3) { return Rgb{3e38, 1e30, 1e-40}; }, nullptr, 1);
+    shader_.commit().execute();
+    for (const float v : target_.readAll<float>()) EXPECT_TRUE(std::isfinite(v));
+}
+
+TEST_F(Environment, BadInput) {
+    const Buffer b(device(), 4096 * 16);
+    const auto refused = [&](PelFormat format, uint32_t w, uint32_t h, const char* words) {
+        expectRefused(words, [&] { shader_.setEnvironment(imageDesc(b, format, w, h)); });
+    };
+    refused(PEL_FORMAT_RGB32F, 8, 8, "8 x 8; an equirectangular one is 2n x n");
+    refused(PEL_FORMAT_R32F, 8, 4, "three components");
+    const PelImageDesc good = imageDesc(b, PEL_FORMAT_RGB32F, 8, 4);
+    const float none[9] = {}, skew[9] = {1, 0.1f, 0, 0, 1, 0, 0, 0, 1},
+                nan[9] = {NAN, 0, 0, 0, 1, 0, 0, 0, 1};
+    for (const float* axes : {none, skew, nan})
+        expectRefused("unit vectors at right angles", [&] { shader_.setEnvironment(good, axes); });
+    EXPECT_EQ(pelShaderSetEnvironment(nullptr, nullptr, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+    shader_.setEnvironment(good).clear(PEL_SLOT_POSITION);
+    expectRefused("position image", [&] { shader_.commit(); });
+}
+
+}  // namespace
