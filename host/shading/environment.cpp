@@ -10,8 +10,8 @@
 namespace pel {
 namespace {
 
-// Of the lobes. With 64 in place of 256, small lamps show as patterns of dots in rough levels.
-constexpr cl_uint lobeSamples = 256;
+// Of the lobes. With 32, small lamps show as patterns of dots in rough levels.
+constexpr cl_uint lobeSamples = 128;
 constexpr cl_uint shareSamples = 1024;
 constexpr cl_uint irradianceMip = 2;  // 16 x 16 texels a face
 
@@ -23,7 +23,7 @@ class Environment final : public Pass {
         const cl::Memory before = nodes_ ? nodes_->memory() : cl::Memory();
         resize(nodes_, device, (environmentFloatsOfAll() + 2 * PEL_SHARE_FLOATS) * sizeof(float));
         resize(irradiance_, device, environmentFloats(PEL_ENVIRONMENT_LEAST) * sizeof(float));
-        if (nodes_->memory().get() != before.get()) made_ = 0;
+        if (nodes_->memory().get() != before.get()) made_ = 0, hasShares_ = false;
         plan.environmentNodes = nodes_->memory();
         if (!plan.state.reflectionCube) plan.reflectionNodes = nodes_->memory();
         if (!plan.state.ambientCube) plan.ambientNodes = irradiance_->memory();
@@ -71,17 +71,19 @@ class Environment final : public Pass {
                         level ? lobeSamples : cl_uint(1), first, nodes_->memory());
             first += environmentFloats(across);
         }
-        work.launch(program(), "environment_shares", range(PEL_SHARE_NODES, 2 * PEL_SHARE_NODES),
-                    shareSamples, first, nodes_->memory());
+        if (!hasShares_)
+            work.launch(program(), "environment_shares", range(PEL_SHARE_NODES, 2 * PEL_SHARE_NODES),
+                        shareSamples, first, nodes_->memory());
         const cl_uint least = PEL_ENVIRONMENT_LEAST;
         work.launch(program(), "environment_irradiance", nodes(least), texels, least, irradianceMip,
                     irradiance_->memory());
-        if (!work.codeAlone) made_ = state.environmentNumber;
+        if (!work.codeAlone) made_ = state.environmentNumber, hasShares_ = true;
     }
 
   private:
     Ref<Buffer> nodes_, irradiance_;
-    uint64_t made_ = 0;  // ShaderState.environmentNumber that the nodes are of
+    bool hasShares_ = false;  // which are the same for every image
+    uint64_t made_ = 0;       // ShaderState.environmentNumber that the nodes are of
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ from .camera import direction, unit
 
 STUDIO = "studio"
 # Azimuth and elevation of the middle, width and height, all in degrees; radiance.
-_BOXES = ((50, 35, 60, 40, 6.0), (-70, 5, 50, 70, 1.2), (165, 25, 24, 80, 4.0))
+_BOXES = ((50, 35, 60, 40, 4.0), (-70, 5, 50, 70, 0.7), (165, 25, 24, 80, 3.0))
 
 
 def directions(height: int) -> NDArray[np.float64]:
@@ -26,7 +26,7 @@ def directions(height: int) -> NDArray[np.float64]:
 def studio(height: int = 128) -> NDArray[np.float32]:
     """A key, a fill and a rim light with soft edges, a dim room and a floor."""
     d = directions(height)
-    image = np.full(d.shape, 0.06) + 0.05 * np.maximum(d[..., 1:2], 0) + 0.1 * np.maximum(-d[..., 1:2], 0)
+    image = np.full(d.shape, 0.04) + 0.03 * np.maximum(d[..., 1:2], 0) + 0.06 * np.maximum(-d[..., 1:2], 0)
     up, front = (0, 1, 0), (0, 0, 1)
     for azimuth, elevation, width, tall, radiance in _BOXES:
         middle = direction(up, front, azimuth, elevation)
