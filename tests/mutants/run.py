@@ -6,9 +6,9 @@
 Takes N lines (50) of kernels, host, command and Python package by SEED (1), puts one fault into each
 (faults.py), one at a time, builds what changed, and runs the tests that are nearest to the file (nearest.py)
 until one fails or they took S processor seconds (60). Prints killed or survived, the diff of each survivor,
-and the rate. Works in a copy of the tree in build/mutants; results stay there, so that a second run continues.
-A test that hangs has noticed; a fault that does not compile does not count, nor does one whose name stands in
-equivalent.txt.
+and the rate. Works in a copy of the tree in build/mutants; results stay there, so that a second run
+continues. A test that hangs has noticed; a fault that does not compile does not count, nor does one whose
+name stands in equivalent.txt.
 
 --meaning: faults of a larger kind: a dropped clear or early return, a key or condition without one of its
 parts, a neighbour left out. --only: faults in files whose path matches. --again: survivors of earlier runs

@@ -340,8 +340,8 @@ TEST(ShadeProfile, MapsThatDoNotFitTheProfileAreSaid) {
     }
 }
 
-// The thickness is the greatest of eight taps within two texels: over a map of random heights, each tap is the
-// greatest somewhere.
+// The thickness is the greatest of eight taps within two texels: over a map of random heights, each tap is
+// the greatest somewhere.
 TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
     const Profile profile = Profile::burleyDistance(distance);
     Inputs in;
