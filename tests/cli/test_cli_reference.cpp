@@ -269,6 +269,27 @@ TEST_F(CliReference, Compare) {
     }
 }
 
+// The picture's third part shows the largest difference of a pixel, whichever channel has it.
+TEST_F(CliReference, ComparePaintsTheLargestChannel) {
+    constexpr uint32_t size = 30;
+    npy("grey.npy", {size, size, 3}, std::vector<float>(3 * size * size, 0.5f));
+    std::set<std::vector<float>> colors;
+    for (size_t c = 0; c < 3; ++c) {
+        std::vector<float> values(3 * size * size, 0.5f);
+        for (size_t i = 0; i < size * size / 2; ++i) values[3 * i + c] += 0.1f;
+        npy("other.npy", {size, size, 3}, values);
+        done("compare @grey.npy @other.npy --picture @d.png");
+        const Image sheet = pellucid::io::readImage(path("d.png"));
+        std::vector<float> column;
+        for (size_t y = 0; y < size_t(sheet.height); ++y)
+            for (const auto& channel : sheet.channels)
+                column.push_back(channel.pixels[y * size_t(sheet.width) + size_t(sheet.width) * 7 / 10]);
+        EXPECT_GT(std::set(column.begin(), column.end()).size(), 3u);
+        colors.insert(column);
+    }
+    EXPECT_EQ(colors.size(), 1u);
+}
+
 // Walks write both halves to one file; others name the second.
 TEST_F(CliReference, CompareTakesNoiseOutOfTheError) {
     npy("v.npy", {1, 2, 3}, std::vector<float>(6, 0.5f));

@@ -62,7 +62,6 @@ def judge(place, tests, fault, seconds):
                 if kernel and "did not build with" in log.read_text(errors="replace"):
                     return "does not compile", ""
                 return "killed", name if isinstance(status, int) else f"{name}, which {status}"
-            tests.warm(name, spent)
             seconds -= spent
         return "survived", f"the nearest: {', '.join(names)}"
     finally:
