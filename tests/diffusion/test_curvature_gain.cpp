@@ -103,9 +103,9 @@ bool hasData() {
 
 TEST(CurvatureGain, IsThatOfTheSurface) {
     for (const Surface& surface : surfaces)
-        for (double size : {0.05, 0.2, 1.0})
+        for (double size : {0.02, 0.05, 0.2, 1.0})
             for (PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE}) {
-                const uint32_t side = size < 0.1 ? 64 : 20;
+                const uint32_t side = size < 0.03 ? 160 : size < 0.1 ? 64 : 20;
                 const std::vector<float> light = gainsOf(surface, side, size, method, 1).light;
                 const size_t middle = side / 2 * side + side / 2;
                 for (int c = 0; c < 3; ++c)

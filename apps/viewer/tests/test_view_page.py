@@ -264,3 +264,15 @@ def test_a_bad_mesh_is_shown_and_the_old_one_stays(page, tmp_path):
                              if "obj" in e.text], "a message")
     assert "3" in shown[0] or "vertex" in shown[0]
     assert not differ(before, picture(page))
+
+
+def test_a_mesh_of_another_unit_brings_a_question(page, tmp_path):
+    mesh = tmp_path / "metres.obj"
+    mesh.write_text("v 0 0 0\nv .24 0 0\nv 0 .24 0\nv 0 0 .24\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+    picture(page)
+    upload(page, "Drop an OFF", mesh)
+    yes = wait_for(lambda: page.find_elements(By.CSS_SELECTOR, "[data-pel='unit-yes']"), "the question")[0]
+    card = yes.find_element(By.XPATH, "./ancestor::*[contains(@class,'q-card')]")
+    assert "0.24 mm across" in card.text and "lengths in metres?" in card.text
+    yes.click()
+    wait_for(lambda: not page.find_elements(By.CSS_SELECTOR, "[data-pel='unit-yes']"), "the end of it")

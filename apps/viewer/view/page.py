@@ -73,10 +73,11 @@ class MeshPanel(Panel):
         return True
 
     async def load(self, path: Any) -> None:
-        session = self.viewer.session
+        session, client = self.viewer.session, ui.context.client
         if await self.change(lambda: session.load(path)):
-            ui.notify(f"{len(session.mesh.positions)} vertices, {len(session.mesh.triangles)} triangles")
-            self.question()
+            with client:  # the widget that called is gone
+                ui.notify(f"{len(session.mesh.positions)} vertices, {len(session.mesh.triangles)} triangles")
+                self.question()
 
     def question(self) -> None:
         """Where the object is too small or too large for its unit to be right: which one it is."""
