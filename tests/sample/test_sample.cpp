@@ -437,6 +437,16 @@ TEST(LitMesh, SplitsWhereLightIsNotLinear) {
         before = mesh.triangles.size();
         EXPECT_NEAR(sumsOf(mesh).area, sumsOf(lit(1, 0)).area, tolerance::litSphere * radius * radius);
     }
+    // Triangles that meet in a point agree on its light.
+    const sample::LitMesh mesh = lit(0.002, 0.01);
+    std::map<std::array<long, 3>, float> lightAt;
+    for (size_t corner = 0; corner < mesh.triangles.size(); ++corner) {
+        const Vec3 p = cornerOf(mesh, corner);
+        const auto [known, isNew] =
+            lightAt.try_emplace({std::lround(1e4 * p.x), std::lround(1e4 * p.y), std::lround(1e4 * p.z)},
+                                mesh.irradiance[3 * corner]);
+        ASSERT_NEAR(known->second, mesh.irradiance[3 * corner], tolerance::unitRoundTrip);
+    }
     EXPECT_EQ(lit(0, 1000).triangles.size(), scene.mesh().triangles.size()) << "all edges are short enough";
     const double coarsest = 2;
     const Sums split = sumsOf(lit(1, 0, coarsest));
