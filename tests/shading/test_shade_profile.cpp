@@ -378,3 +378,52 @@ TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
         }
     }
 }
+
+// In a cube too: a step of the map makes nothing thin that stands beside its thicker side.
+TEST(ShadeProfile, ThicknessFromACubeIsTheGreatestNearby) {
+    const Profile profile = Profile::burleyDistance(distance);
+    Inputs in;
+    in.thickness = false;
+    Shading shading(materialOf(profile), in);
+    constexpr uint32_t side = 256;
+    constexpr double texel = 2.0 / side, far = 30, thick = 6, thin = 1;  // texel: radians; others: mm
+    const reference::Vec3 axis = normalized(reference::Vec3{0.5, -0.7, 0.4}),
+                          right = normalized(cross(axis, reference::Vec3{0, 0, 1})), up = cross(right, axis);
+    std::vector<float> depth, position, normals;
+    for (uint32_t i = 0; i < 6 * side * side; ++i) {
+        const reference::Vec3 d = reference::cubeDirection(
+            int(i / (side * side)), texel * (i % side + 0.5) - 1, texel * (i / side % side + 0.5) - 1);
+        depth.push_back(float((far - (dot(d, axis) < 0 ? thick : thin)) / far));
+    }
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> even(0, 1);
+    std::vector<double> above;  // radians from the step
+    for (uint32_t i = 0; i < width * height; ++i) {
+        const double angle = (13 * even(random) - 5) * texel, turn = 2 * M_PI * even(random);
+        const reference::Vec3 d =
+            std::sin(angle) * axis + std::cos(angle) * (std::cos(turn) * right + std::sin(turn) * up);
+        above.push_back(angle);
+        for (int k = 0; k < 3; ++k) position.push_back(float(far * d[k])), normals.push_back(float(d[k]));
+    }
+    shading.set(PEL_SLOT_POSITION, position);
+    shading.set(PEL_SLOT_NORMAL_SHADING, normals);
+    shading.set(PEL_SLOT_CURVATURE, std::vector<float>(width * height, 0.0f));  // the table's dark side is 0
+    PelLight light = pelLightDefaults();
+    light.type = PEL_LIGHT_POINT;
+    light.shadowProjection = PEL_SHADOW_CUBE_RADIAL;
+    light.shadowDepthRange = far;
+    std::fill_n(light.color, 3, float(far * far));
+    for (int k = 0; k < 4; ++k) light.worldToShadow[5 * k] = 1;
+    shading.shader.set(std::vector<PelLight>{light});
+    static_cast<scatter_scene::ShownImages&>(shading).setMap(PEL_LIGHT_SHADOW_MAP, depth, side, 6 * side);
+    shading.shader.commit();
+    const auto radiance = shading.execute();
+    for (uint32_t i = 0; i < width * height; ++i) {
+        if (above[i] > -texel && above[i] < 4 * texel) continue;  // one or the other
+        const double s = above[i] < 0 ? thick : thin;
+        for (size_t c = 0; c < 3; ++c) {
+            const double slab = 0.25 * std::exp(-s / distance[c]) + 0.75 * std::exp(-s / (3 * distance[c]));
+            EXPECT_NEAR(radiance[3 * i + c], slab, tolerance::profileLookUp) << above[i] / texel << " texels";
+        }
+    }
+}
