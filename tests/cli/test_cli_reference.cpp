@@ -237,6 +237,9 @@ TEST_F(CliReference, Compare) {
     pellucid::io::writeExr(path("b.exr"), a);
     const std::string compare = "compare @b.exr @a.exr --gbuffer @g.exr --scene @s.toml";
     const auto report = reportOf(compare + " --picture @d.png");
+    EXPECT_EQ(report["a"], path("b.exr"));
+    EXPECT_EQ(report["b"], path("a.exr"));
+    EXPECT_EQ(report["width"], side);
     EXPECT_NEAR(report["all"]["rmse"][1].get<double>(), 0.1, 1e-6);
     EXPECT_EQ(report["all"]["rmse"][0].get<double>(), 0);
     size_t covered = 0;

@@ -311,6 +311,11 @@ TEST(ShadeProfile, AutoKeepsToTheScratchBudget) {
     EXPECT_EQ(shading.shader.material(2).scattering, PEL_SCATTERING_NONE);
     said(4096);
     EXPECT_EQ(shading.shader.material(2).scattering, PEL_SCATTERING_PREINTEGRATED);
+    // A method that was asked for is not replaced, and bands do not suffice for it.
+    material.scattering = PEL_SCATTERING_SCREEN;
+    shading.shader.setMaterial(1, material);
+    expectRefused(
+        {"needs at least"}, [&] { said(needed - 1); }, PEL_ERROR_OUT_OF_MEMORY);
 }
 
 // Texels that are longer than light reaches; and a map that is smaller, which holds no body of that profile:
