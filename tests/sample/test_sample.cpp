@@ -231,6 +231,20 @@ TEST(SampleDetail, PaintedEyesHaveTheSizesOfAnAdults) {
     for (double mm : {6.8, 9.0, 30.0}) EXPECT_NEAR(red(mm), 0.72, 1e-9) << mm;
 }
 
+TEST(SampleDetail, PixelsOfAnEyeHaveItsColours) {
+    sample::Mesh ball = sample::makeSphere(12, 40, 80);
+    ball.materials.assign(ball.triangles.size() / 3, 1);
+    sample::GBufferOptions options;
+    options.looks.resize(1);
+    options.looks[0].kind = sample::Look::Kind::Eye;
+    options.eyes.resize(1);
+    options.eyes[0].gaze = {0, 0, -1};  // away from the camera
+    options.eyes[0].sclera = {0.8f, 0.5f, 0.3f};
+    const sample::GBuffer g =
+        sample::renderGBuffer(sample::Scene(ball.view()), {.eye = {0, 0, 100}}, 21, 21, options);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(g.albedo.at(c, 10, 10), options.eyes[0].sclera[size_t(c)], 1e-6);
+}
+
 // The blurred field against a quadrature of the sharp one over the footprint.
 TEST(SampleWaves, BlurIsAGaussianInTheTangentPlane) {
     const sample::WaveField field(6, 24, 5);
