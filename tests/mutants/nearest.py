@@ -32,7 +32,8 @@ class Tests:
         self.rarity = {word: math.log(len(self.words) / count) for word, count in known.items()}
 
     def measure(self, name):
-        """A test without any fault: whether it passes, its processor seconds, the kernels that it launches."""
+        """A test without any fault: whether it passes, its processor seconds, and the kernels that it
+        launches."""
         if name not in self.measured:
             status, seconds, kernels, trace = "does not build", 0, set(), WORK / "trace"
             if self.place.python() if name in self.scripts else self.place.build(name):
