@@ -391,6 +391,9 @@ TEST(SampleShadowMap, EmptyAndTiny) {
     const sample::Scene scene(sample::makeSphere(radius, 8, 16).view());
     EXPECT_EQ(sample::renderShadowMap(nothing, sample::DirectionalLight{}, 4).depth,
               std::vector<float>(16, 1.0f));
+    const Vec3 seen =
+        sample::renderShadowMap(nothing, sample::DirectionalLight{}, 4, 0).worldToUvz.project({1, 2, 3});
+    EXPECT_TRUE(std::isfinite(seen.x + seen.y + seen.z));
     EXPECT_EQ(sample::renderShadowMap(nothing, sample::SpotLight{}, 4).depth, std::vector<float>(16, 1.0f));
     EXPECT_TRUE(sample::renderShadowMap(scene, sample::DirectionalLight{}, 0).depth.empty());
     EXPECT_LT(sample::renderShadowMap(scene, sample::DirectionalLight{}, 1).depth[0], 0.1f);
