@@ -229,6 +229,15 @@ def test_a_slider_changes_the_picture_and_builds_nothing(page):
     assert page.execute_script("return window.pelKernels") <= kernels + 4
 
 
+def test_pixels_are_counted_on_demand(page):
+    unfold(page, "Statistics")
+    label = page.find_element(By.CSS_SELECTOR, "[data-pel='counts']")
+    wait_for(lambda: "pixels shaded" in label.text, "the panel")
+    assert "pixels eye" not in label.text
+    page.find_element(By.CSS_SELECTOR, "[data-pel='count']").click()
+    wait_for(lambda: re.search(r"pixels eye [1-9]", label.text), "the counts")
+
+
 def test_a_lost_device_is_reported_and_opened_again(page, lost):
     lost.touch()
     click_slider(page, "slider-exposure", 0.3)
