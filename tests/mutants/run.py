@@ -98,7 +98,7 @@ def main():
         parser.add_argument(flag, action="store_true")
     o = parser.parse_args()
     place, every = Workplace(o.as_is), sample(o.seed, o.only, o.meaning)
-    same = {line.split()[0] for line in EQUIVALENT.read_text().splitlines() if line.strip()}
+    same = set(re.findall(r"\b[0-9a-f]{12}\b", EQUIVALENT.read_text()))
     if o.list:
         for fault in every[:o.n]:
             say(f"{fault.name}  {fault.path}:{fault.line}  {fault.kind}")
