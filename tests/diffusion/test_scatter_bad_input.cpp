@@ -244,6 +244,7 @@ TEST(ScatterControls, OfAPelScatterAreChecked) {
     expectRefused("PEL_SCATTERING_SEPARABLE",
                   [&] { setControls(&Controls::scattering, PEL_SCATTERING_LIGHT); });
     expectRefused("scatterTaps is 300", [&] { setControls(&Controls::scatterTaps, 300u); });
+    expectRefused("albedoBefore is 2", [&] { setControls(&Controls::albedoBefore, 2.0f); });
     expectRefused("thinThickness", [&] { setControls(&Controls::thinThickness, notANumber); });
     for (float scale : {-1.0f, infinity, notANumber, 1e20f})
         expectRefused("profile", [&] { scatter.setMaterial(1, Profile::skin(), scale); });
