@@ -3,10 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "cl/cl_spy.h"
 
 int main(int argc, char** argv) {
+#ifdef __GLIBC__
+    mallopt(M_PERTURB, 0x80);  // new memory holds large numbers (3.4e38), so that one that nobody set is seen
+#endif
     testing::InitGoogleTest(&argc, argv);
     spy::counts();  // a program that names nothing of the spy would not load it
     const int failed = RUN_ALL_TESTS();

@@ -22,7 +22,6 @@ MapLengths lengthsOf(const PelLight& l, const ImageView& map) {
         const float* m = l.worldToShadow + 4 * row;
         const double perLength =
             std::hypot(double(m[0]), double(m[1]), double(m[2])) / std::abs(double(l.worldToShadow[15]));
-        if (!(perLength > 0)) continue;
         lengths.span = std::max(lengths.span, 1 / perLength);
         lengths.texel = std::max(lengths.texel, 1 / (perLength * (row ? map.height : map.width)));
     }

@@ -291,5 +291,7 @@ TEST_F(BenchCommand, ComparesOnlyWhatIsComparable) {
     std::filesystem::create_directories(path("new"));
     write("old/bench.json", base.dump());
     write("new/bench.json", other.dump());
-    EXPECT_TRUE(contains(done("bench compare @old @new").out, "E, compared with another device: D"));
+    const std::string text = done("bench compare @old @new").out;
+    EXPECT_TRUE(contains(text, "E, compared with another device: D"));
+    EXPECT_TRUE(contains(text, path("new") + " against " + path("old"))) << text;
 }

@@ -295,6 +295,9 @@ TEST_F(Capture, SaysWhatIsLeftOut) {
     f.options.invalidColor[1] = 1;
     f.lights[0].params.toLight[0] *= 1.0001f;
     f.lights.resize(9, f.lights[0]);
+    f.lights[8].params.type = PEL_LIGHT_SPOT;
+    f.lights[8].params.spotDirection[0] = f.lights[8].params.spotDirection[1] = 0;
+    f.lights[8].params.spotDirection[2] = 1.0001f;
     Shader shader(device());
     setFrame(device(), shader, f, tables());
     const Buffer map(device(), f.lights[0].map.values);
@@ -304,7 +307,8 @@ TEST_F(Capture, SaysWhatIsLeftOut) {
     capture(shader);
     for (const char* words :
          {"PelShaderOptions.accumulate", "PelShaderOptions.scratchBudget: --scratch-mib 64",
-          "PelShaderOptions.invalidColor", "PelLight 0.toLight", "lights' 18 images share buffers"})
+          "PelShaderOptions.invalidColor", "PelLight 0.toLight", "PelLight 8.spotDirection",
+          "lights' 18 images share buffers"})
         EXPECT_TRUE(contains(said_, words));
     const std::vector<float> expected = target.readAll<float>();
     EXPECT_TRUE(std::ranges::any_of(expected, [](float v) { return v > 0; }));

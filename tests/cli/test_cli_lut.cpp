@@ -119,6 +119,9 @@ TEST_F(CliLut, TablesOfCaustics) {
     PelEyeLutDesc desc = pelEyeLutDescDefaults();
     desc.width = 32, desc.height = 16, desc.depth = 8, desc.chamberDepth = 3.4f, desc.irisRadius = 5.5f;
     EXPECT_EQ(lut.read<float>(PEL_LUT_FLOAT), Lut(device_, desc).read<float>(PEL_LUT_FLOAT));
+    desc.millimetresPerUnit = 10;
+    io::writeLut(path("cm.exr"), Lut(device_, desc));
+    EXPECT_EQ(io::readLut(device_, path("cm.exr")).info().eye.millimetresPerUnit, 10);
     EXPECT_STREQ(info("eye --size 8x8x4 --encoding half --profile skin").profile, "skin");
     done("lut eye -o @e.ktx2 --size 8x8x4");
 }

@@ -237,6 +237,9 @@ TEST_F(CliReference, Compare) {
     pellucid::io::writeExr(path("b.exr"), a);
     const std::string compare = "compare @b.exr @a.exr --gbuffer @g.exr --scene @s.toml";
     const auto report = reportOf(compare + " --picture @d.png");
+    EXPECT_EQ(report["a"], path("b.exr"));
+    EXPECT_EQ(report["b"], path("a.exr"));
+    EXPECT_EQ(report["width"], side);
     EXPECT_NEAR(report["all"]["rmse"][1].get<double>(), 0.1, 1e-6);
     EXPECT_EQ(report["all"]["rmse"][0].get<double>(), 0);
     size_t covered = 0;
@@ -267,6 +270,27 @@ TEST_F(CliReference, Compare) {
         EXPECT_EQ(result.exitCode, *message ? 1 : 0) << arguments;
         EXPECT_TRUE(contains(result.err, message)) << arguments;
     }
+}
+
+// The picture's third part shows the largest difference of a pixel, whichever channel has it.
+TEST_F(CliReference, ComparePaintsTheLargestChannel) {
+    constexpr uint32_t size = 30;
+    npy("grey.npy", {size, size, 3}, std::vector<float>(3 * size * size, 0.5f));
+    std::set<std::vector<float>> colors;
+    for (size_t c = 0; c < 3; ++c) {
+        std::vector<float> values(3 * size * size, 0.5f);
+        for (size_t i = 0; i < size * size / 2; ++i) values[3 * i + c] += 0.1f;
+        npy("other.npy", {size, size, 3}, values);
+        done("compare @grey.npy @other.npy --picture @d.png");
+        const Image sheet = pellucid::io::readImage(path("d.png"));
+        std::vector<float> column;
+        for (size_t y = 0; y < size_t(sheet.height); ++y)
+            for (const auto& channel : sheet.channels)
+                column.push_back(channel.pixels[y * size_t(sheet.width) + size_t(sheet.width) * 7 / 10]);
+        EXPECT_GT(std::set(column.begin(), column.end()).size(), 3u);
+        colors.insert(column);
+    }
+    EXPECT_EQ(colors.size(), 1u);
 }
 
 // Walks write both halves to one file; others name the second.

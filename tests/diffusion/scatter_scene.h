@@ -290,10 +290,10 @@ struct Frame {
     Shown shade(ShownImages& shown) const {
         shown.resize(picture.width, picture.height);
         shown.shader.set(options);
-        for (PelImageSlot slot : {PEL_SLOT_IRRADIANCE, PEL_SLOT_CURVATURE, PEL_SLOT_UV})
+        for (PelImageSlot slot : {PEL_SLOT_IRRADIANCE, PEL_SLOT_CURVATURE, PEL_SLOT_UV, PEL_SLOT_MATERIAL})
             shown.shader.clear(slot);
         shown.set(PEL_SLOT_POSITION, picture.positions);
-        shown.set(PEL_SLOT_MATERIAL, picture.ids);
+        if (!picture.ids.empty()) shown.set(PEL_SLOT_MATERIAL, picture.ids);
         if (giveIrradiance) shown.set(PEL_SLOT_IRRADIANCE, picture.irradiance);
         for (const auto& [slot, values] : images) shown.set(slot, values);
         PelMaterial own = material;

@@ -30,7 +30,7 @@ const Surface surfaces[] = {
 
 // Under even light, which scattering leaves as it is.
 Shown gainsOf(const Surface& surface, uint32_t side, double size, PelScattering method, float strength,
-              uint64_t budget = 0, bool cut = false) {
+              uint64_t budget = 0, bool cut = false, double unit = 1) {
     scatter_scene::Picture p(side, side);
     std::vector<float> normals;
     for (uint32_t row = 0; row < side; ++row)
@@ -41,12 +41,14 @@ Shown gainsOf(const Surface& surface, uint32_t side, double size, PelScattering 
                 normalized(Vec3{(surface.height(x - h, y) - surface.height(x + h, y)) / (2 * h),
                                 (surface.height(x, y - h) - surface.height(x, y + h)) / (2 * h), 1});
             for (int k = 0; k < 3; ++k) normals.push_back(float(n[k]));
-            p.set(p.at(column, row), {x, y, surface.height(x, y)}, {}, cut && column < side / 3 ? 0 : 1);
+            p.set(p.at(column, row), Vec3{x, y, surface.height(x, y)} / unit, {},
+                  cut && column < side / 3 ? 0 : 1);
         }
     scatter_scene::Frame f(p, method);
     f.images[PEL_SLOT_NORMAL_SHADING] = normals;
     f.images[PEL_SLOT_CURVATURE].assign(p.pixels(), 0);
     f.options.scratchBudget = budget;
+    f.options.millimetresPerUnit = float(unit);
     f.giveIrradiance = false;
     f.profile = profile();
     f.material.specular = 0;
@@ -103,14 +105,15 @@ bool hasData() {
 
 TEST(CurvatureGain, IsThatOfTheSurface) {
     for (const Surface& surface : surfaces)
-        for (double size : {0.05, 0.2, 1.0})
+        for (auto [size, unit] : {std::pair{0.05, 1.0}, {0.2, 1.0}, {0.2, 1000.0}, {1.0, 1.0}})
             for (PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE}) {
                 const uint32_t side = size < 0.1 ? 64 : 20;
-                const std::vector<float> light = gainsOf(surface, side, size, method, 1).light;
+                const std::vector<float> light =
+                    gainsOf(surface, side, size, method, 1, 0, false, unit).light;
                 const size_t middle = side / 2 * side + side / 2;
                 for (int c = 0; c < 3; ++c)
                     EXPECT_NEAR(light[3 * middle + size_t(c)], gainAt(surface.curvature, c), tolerance::gain)
-                        << surface.name << ", pixels of " << size << ", channel " << c;
+                        << surface.name << ", pixels of " << size << ", unit " << unit << ", channel " << c;
             }
 }
 

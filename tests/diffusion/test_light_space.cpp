@@ -254,6 +254,29 @@ TEST(LightSpace, SlabsLetThroughWhatRandomWalksDo) {
     }
 }
 
+// A slab that is lit from behind as far as the point: half of the light of one that is lit beyond it, at each
+// border of the map.
+TEST(LightSpace, AllTexelsUpToABorderCount) {
+    constexpr double extent = 24, thickness = 1;  // mm
+    LitBall lamp = lampFromBehind(extent);
+    lamp.maps = {texelsOf(lamp.width, [&](double, double, int) { return 1 - 0.05 * thickness; })};
+    const auto at = [&](double u, double v) {
+        constexpr uint32_t side = 17;
+        Frame f(plane(side, side, 0.1, [](double, double) { return Vec3{}; }), byAuto);
+        for (size_t i = 0; i < f.picture.positions.size(); ++i)
+            if (i % 3 < 2) f.picture.positions[i] -= 0.05f * float(side);
+        f.options.targetError = 0;
+        f.lamps = {lamp};
+        f.lamps[0].light.worldToShadow[3] = float(u);
+        f.lamps[0].light.worldToShadow[7] = float(v);
+        return f.shade().light[3 * (side / 2 * side + side / 2)];
+    };
+    const float whole = at(0.5, 0.5);
+    EXPECT_GT(whole, 0.1f);
+    for (const auto& [u, v] : {std::pair{0.0, 0.5}, {1.0, 0.5}, {0.5, 0.0}, {0.5, 1.0}})
+        EXPECT_NEAR(at(u, v), whole / 2, tolerance::lightPlaces * whole) << u << ' ' << v;
+}
+
 // A camera that sees all that is lit needs no map.
 TEST(LightSpace, TexelsThatTheCameraSeesCountOnce) {
     Frame f = frameOf({makeBall(Form::parallel, {0, 0, 1}, sized(256u, 64u))}, sized(96u, 24u), byAuto, 0.4f);

@@ -69,15 +69,18 @@ TEST(ScatterBadInput, NoNumberSpreadsNoFurtherThanTheProfile) {
     const Picture& p = clean.picture;
     const double reach = reference::scatterReach(*reference::skinProfile()) * 0.4 / 2.7;
     const size_t bad = p.at(p.width * 5 / 8, p.width / 2);
+    size_t component = 0;  // another one each time
     for (const Way& way : ways) {
         const Shown before = shade(clean, way);
+        ++component;
         for (const std::string what : {"irradiance", "position", "normal"}) {
             const bool position = what == "position";
             if (what == "irradiance" && !way.gathers) continue;
             Frame f = clean;
             (what == "irradiance" ? f.picture.irradiance
              : position           ? f.picture.positions
-                        : f.images[PEL_SLOT_NORMAL_SHADING])[3 * bad + 1] = position ? infinity : notANumber;
+                                  : f.images[PEL_SLOT_NORMAL_SHADING])[3 * bad + component % 3] =
+                position ? infinity : notANumber;
             const Shown after = shade(f, way);
             const std::string where = std::string(way.name) + ", " + what;
             // If only scattering reads the position, the pixel keeps its irradiance.
@@ -244,6 +247,7 @@ TEST(ScatterControls, OfAPelScatterAreChecked) {
     expectRefused("PEL_SCATTERING_SEPARABLE",
                   [&] { setControls(&Controls::scattering, PEL_SCATTERING_LIGHT); });
     expectRefused("scatterTaps is 300", [&] { setControls(&Controls::scatterTaps, 300u); });
+    expectRefused("albedoBefore is 2", [&] { setControls(&Controls::albedoBefore, 2.0f); });
     expectRefused("thinThickness", [&] { setControls(&Controls::thinThickness, notANumber); });
     for (float scale : {-1.0f, infinity, notANumber, 1e20f})
         expectRefused("profile", [&] { scatter.setMaterial(1, Profile::skin(), scale); });

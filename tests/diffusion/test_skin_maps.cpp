@@ -141,9 +141,12 @@ TEST(SkinMaps, EvenMapsAreAPlainMaterial) {
             maps.images[PEL_SLOT_SKIN].insert(maps.images[PEL_SLOT_SKIN].end(), {melanin, 0.01f});
         plain.profile = Profile::skinLayers(skinOf(melanin, 0.01f));
         std::copy_n(pellucid::skinInfo(skinOf(melanin, 0.01f)).albedo, 3, plain.material.albedo);
-        const Difference d = difference(p, maps.shade().light, plain.shade().light);
+        const std::vector<float> light = maps.shade().light;
+        const Difference d = difference(p, light, plain.shade().light);
         std::printf("melanin %g: rms %.2e, most %.2e\n", double(melanin), d.rms, d.most);
         EXPECT_LT(d.most, within);
+        maps.picture.ids.clear();  // all pixels are of material 1 then
+        EXPECT_EQ(maps.shade().light, light);
     }
 }
 

@@ -61,11 +61,14 @@ TEST(EyeLut, AFewTexelsHoldTheSameLight) {
         for (size_t i = 0; i < all; ++i) sum += texels[3 * (z * all + i)];
         return sum / double(all);
     };
-    desc.depth = 2;
-    const double known = mean(tableOf(desc), 0);
+    desc.depth = 3;
+    const std::vector<float> fine = tableOf(desc);
+    const double known[] = {mean(fine, 0), mean(fine, 1)};
     for (uint32_t side : {32u, 8u, 4u, 2u}) {
         desc.width = desc.height = side;
-        EXPECT_NEAR(mean(tableOf(desc), 0) / known, 1, 0.1) << side;
+        const std::vector<float> texels = tableOf(desc);
+        for (uint32_t z : {0u, 1u}) EXPECT_NEAR(mean(texels, z) / known[z], 1, 0.1) << side << ' ' << z;
+        EXPECT_EQ(mean(texels, 2), 0) << "from the horizon";
     }
 }
 

@@ -279,6 +279,7 @@ TEST_F(MeshFile, BadFilesSayWhere) {
         {"n.obj", "v 0 0 0\nv inf 0 0\nv 0 1 0\nf 1 2 3\n", "n.obj:2: coordinate x is 'inf'"},
         {"i.obj", objThree + "\nf 1 2 4\n", "i.obj:5: vertex index 4"},
         {"m.obj", objThree + "f -1 -2 -4\n", "m.obj:4: vertex index -4"},
+        {"c.obj", objThree + "f 1/1/1/1 2 3\n", "c.obj:4: a corner has more than the three parts"},
         {"s.stl", cutStl, "is not an STL file"},
         {"n.stl", binaryStl(facets), "facet 1"},
         {"n.ply", asciiPly("0 0 0\n1 nan 0\n0 1 0\n", face), "n.ply:11: y is 'nan'"},

@@ -239,6 +239,9 @@ TEST_F(SceneFileTest, MistakesNameKeyAndWhatIsRight) {
         contains(errorOf("diffusion_radius = 2.7", "diffusion_radius = \"wide\""),
                  at("diffusion_radius") + "'diffusion_radius' in [[material]] is a string; a number"));
     EXPECT_TRUE(contains(errorOf("radius_min = 1", "radius_min = -1"), at("radius_min") + "'radius_min'"));
+    EXPECT_TRUE(
+        contains(errorOf("[camera]", "[[eye]]\nmaterial = 9\ncenter = [0, 0, 0]\ngaze = [0, 0, 1]\n[camera]"),
+                 at("[camera]") + "the eye of material 9 has no such material"));
     EXPECT_TRUE(contains(messageOf<FileError>([&] { readScene(path("none.toml")); }), "No such file"));
 }
 

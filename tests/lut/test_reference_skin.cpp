@@ -3,6 +3,7 @@
 
 #include "fields/color_difference.h"
 #include "fields/field_ranges.h"
+#include "fields/skin_spectra.h"
 #include "reference/skin_walk.h"
 
 namespace {
@@ -98,6 +99,20 @@ TEST(Skin, NoLightIsMade) {
         before = r;
     }
     EXPECT_GT(before, 0.6f);  // what bare tissue absorbs is missing
+}
+
+// Equal energy is white of equal coordinates, and daylight has its place in the standard's diagram.
+TEST(Skin, MatchingFunctionsAndDaylightAreTheStandards) {
+    double even[3]{}, day[3]{};
+    for (const pel::SkinSpectrum& s : pel::skinSpectra)
+        for (int c = 0; c < 3; ++c) {
+            const double value = (&s.x)[c];
+            even[c] += value, day[c] += value * double(s.d65);
+        }
+    for (double sum : even) EXPECT_NEAR(sum, 21.371, 0.015);
+    const double all = day[0] + day[1] + day[2];
+    EXPECT_NEAR(day[0] / all, 0.3127, 2e-4);
+    EXPECT_NEAR(day[1] / all, 0.3290, 2e-4);
 }
 
 TEST(Skin, OxygenatedBloodShowsItsTwoBands) {

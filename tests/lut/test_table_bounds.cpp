@@ -160,6 +160,12 @@ TEST(TableBounds, RefusalsNameTheField) {
         desc.irisRadius = radius;
         expectRefused("PelEyeLutDesc.irisRadius", [&] { Lut(device, desc); });
     }
+    // Each texel takes light of nearly each other one of its slice.
+    const Profile skin = Profile::skin();
+    desc = pelEyeLutDescDefaults();
+    desc.profile = skin.get();
+    desc.width = desc.height = 128, desc.depth = 64;
+    expectRefused("products", [&] { Lut(device, desc); });
     Shader shader(device);
     shader.setMaterial(1, pelMaterialDefaults());
     PelEye eye = pelEyeDefaults();

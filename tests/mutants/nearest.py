@@ -8,7 +8,7 @@ from pathlib import Path
 
 from workplace import PASSED, TREE, WORK, say
 
-SAME_SUBJECT = 3  # factor for a test in the folder of the file's subject
+SAME_SUBJECT = 2  # factor for each word that the paths of a test and of a file share
 
 
 def words_of(text):
@@ -26,11 +26,13 @@ class Tests:
                         for p in TREE.glob(f"{folder}/tests/test_*.py")}
         self.words = {name: {*words_of(f"{p.stem} {p.parent.name} {p.read_text()}")}
                       for name, p in {**self.programs, **self.scripts}.items()}
+        self.subjects = {name: {*words_of(str(p.with_suffix("").relative_to(TREE)))}
+                         for name, p in {**self.programs, **self.scripts}.items()}
         known = collections.Counter(word for words in self.words.values() for word in words)
         self.rarity = {word: math.log(len(self.words) / count) for word, count in known.items()}
 
     def measure(self, name):
-        """A test without any fault, once: whether it passes, its processor seconds, the kernels that it
+        """A test without any fault: whether it passes, its processor seconds, and the kernels that it
         launches."""
         if name not in self.measured:
             status, seconds, kernels, trace = "does not build", 0, set(), WORK / "trace"
@@ -42,36 +44,43 @@ class Tests:
                     kernels = {found[1] for line in lines
                                if (found := re.search(r"ndrange_kernel .* name=(\w+)", line))}
                 trace.unlink()
+                if status in PASSED:  # once more: its programs are in a cache now
+                    status, seconds = self.place.test(name, 900, WORK / "test.log")
             self.measured[name] = {"good": status in PASSED, "seconds": seconds, "kernels": sorted(kernels)}
             self.file.write_text(json.dumps(self.measured))
             failed = "" if status in PASSED else f" fails without any fault ({status})"
             say(f"{seconds:7.1f} s  {len(kernels):3} kernels  {name}{failed}")
         return self.measured[name]
 
-    def choose(self, fault, count):
-        """The `count` tests to run for a fault, the likeliest and quickest first."""
+    def choose(self, fault, seconds):
+        """The tests to run for a fault, the likeliest and quickest first: for that many processor seconds.
+        Those that were never measured are, for about four times as many."""
         kernels = kernels_with(fault.path) if fault.path.startswith("kernels") else None
-        names, tried = [], 0
+        names, unmeasured = [], 4 * seconds
         for name in self.by_words(fault):
-            if len(names) == count or (names and tried >= 4 * count):
+            if seconds <= 0:
                 break
-            tried += name not in self.measured
-            test = self.measure(name)
+            if name not in self.measured:
+                if unmeasured <= 0:
+                    continue
+                unmeasured -= self.measure(name)["seconds"]
+            test = self.measured[name]
             if test["good"] and (kernels is None or kernels & set(test["kernels"])):
                 names.append(name)
+                seconds -= test["seconds"]
         return names
 
     def by_words(self, fault):
         """All tests, the nearest first: those that share most rare words with the fault's file."""
         path = Path(fault.path)
-        own = {*words_of(f"{path.with_suffix('')} {(TREE / path).read_text()}")}
+        subjects = {*words_of(str(path.with_suffix("")))}
+        own = subjects | {*words_of((TREE / path).read_text())}
 
         def distance(name):
             shared = sum(self.rarity.get(word, 0) for word in own & self.words[name])
             near = shared / sum(self.rarity[word] for word in self.words[name]) ** 0.5
-            if name in self.programs and self.programs[name].parent.name in path.parts:
-                near *= SAME_SUBJECT
-            return -near / (1 + self.measured.get(name, {}).get("seconds", 10) / 20) ** 0.5, name
+            near *= SAME_SUBJECT ** len(subjects & self.subjects[name])
+            return -near / (1 + self.measured.get(name, {}).get("seconds", 10)) ** 0.5, name
 
         return sorted(self.scripts if fault.is_python() else self.programs, key=distance)
 

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """How many of the small faults that one could make do the tests notice?
 
-    run.py [N] [SEED] [--meaning] [--only REGEX] [--nearest K] [--again] [--list] [--as-is]
+    run.py [N] [SEED] [--meaning] [--only REGEX] [--seconds S] [--again] [--list] [--as-is]
 
 Takes N lines (50) of kernels, host, command and Python package by SEED (1), puts one fault into each
-(faults.py), one at a time, builds what changed, and runs the K tests (8) that are nearest to the file
-(nearest.py) until one fails. Prints killed or survived, the diff of each survivor, and the rate. Works in a
-copy of the tree in build/mutants; results stay there, so that a second run continues. A test that hangs has
-noticed; a fault that does not compile does not count, nor does one whose name stands in equivalent.txt.
+(faults.py), one at a time, builds what changed, and runs the tests that are nearest to the file (nearest.py)
+until one fails or they took S processor seconds (60). Prints killed or survived, the diff of each survivor,
+and the rate. Works in a copy of the tree in build/mutants; results stay there, so that a second run
+continues. A test that hangs has noticed; a fault that does not compile does not count, nor does one whose
+name stands in equivalent.txt.
 
 --meaning: faults of a larger kind: a dropped clear or early return, a key or condition without one of its
 parts, a neighbour left out. --only: faults in files whose path matches. --again: survivors of earlier runs
@@ -39,25 +40,29 @@ OTHER_SYSTEMS = re.compile("/windows/")  # not compiled here
 GOAL = 0.92
 
 
-def judge(place, tests, fault, count):
+def judge(place, tests, fault, seconds):
     """(verdict, reason)."""
     original = (TREE / fault.path).read_text()
     python, kernel = fault.is_python(), fault.path.startswith("kernels")
-    log, names = WORK / "test.log", tests.choose(fault, count)
+    log, names = WORK / "test.log", tests.choose(fault, seconds)
     compiled = set((WORK / "pocl").glob("*/*"))
     place.apply(fault, original)
     try:
         if not (place.python() if python else place.build("pellucid")):
             return "does not compile", ""
-        for name in names:
+        for tried, name in enumerate(names):
+            if seconds <= 0:  # kernels with a fault are compiled anew
+                del names[tried:]
+                break
             if not python and not place.build(name):
                 return "does not compile", ""
             # Ten times as long as usual is a hang; other processes may take their share of the machine.
-            status, _ = place.test(name, 120 + 10 * tests.measure(name)["seconds"], log)
+            status, spent = place.test(name, 120 + 10 * tests.measured[name]["seconds"], log)
             if status not in PASSED:
                 if kernel and "did not build with" in log.read_text(errors="replace"):
                     return "does not compile", ""
                 return "killed", name if isinstance(status, int) else f"{name}, which {status}"
+            seconds -= spent
         return "survived", f"the nearest: {', '.join(names)}"
     finally:
         place.restore(fault.path, original)
@@ -88,12 +93,12 @@ def main():
     parser.add_argument("n", type=int, nargs="?", default=50)
     parser.add_argument("seed", nargs="?", default="1")
     parser.add_argument("--only", default="")
-    parser.add_argument("--nearest", type=int, default=8)
+    parser.add_argument("--seconds", type=float, default=60)
     for flag in ("--meaning", "--again", "--list", "--as-is"):
         parser.add_argument(flag, action="store_true")
     o = parser.parse_args()
     place, every = Workplace(o.as_is), sample(o.seed, o.only, o.meaning)
-    same = {line.split()[0] for line in EQUIVALENT.read_text().splitlines() if line.strip()}
+    same = set(re.findall(r"\b[0-9a-f]{12}\b", EQUIVALENT.read_text()))
     if o.list:
         for fault in every[:o.n]:
             say(f"{fault.name}  {fault.path}:{fault.line}  {fault.kind}")
@@ -114,7 +119,7 @@ def main():
         result = known.get(fault.name)
         if not result or (o.again and result["verdict"] == "survived"):
             start = time.monotonic()
-            verdict, reason = judge(place, tests, fault, o.nearest)
+            verdict, reason = judge(place, tests, fault, o.seconds)
             result = {"name": fault.name, "verdict": verdict, "reason": reason,
                       "seconds": round(time.monotonic() - start, 1)}
             with results.open("a") as out:

@@ -231,6 +231,20 @@ TEST(SampleDetail, PaintedEyesHaveTheSizesOfAnAdults) {
     for (double mm : {6.8, 9.0, 30.0}) EXPECT_NEAR(red(mm), 0.72, 1e-9) << mm;
 }
 
+TEST(SampleDetail, PixelsOfAnEyeHaveItsColours) {
+    sample::Mesh ball = sample::makeSphere(12, 40, 80);
+    ball.materials.assign(ball.triangles.size() / 3, 1);
+    sample::GBufferOptions options;
+    options.looks.resize(1);
+    options.looks[0].kind = sample::Look::Kind::Eye;
+    options.eyes.resize(1);
+    options.eyes[0].gaze = {0, 0, -1};  // away from the camera
+    options.eyes[0].sclera = {0.8f, 0.5f, 0.3f};
+    const sample::GBuffer g =
+        sample::renderGBuffer(sample::Scene(ball.view()), {.eye = {0, 0, 100}}, 21, 21, options);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(g.albedo.at(c, 10, 10), options.eyes[0].sclera[size_t(c)], 1e-6);
+}
+
 // The blurred field against a quadrature of the sharp one over the footprint.
 TEST(SampleWaves, BlurIsAGaussianInTheTangentPlane) {
     const sample::WaveField field(6, 24, 5);
@@ -377,6 +391,9 @@ TEST(SampleShadowMap, EmptyAndTiny) {
     const sample::Scene scene(sample::makeSphere(radius, 8, 16).view());
     EXPECT_EQ(sample::renderShadowMap(nothing, sample::DirectionalLight{}, 4).depth,
               std::vector<float>(16, 1.0f));
+    const Vec3 seen =
+        sample::renderShadowMap(nothing, sample::DirectionalLight{}, 4, 0).worldToUvz.project({1, 2, 3});
+    EXPECT_TRUE(std::isfinite(seen.x + seen.y + seen.z));
     EXPECT_EQ(sample::renderShadowMap(nothing, sample::SpotLight{}, 4).depth, std::vector<float>(16, 1.0f));
     EXPECT_TRUE(sample::renderShadowMap(scene, sample::DirectionalLight{}, 0).depth.empty());
     EXPECT_LT(sample::renderShadowMap(scene, sample::DirectionalLight{}, 1).depth[0], 0.1f);
@@ -436,6 +453,16 @@ TEST(LitMesh, SplitsWhereLightIsNotLinear) {
         EXPECT_GT(mesh.triangles.size(), before) << deviation;
         before = mesh.triangles.size();
         EXPECT_NEAR(sumsOf(mesh).area, sumsOf(lit(1, 0)).area, tolerance::litSphere * radius * radius);
+    }
+    // Triangles that meet in a point agree on its light.
+    const sample::LitMesh mesh = lit(0.002, 0.01);
+    std::map<std::array<long, 3>, float> lightAt;
+    for (size_t corner = 0; corner < mesh.triangles.size(); ++corner) {
+        const Vec3 p = cornerOf(mesh, corner);
+        const auto [known, isNew] =
+            lightAt.try_emplace({std::lround(1e4 * p.x), std::lround(1e4 * p.y), std::lround(1e4 * p.z)},
+                                mesh.irradiance[3 * corner]);
+        ASSERT_NEAR(known->second, mesh.irradiance[3 * corner], tolerance::unitRoundTrip);
     }
     EXPECT_EQ(lit(0, 1000).triangles.size(), scene.mesh().triangles.size()) << "all edges are short enough";
     const double coarsest = 2;

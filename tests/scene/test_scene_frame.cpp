@@ -109,6 +109,38 @@ TEST_F(SceneFrames, PreparedShadesTheSameBits) {
     EXPECT_NE(prepared.radiance(), whole.radiance());
 }
 
+// A map and its levels in files of their own; both everywhere the same normal.
+TEST_F(SceneFrames, LevelsOfANormalMapComeFromFiles) {
+    const Device device("");
+    const io::Image gbuffer = ball();
+    const auto radianceOf = [&](const std::string& map, const std::vector<std::string>& levels) {
+        io::SceneFile s = scene();
+        s.materials[0].normalMap = map;
+        s.materials[0].normalMapLevels = levels;
+        s.materials[0].material.scattering = PEL_SCATTERING_PREINTEGRATED;
+        std::fill_n(s.materials[0].material.normalBlend, 3, 1.0f);
+        for (int k = 0; k < 3; ++k) s.ambient.constant[k] = s.ambient.sh[k + 1][k] = 1;
+        io::LutStore luts(device);
+        io::SceneFrame frame(device, gbuffer, s, luts);
+        frame.shade();
+        return frame.radiance();
+    };
+    const float even[] = {0.48f, 0, 0.8f};
+    io::Image level = pixels({"R", "G", "B"}, [&](size_t c, int, int) { return 0.5f + even[c] / 2; });
+    io::writeExr(path("map.even.exr"), level);
+    std::vector<std::string> files;
+    for (int side = 0; level.width > 1 || side == 0; ++side) {
+        if (side > 0) level.width /= 2, level.height = std::max(level.height / 2, 1);
+        for (size_t c = 0; c < 3; ++c) level.channels[c].pixels.assign(level.pixelCount(), even[c]);
+        files.push_back(path("level" + std::to_string(side) + ".exr"));
+        io::writeExr(files.back(), level);
+    }
+    const std::vector<float> made = radianceOf(path("map.even.exr"), {}), read = radianceOf("", files),
+                             flat = radianceOf("", {});
+    EXPECT_NE(made, flat);
+    for (size_t i = 0; i < made.size(); ++i) ASSERT_NEAR(read[i], made[i], 1e-5) << i;
+}
+
 TEST_F(SceneFrames, PreparedReadsAndMakesNothingTwice) {
     const Device device("");
     const io::SceneFile s = scene();

@@ -1,6 +1,7 @@
 // A material that names its profile: tables, widths, transmission and gain that follow from it, against
 // closed forms and the oracle's tables; units; what is said about settings without effect.
 #include "diffusion/scatter_scene.h"
+#include "shade_scene.h"
 #include "test.h"
 
 using namespace pellucid;
@@ -310,6 +311,11 @@ TEST(ShadeProfile, AutoKeepsToTheScratchBudget) {
     EXPECT_EQ(shading.shader.material(2).scattering, PEL_SCATTERING_NONE);
     said(4096);
     EXPECT_EQ(shading.shader.material(2).scattering, PEL_SCATTERING_PREINTEGRATED);
+    // A method that was asked for is not replaced, and bands do not suffice for it.
+    material.scattering = PEL_SCATTERING_SCREEN;
+    shading.shader.setMaterial(1, material);
+    expectRefused(
+        {"needs at least"}, [&] { said(needed - 1); }, PEL_ERROR_OUT_OF_MEMORY);
 }
 
 // Texels that are longer than light reaches; and a map that is smaller, which holds no body of that profile:
@@ -339,38 +345,90 @@ TEST(ShadeProfile, MapsThatDoNotFitTheProfileAreSaid) {
     }
 }
 
-// The greatest thickness about a point: a step in the map makes nothing thin that stands behind its nearer
-// side.
+// The thickness is the greatest of eight taps within two texels: over a map of random heights, each tap is
+// the greatest somewhere.
 TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
     const Profile profile = Profile::burleyDistance(distance);
-    PelMaterial material = materialOf(profile);
     Inputs in;
     in.thickness = false;
-    Shading shading(material, in);
+    Shading shading(materialOf(profile), in);
     constexpr uint32_t side = 32;
     constexpr float extent = 64;  // mm, 2 a texel; the light looks down from z = 32
-    std::vector<float> depth(side * side);
-    for (uint32_t i = 0; i < depth.size(); ++i)
-        depth[i] = i % side < side / 2 ? 0.25f : 0.5f;  // z = 16 and z = 0
-    std::vector<float> position(width * height * 3), normals;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> even(-1, 1);
+    std::vector<float> depth(side * side), position, normals;
+    for (float& d : depth) d = 0.5f - (1.5f + 2.5f * even(random)) / extent;  // z = -1 to 4
     for (uint32_t i = 0; i < width * height; ++i) {
-        position[3 * i] = -30 + 60 * (float(i % width) + 0.5f) / float(width);
-        position[3 * i + 2] = -1;
-        const float n[3] = {0, 0, -1};
-        normals.insert(normals.end(), n, n + 3);
+        position.insert(position.end(), {28 * even(random), 28 * even(random), -1});
+        normals.insert(normals.end(), {0, 0, -1});
     }
     shading.set(PEL_SLOT_POSITION, position);
     shading.set(PEL_SLOT_NORMAL_SHADING, normals);
     shading.set(PEL_SLOT_CURVATURE, std::vector<float>(width * height, 0.0f));  // the table's dark side is 0
     shading.setMap(depth, side, extent);
     const auto radiance = shading.execute();
-    for (uint32_t x = 0; x < width; ++x) {
-        const float at = position[3 * x];
-        if (at > -1 && at < 6) continue;  // within two texels and a half of the step: one or the other
-        const double s = at < 0 ? 17 : 1;
+    for (uint32_t i = 0; i < width * height; ++i) {
+        const double x = (position[3 * i] / extent + 0.5) * side - 0.5,
+                     y = (0.5 - position[3 * i + 1] / extent) * side - 0.5;
+        double s = 0;
+        for (const reference::Vec2& tap : shade_test::diskTaps(8)) {
+            const double nearest = reference::bilinearAt(
+                x + 2 * tap.x, y + 2 * tap.y,
+                [&](int column, int row) { return double(depth[size_t(row) * side + size_t(column)]); });
+            s = std::max(s, (0.5 - nearest) * extent + 1);
+        }
         for (size_t c = 0; c < 3; ++c) {
             const double slab = 0.25 * std::exp(-s / distance[c]) + 0.75 * std::exp(-s / (3 * distance[c]));
-            EXPECT_NEAR(radiance[3 * x + c], slab, tolerance::profileLookUp) << "x " << at;
+            EXPECT_NEAR(radiance[3 * i + c], slab, tolerance::profileLookUp) << "pixel " << i << " s " << s;
+        }
+    }
+}
+
+// In a cube too: a step of the map makes nothing thin that stands beside its thicker side.
+TEST(ShadeProfile, ThicknessFromACubeIsTheGreatestNearby) {
+    const Profile profile = Profile::burleyDistance(distance);
+    Inputs in;
+    in.thickness = false;
+    Shading shading(materialOf(profile), in);
+    constexpr uint32_t side = 256;
+    constexpr double texel = 2.0 / side, far = 30, thick = 6, thin = 1;  // texel: radians; others: mm
+    const reference::Vec3 axis = normalized(reference::Vec3{0.5, -0.7, 0.4}),
+                          right = normalized(cross(axis, reference::Vec3{0, 0, 1})), up = cross(right, axis);
+    std::vector<float> depth, position, normals;
+    for (uint32_t i = 0; i < 6 * side * side; ++i) {
+        const reference::Vec3 d = reference::cubeDirection(
+            int(i / (side * side)), texel * (i % side + 0.5) - 1, texel * (i / side % side + 0.5) - 1);
+        depth.push_back(float((far - (dot(d, axis) < 0 ? thick : thin)) / far));
+    }
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> even(0, 1);
+    std::vector<double> above;  // radians from the step
+    for (uint32_t i = 0; i < width * height; ++i) {
+        const double angle = (13 * even(random) - 5) * texel, turn = 2 * M_PI * even(random);
+        const reference::Vec3 d =
+            std::sin(angle) * axis + std::cos(angle) * (std::cos(turn) * right + std::sin(turn) * up);
+        above.push_back(angle);
+        for (int k = 0; k < 3; ++k) position.push_back(float(far * d[k])), normals.push_back(float(d[k]));
+    }
+    shading.set(PEL_SLOT_POSITION, position);
+    shading.set(PEL_SLOT_NORMAL_SHADING, normals);
+    shading.set(PEL_SLOT_CURVATURE, std::vector<float>(width * height, 0.0f));  // the table's dark side is 0
+    PelLight light = pelLightDefaults();
+    light.type = PEL_LIGHT_POINT;
+    light.shadowProjection = PEL_SHADOW_CUBE_RADIAL;
+    light.shadowDepthRange = far;
+    std::fill_n(light.color, 3, float(far * far));
+    for (int k = 0; k < 4; ++k) light.worldToShadow[5 * k] = 1;
+    shading.shader.set(std::vector<PelLight>{light});
+    static_cast<scatter_scene::ShownImages&>(shading).setMap(PEL_LIGHT_SHADOW_MAP, depth, side, 6 * side);
+    shading.shader.commit();
+    const auto radiance = shading.execute();
+    for (uint32_t i = 0; i < width * height; ++i) {
+        if (above[i] > -texel && above[i] < 4 * texel) continue;  // one or the other
+        const double s = above[i] < 0 ? thick : thin;
+        for (size_t c = 0; c < 3; ++c) {
+            const double slab = 0.25 * std::exp(-s / distance[c]) + 0.75 * std::exp(-s / (3 * distance[c]));
+            EXPECT_NEAR(radiance[3 * i + c], slab, tolerance::profileLookUp) << above[i] / texel << " texels";
         }
     }
 }

@@ -220,6 +220,9 @@ TEST(ShadeStats, PassesByName) {
     const auto target = setTarget(device(), shader, f);
     shader.commit().execute();
     expectRefused("2 structures", [&] { return pelShaderGetPasses(shader.get(), &one, &room); });
+    PelPassStats two[2] = {one, {}};  // each is as long as the first says
+    pellucid::check(pelShaderGetPasses(shader.get(), two, &(room = 2)));
+    EXPECT_STREQ(two[1].name, "shade");
     expectRefused("count", [&] { return pelShaderGetPasses(shader.get(), &one, nullptr); });
     expectRefused("PelPassStats", [&] { return pelShaderGetPasses(shader.get(), nullptr, &(room = 9)); });
     PelDeviceDesc desc = pelDeviceDescDefaults();

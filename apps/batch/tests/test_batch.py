@@ -289,6 +289,7 @@ def test_wrong_use(tmp_path, monkeypatch, capsys, arguments, code, message):
     (tmp_path / "m.toml").write_text(grid(1))
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "argv", ["batch", *arguments])
+    monkeypatch.setattr(distributed, "SpecCluster", lambda **_: pytest.fail("processes are started"))
     try:
         status = __main__.main()
     except SystemExit as e:  # of argparse

@@ -264,6 +264,15 @@ def test_a_slider_changes_the_picture_and_builds_nothing(page):
     assert page.execute_script("return window.pelKernels") <= kernels + 4
 
 
+def test_pixels_are_counted_on_demand(page):
+    unfold(page, "Statistics")
+    label = page.find_element(By.CSS_SELECTOR, "[data-pel='counts']")
+    wait_for(lambda: "pixels shaded" in label.text, "the panel")
+    assert "pixels eye" not in label.text
+    page.find_element(By.CSS_SELECTOR, "[data-pel='count']").click()
+    wait_for(lambda: re.search(r"pixels eye [1-9]", label.text), "the counts")
+
+
 def test_a_lost_device_is_reported_and_opened_again(page, lost):
     lost.touch()
     click_slider(page, "slider-exposure", 0.3)
@@ -300,3 +309,15 @@ def test_a_bad_mesh_is_shown_and_the_old_one_stays(page, tmp_path):
     assert "3" in shown[0] or "vertex" in shown[0]
     wait_for(lambda: not page.find_elements(By.CSS_SELECTOR, ".q-uploader__file--uploaded"), "no tick")
     assert not differ(before, picture(page))
+
+
+def test_a_mesh_of_another_unit_brings_a_question(page, tmp_path):
+    mesh = tmp_path / "metres.obj"
+    mesh.write_text("v 0 0 0\nv .24 0 0\nv 0 .24 0\nv 0 0 .24\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+    picture(page)
+    upload(page, "Drop an OFF", mesh)
+    yes = wait_for(lambda: page.find_elements(By.CSS_SELECTOR, "[data-pel='unit-yes']"), "the question")[0]
+    card = yes.find_element(By.XPATH, "./ancestor::*[contains(@class,'q-card')]")
+    assert "0.24 mm across" in card.text and "lengths in metres?" in card.text
+    yes.click()
+    wait_for(lambda: not page.find_elements(By.CSS_SELECTOR, "[data-pel='unit-yes']"), "the end of it")

@@ -75,9 +75,10 @@ def test_a_reference_is_coarse_first_and_can_be_cancelled():
     assert np.array_equal(done.picture(), right) and done.fraction == 1
     assert sizes[0] == 5 * 7  # every eighth pixel of every eighth row
     stopped = Reference("key", compute, points, seen)
-    stopped._run(lambda: (pieces.append(1), stopped.cancel()), 1024)
+    stopped._run(lambda: (pieces.append(stopped.fraction), stopped.cancel()), 1024)
     picture = stopped.picture()
-    assert np.array_equal(picture[::8, ::8], right[::8, ::8]) and len(pieces) == 2  # the piece, and the end
+    assert np.array_equal(picture[::8, ::8], right[::8, ::8])
+    assert pieces == [5 * 7 / seen.sum(), 1]  # the piece, and the end
     assert np.array_equal(picture[9, 20], points[8, 16] + 1)  # the nearest known pixel above on the left
     failed = Reference("key", lambda p: 1 / 0, points, seen)
     failed.start(None)

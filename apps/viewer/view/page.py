@@ -83,7 +83,7 @@ class MeshPanel(Panel):
         return True
 
     async def load(self, path: Any) -> bool:
-        session = self.viewer.session
+        session, client = self.viewer.session, ui.context.client
 
         def act() -> None:
             session.load(path)
@@ -92,8 +92,9 @@ class MeshPanel(Panel):
         if not await self.change(act):
             return False
         counts = f"{len(session.mesh.positions)} vertices, {len(session.mesh.triangles)} triangles"
-        ui.notify(f"{counts}; {session.told}" if session.told else counts, multi_line=True)
-        self.question()
+        with client:  # the widget that called is gone
+            ui.notify(f"{counts}; {session.told}" if session.told else counts, multi_line=True)
+            self.question()
         return True
 
     def question(self) -> None:

@@ -36,6 +36,11 @@ def test_eye_with_an_iris_and_a_reflection(device):
     shader.set_lights([]).set_eye(1, pel.Eye(), pel.Lut.eye(device))
     shader.set_reflection_cube(faces).commit().execute()
     assert shader.stats().features & pel.Feature.REFLECTION_CUBE and out[48, 48, 2] > 0 == out[48, 48, 0]
+    behind, even = out[48, 48, 2], []
+    for side in (2, 16):
+        shader.set_reflection_cube(np.full((6, side, side, 3), 10, np.float32)).commit().execute()
+        even.append(out.copy())
+    assert np.allclose(*even, rtol=1e-5) and np.allclose(even[0][48, 48], behind, rtol=1e-3)
     with pytest.raises(ValueError, match="six faces"):
         shader.set_reflection_cube(faces[:5])
     sky = np.zeros((8, 16, 3), np.float32)

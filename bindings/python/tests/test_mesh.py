@@ -172,6 +172,10 @@ def test_a_part_gives_the_bits_of_the_whole(device, moving_device, make_sphere, 
         assert device.stats().launches == launches and live.stats().launches == 0
     with pytest.raises(pel.PellucidError, match="range 0"):
         live.update(positions, normals, out, [(len(positions), 1)])
+    both = pel.CurvatureParams(quantity="principal")
+    pairs = np.empty((len(positions), 2), np.float32)
+    pel.LiveMesh(topology, both).update(positions, normals, pairs)
+    assert np.array_equal(pairs, topology.curvature(positions, normals, params=both))
 
 
 def test_screen_curvature_of_a_sphere(device, tolerance):

@@ -1,6 +1,8 @@
 """Contexts, queues, buffers and events that PyOpenCL made."""
 import functools
 import gc
+import signal
+import threading
 import weakref
 
 import numpy as np
@@ -80,6 +82,31 @@ def test_what_waiting_work_uses_is_kept_until_it_is_done(queue, sphere, kind):
     _in_flight.sweep()
     gc.collect()
     assert gone, "and no longer"
+
+
+def test_a_signal_ends_the_wait_of_a_mapping(queue):
+    class Alarm(Exception):
+        pass
+
+    def ring(*_):
+        raise Alarm
+
+    device = pel.Device.from_cl(queue)
+    buffer, gate = pel.Buffer(device, 64), cl.UserEvent(queue.context)
+    cl.enqueue_barrier(queue, wait_for=[gate])
+    late = threading.Timer(20, gate.set_status, [cl.command_execution_status.COMPLETE])
+    late.start()
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, 0.1)
+    try:
+        with pytest.raises(Alarm), buffer.mapped():
+            pass
+        assert late.is_alive(), "work that the mapping waits for had ended"
+    finally:
+        signal.signal(signal.SIGALRM, before)
+        late.cancel()
+        gate.set_status(cl.command_execution_status.COMPLETE)
+        device.finish()
 
 
 def test_nothing_of_the_hosts_is_kept(queue, sphere):

@@ -17,12 +17,11 @@ struct Texture {
     };
     Format format;
     uint32_t width, height;  // texels
-    std::span<const uint8_t> bytes;
+    std::span<const uint8_t> bytes;  // as many as the format takes for the size
 };
 
-// Both: complete or not at all; throw FileError when the file cannot be written, std::invalid_argument when
-// the number of bytes does not fit the size. DDS: the DX10 header, DXGI_FORMAT_R16G16B16A16_FLOAT or
-// _BC6H_UF16 [Microsoft, Programming Guide for DDS].
+// Both: complete or not at all; throw FileError when the file cannot be written. DDS: the DX10 header,
+// DXGI_FORMAT_R16G16B16A16_FLOAT or _BC6H_UF16 [Microsoft, Programming Guide for DDS].
 void writeDds(const std::string& path, const Texture& texture);
 // KTX2: VK_FORMAT_R16G16B16A16_SFLOAT or _BC6H_UFLOAT_BLOCK, linear, with key/value data [Khronos, KTX File
 // Format 2.0].
