@@ -59,14 +59,13 @@ class Table {
                       upper_.weights(std::log1p(layers.thickness * layers.upperAbsorption / opticalUnit), u),
                   third = lower_.weights(std::log(layers.lowerAbsorption), l);
         Spectrum sum{};
-        for (int a = 0; a < 4; ++a)
-            for (int b = 0; b < 4; ++b)
-                for (int c = 0; c < 4; ++c) {
-                    const float weight = float(t[a] * u[b] * l[c]);
-                    const Spectrum& row =
-                        rows_[(size_t(first + a) * upper_.nodes + second + b) * lower_.nodes + third + c];
-                    for (int k = 0; k < frequencies; ++k) sum[k] += weight * row[k];
-                }
+        for (int i = 0; i < 64; ++i) {  // in one loop, since compilers vectorise nested ones across rows
+            const int a = i / 16, b = i / 4 % 4, c = i % 4;
+            const float weight = float(t[a] * u[b] * l[c]);
+            const Spectrum& row =
+                rows_[(size_t(first + a) * upper_.nodes + second + b) * lower_.nodes + third + c];
+            for (int k = 0; k < frequencies; ++k) sum[k] += weight * row[k];
+        }
         return sum;
     }
 
@@ -116,7 +115,7 @@ Computed compute(const PelSkin& skin, bool radial) {
         return logs;
     }();
     Computed out;
-    Rgb light{};
+    Rgb total{};
     for (int i = 0; i < skinWavelengths; ++i) {
         const SkinCoefficients c = skinCoefficients(skin, skinSpectra[i]);
         const SkinLayers layers{skin.epidermis * c.scattering, c.epidermis / c.scattering,
@@ -127,37 +126,39 @@ Computed compute(const PelSkin& skin, bool radial) {
         for (int n = 0; n < 3; ++n) {
             out.albedo[n] += weight[n] * out.reflectance[i];
             const double share = std::max(0.0, weight[n]) * out.reflectance[i];
-            light[n] += share;
+            total[n] += share;
             out.freePath[n] += share / (c.dermis + c.scattering);
             out.scattered[n] += share * c.scattering / (c.dermis + c.scattering);
         }
         if (!radial) continue;
         const double shift = std::log(c.scattering * lowestFrequency);
+        std::array<float, frequencies + 1> nodes;  // without that of 0, and the first and the last twice
+        std::copy(&values[1], values.end(), &nodes[1]);
+        nodes.front() = values[1], nodes.back() = values.back();
         for (int j = 0; j < fitted; ++j) {
             // Cubic [Catmull-Rom] in the logarithm of the frequency; below the first node quadratic in the
             // frequency, beyond the last a power of it.
-            const double at = (logFrequency[j] - shift) * perLog;
-            double value = values[0] + (values[1] - values[0]) * std::exp(2 * std::min(0.0, at) / perLog);
+            const float at = float((logFrequency[j] - shift) * perLog);
+            float value;
             if (at > 0) {
                 const int cell = std::min(int(at), frequencies - 3);
-                const double x = std::min(at - cell, 1.0), beyond = at - cell - x;
-                const auto node = [&](int q) {
-                    return double(values[std::clamp(cell + q, 0, frequencies - 2) + 1]);
-                };
-                const double p = node(-1), q = node(0), r = node(1), s = node(2);
+                const float x = std::min(at - float(cell), 1.0f), beyond = at - float(cell) - x;
+                const float *node = &nodes[cell], p = node[0], q = node[1], r = node[2], s = node[3];
                 value = q + x / 2 * (r - p + x * (2 * p - 5 * q + 4 * r - s + x * (3 * (q - r) + s - p))) +
                         beyond * (r - q);
+            } else {
+                value = values[0] + (values[1] - values[0]) * std::exp(2 * at / float(perLog));
             }
-            value = std::exp(value);
-            for (int n = 0; n < 3; ++n) out.spectrum[j][n] += std::max(0.0, weight[n]) * value;
+            const double light = std::exp(value);
+            for (int n = 0; n < 3; ++n) out.spectrum[j][n] += std::max(0.0, weight[n]) * light;
         }
     }
     for (int n = 0; n < 3; ++n) {
-        out.freePath[n] /= light[n];
-        out.scattered[n] /= light[n];
+        out.freePath[n] /= total[n];
+        out.scattered[n] /= total[n];
         // What is out of the gamut of sRGB counts as nothing.
         out.albedo[n] = std::clamp(out.albedo[n], 1e-4, 1.0);
-        for (Rgb& value : out.spectrum) value[n] /= light[n];
+        for (Rgb& value : out.spectrum) value[n] /= total[n];
     }
     return out;
 }
@@ -181,22 +182,68 @@ struct Basis {
     }
 };
 
-// Weights of 0 or more of fixed Gaussians, by cyclic descent on their squared error over the frequencies.
+// The weights of 0 or more with the smallest squared error over the frequencies [Lawson and Hanson 1974].
+// Those that are not 0 solve their normal equations; more are let in as long as the error falls.
+std::array<double, terms> weightsOf(const Basis& basis, const std::array<double, terms>& wanted) {
+    std::array<double, terms> weights{};
+    std::array<int, terms> in{};  // the first `count`: those that are not 0
+    const auto isIn = [&](int count, int i) { return std::find(&in[0], &in[count], i) != &in[count]; };
+    for (int count = 0, round = 0; round < 3 * terms; ++round) {
+        int best = -1;
+        double steepest = 1e-9;
+        for (int i = 0; i < terms; ++i) {
+            double slope = wanted[i];
+            for (int k = 0; k < count; ++k) slope -= basis.products[i][in[k]] * weights[in[k]];
+            if (slope > steepest && !isIn(count, i)) best = i, steepest = slope;
+        }
+        if (best < 0) break;
+        in[count++] = best;
+        for (bool negative = true; negative && count > 0;) {
+            // Cholesky's factors, and the solution.
+            double l[terms][terms], x[terms];
+            for (int a = 0; a < count; ++a) {
+                for (int b = 0; b <= a; ++b) {
+                    double sum = basis.products[in[a]][in[b]];
+                    for (int k = 0; k < b; ++k) sum -= l[a][k] * l[b][k];
+                    l[a][b] = a == b ? std::sqrt(std::max(sum, 1e-15)) : sum / l[b][b];
+                }
+                x[a] = wanted[in[a]];
+                for (int k = 0; k < a; ++k) x[a] -= l[a][k] * x[k];
+                x[a] /= l[a][a];
+            }
+            for (int a = count - 1; a >= 0; --a) {
+                for (int k = a + 1; k < count; ++k) x[a] -= l[k][a] * x[k];
+                x[a] /= l[a][a];
+            }
+            // As far towards it as all weights remain 0 or more.
+            double step = 1;
+            for (int a = 0; a < count; ++a)
+                if (x[a] <= 0) step = std::min(step, weights[in[a]] / (weights[in[a]] - x[a]));
+            negative = step < 1;
+            int kept = 0;
+            for (int a = 0; a < count; ++a) {
+                double& w = weights[in[a]];
+                w += step * (x[a] - w);
+                if (w > 1e-12)
+                    in[kept++] = in[a];
+                else
+                    w = 0;
+            }
+            count = kept;
+        }
+    }
+    return weights;
+}
+
 Fit fit(const Computed& computed) {
     static const Basis basis;
     Fit out;
     for (int i = 0; i < terms; ++i) out.gaussians.push_back({variance(i), {}});
     for (int c = 0; c < 3; ++c) {
-        std::array<double, terms> weights{}, slope{};  // slope: of half the squared error
+        std::array<double, terms> wanted{};
         for (int i = 0; i < terms; ++i)
-            for (int j = 0; j < fitted; ++j) slope[i] -= basis.at[i][j] * computed.spectrum[j][c];
-        for (int sweep = 0; sweep < 200; ++sweep)
-            for (int i = 0; i < terms; ++i) {
-                const double next = std::max(0.0, weights[i] - slope[i] / basis.products[i][i]),
-                             change = next - weights[i];
-                weights[i] = next;
-                for (int n = 0; n < terms; ++n) slope[n] += change * basis.products[i][n];
-            }
+            for (int j = 0; j < fitted; ++j) wanted[i] += basis.at[i][j] * computed.spectrum[j][c];
+        const std::array<double, terms> weights = weightsOf(basis, wanted);
         double sum = 0;
         for (double w : weights) sum += w;
         for (int i = 0; i < terms; ++i) {
@@ -210,6 +257,7 @@ Fit fit(const Computed& computed) {
             out.error[c] = std::max(out.error[c], std::abs(value - computed.spectrum[j][c]));
         }
     }
+    std::erase_if(out.gaussians, [](const GaussianTerm& term) { return term.weight == Rgb{}; });
     return out;
 }
 
