@@ -6,6 +6,7 @@
 // oxygenation. Outputs: albedo and radius where one of PEL_WIDTH pixels has a material. One work-item is
 // PEL_WIDTH pixels of a row. Variants: PEL_FORMAT_... of the images, PEL_RADIUS_COMPONENT.
 #include "lib/diffusion/item.clh"
+#include "lib/diffusion/profile_table.clh"
 #include "lib/diffusion/radius.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
@@ -27,7 +28,7 @@ static inline floatw shareOf(floatw component, float own, float most) {
 
 // Interpolates linearly between four nodes, of which `first` (a number of floats) is the first.
 #if PEL_WIDTH == 1
-static inline Skin betweenNodes(__global const float* table, int first, float x, float y) {
+static inline Skin nodesAround(__global const float* table, int first, float x, float y) {
     __global const float* node = table + first;
     const float4 low = mix(vload4(0, node), vload4(1, node), x),
                  high = mix(vload4(0, node + ROW_FLOATS), vload4(1, node + ROW_FLOATS), x),
@@ -36,28 +37,15 @@ static inline Skin betweenNodes(__global const float* table, int first, float x,
     return skin;
 }
 #else
-// Of two lanes the nodes on both sides.
-static inline float16 alongColumns(__global const float* a, __global const float* b, float16 y) {
-    const float16 low = (float16)(vload8(0, a), vload8(0, b)),
-                  high = (float16)(vload8(0, a + ROW_FLOATS), vload8(0, b + ROW_FLOATS));
-    return fma(y, high - low, low);
-}
-
-// Of four lanes.
-static inline float16 acrossRows(float16 ab, float16 cd, float16 x) {
-    const float16 left = PEL_SHUFFLE16(ab, cd, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27),
-                  right = PEL_SHUFFLE16(ab, cd, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31);
-    return fma(x, right - left, left);
-}
-
-static inline Skin betweenNodes(__global const float* table, intw first, floatw x, floatw y) {
+static inline Skin nodesAround(__global const float* table, intw first, floatw x, floatw y) {
     int at[PEL_WIDTH];
     storew(first, 0, at);
-#define TWO_(a, b)                             \
-    alongColumns(table + at[a], table + at[b], \
-                 PEL_SHUFFLE16(y, y, a, a, a, a, a, a, a, a, b, b, b, b, b, b, b, b))
-#define FOUR_(a, b, c, d) \
-    acrossRows(TWO_(a, b), TWO_(c, d), PEL_SHUFFLE16(x, x, a, a, a, a, b, b, b, b, c, c, c, c, d, d, d, d))
+#define ROW_(a, b, c, d, to)                                                                     \
+    betweenNodes(table + to + at[a], table + to + at[b], table + to + at[c], table + to + at[d], \
+                 PEL_SHUFFLE16(x, x, a, a, a, a, b, b, b, b, c, c, c, c, d, d, d, d))
+#define FOUR_(a, b, c, d)                                  \
+    mix(ROW_(a, b, c, d, 0), ROW_(a, b, c, d, ROW_FLOATS), \
+        PEL_SHUFFLE16(y, y, a, a, a, a, b, b, b, b, c, c, c, c, d, d, d, d))
     const float16 q0 = FOUR_(0, 1, 2, 3), q1 = FOUR_(4, 5, 6, 7);
     Skin skin;
 #define FOURTHS_(a, b) PEL_SHUFFLE16(a, b, 3, 7, 11, 15, 19, 23, 27, 31, 3, 7, 11, 15, 19, 23, 27, 31).lo
@@ -71,7 +59,7 @@ static inline Skin betweenNodes(__global const float* table, intw first, floatw 
 #endif
 #undef FOURTHS_
 #undef FOUR_
-#undef TWO_
+#undef ROW_
     return skin;
 }
 #endif
@@ -93,11 +81,11 @@ static inline Skin skinOf(__global const PelSkinMaps* frame, __global const PelS
     const intw k = min(convert_intw(w), (intw)(PEL_OXYGENATIONS - 2));
     const floatw z = w - convert_floatw(k);
     first += k * layer;
-    const Skin a = betweenNodes(tables, first, x, y), b = betweenNodes(tables + layer, first, x, y);
+    const Skin a = nodesAround(tables, first, x, y), b = nodesAround(tables + layer, first, x, y);
     const Skin skin = {add3(a.root, scale3(sub3(b.root, a.root), z)), a.radius + (b.radius - a.radius) * z};
     return skin;
 #else
-    return betweenNodes(tables, first, x, y);
+    return nodesAround(tables, first, x, y);
 #endif
 }
 
