@@ -79,7 +79,7 @@ class Profile final : public Object {
     std::unique_ptr<ProfileShape> shape_;
     std::vector<GaussianTerm> terms_;
     mutable std::atomic<double> reach_{0};  // 0: not yet computed
-    mutable std::mutex nameMutex_;  // guards the name only, which may change
+    mutable std::mutex nameMutex_;          // guards the name only, which may change
     std::string name_;
     const char* source_ = "";
     std::optional<PelSkin> pigments_;

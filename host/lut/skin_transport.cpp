@@ -11,7 +11,7 @@ namespace {
 
 using Complex = std::complex<double>;
 constexpr double index = skinIndex, critical = 0.69985421222376498;  // sqrt(1 - 1 / index^2)
-// Nodes: depths in the lower layer, azimuths of a quarter turn, and three cosines on each side of the critical
+// Nodes: depths in the lower layer, azimuths of a quarter turn, three cosines on each side of the critical
 // one. With half as many of each the results differ by less than 2 %.
 constexpr int depths = 14, azimuths = 2;
 
