@@ -302,7 +302,7 @@ constexpr double eyeMinified = 0.05;
 constexpr double skinReflectance = 0.01, skinAlbedo = 0.01;
 // The oracle has approximate matching functions every 10 nm; its noise is 1 to 2 % of the distance.
 constexpr double skinDistance = 0.05;
-constexpr double skinProfile = 0.02;   // 14 Gaussians against light that falls like 1/d near its entry
+constexpr double skinProfile = 0.01;   // 14 Gaussians against light that falls like 1/d near its entry
 constexpr double skinRoundTrip = 0.5;  // CIEDE2000; a fraction of what can be seen
 constexpr double skinMeasured = 3;     // CIEDE2000; other observers, instruments and people
 }  // namespace tolerance

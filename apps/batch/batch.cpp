@@ -136,7 +136,8 @@ class Batch {
         if (a_.json)
             printJson(report(anyTable ? nlohmann::ordered_json(index) : nlohmann::ordered_json()));
         else
-            std::printf("%zu tables: %zu made (%zu of them anew), %zu were there, %zu failed\n", entries,
+            std::printf("%zu %s: %zu made (%zu of them anew), %zu were there, %zu failed\n", entries,
+                        tables() > entries ? io::concat("files of ", tables(), " tables").c_str() : "tables",
                         count(made), count(redone), count(kept) - count(made), faults_.size());
         std::fflush(stdout);
         if (fatal_) std::rethrow_exception(fatal_);
@@ -151,6 +152,12 @@ class Batch {
     // Entries of this state and of those behind it.
     size_t count(State from) const {
         return size_t(std::ranges::count_if(states_, [from](const auto& state) { return state >= from; }));
+    }
+
+    size_t tables() const {
+        size_t all = 0;
+        for (const io::BatchEntry& entry : manifest_.entries) all += entry.tables.size();
+        return all;
     }
 
     void fault(const std::string& message) {
@@ -218,6 +225,7 @@ class Batch {
                 {"device_ms", deviceMilliseconds},
                 {"total_ms", elapsed * 1e3},
                 {"entries", states_.size()},
+                {"tables", tables()},
                 {"made", count(made)},
                 {"kept", count(kept) - count(made)},
                 {"redone", count(redone)},

@@ -32,18 +32,9 @@ std::string keyOf(std::string_view attribute) {
     return key;
 }
 
-std::string described(const BatchEntry& entry) {
-    PelLutInfo info = entry.info;
-    Json table{{"file", entry.file}};
-    if (!entry.name.empty()) table["name"] = entry.name;
-    table["line"] = entry.line;
-    table["kind"] = lutKinds[info.kind];
-    const auto [width, height] = lutSize(info);
-    table["width"] = width;
-    table["height"] = height;
-    table["encoding"] = lutEncodings[entry.encoding];
-    if (info.kind == PEL_LUT_SPECULAR) return written(table);
-    const PelProfileInfo profile = entry.profile.info();
+// Adds what differs between the tables of a stack.
+void describe(Json& table, PelLutInfo info, const Profile& of) {
+    const PelProfileInfo profile = of.info();
     info.curvature = pelCurvatureLutDescFilled(info.curvature, &profile);
     info.shadow = pelShadowLutDescFilled(info.shadow, &profile);
     table["profile"] = profile.name;
@@ -55,21 +46,63 @@ std::string described(const BatchEntry& entry) {
         table["closed_ends"] = info.shadow.closedEnds;
     }
     visitLutNumbers(info, [&](std::string_view attribute, float value) { table[keyOf(attribute)] = value; });
-    return written(table);
+}
+
+std::string described(const BatchEntry& entry) {
+    const BatchTable& first = entry.tables.front();
+    Json file{{"file", entry.file}};
+    if (!entry.name.empty()) file["name"] = entry.name;
+    file["line"] = entry.line;
+    file["kind"] = lutKinds[first.info.kind];
+    const auto [width, height] = lutSize(first.info);
+    file["width"] = width;
+    file["height"] = height;
+    file["encoding"] = lutEncodings[entry.encoding];
+    if (entry.tables.size() > 1)
+        for (const BatchTable& table : entry.tables) {
+            Json one;
+            describe(one, table.info, table.profile.get());
+            file["stack"].push_back(one);
+        }
+    else if (first.profile.valid())
+        describe(file, first.info, first.profile.get());
+    return written(file);
 }
 
 }  // namespace
 
+PelLutInfo BatchTable::filled() const {
+    PelLutInfo all = info;
+    if (profile.valid()) all.curvature.profile = all.shadow.profile = profile.get().get();
+    return all;
+}
+
 std::string makeEntryFile(const Device& device, const BatchEntry& entry) {
-    const Lut lut = submitted(device, entry.info);
-    size_t bytes = 0;
-    check(pelLutGetSize(lut.get(), entry.encoding, &bytes));
-    std::string texels(bytes, '\0');
-    PelEvent done = nullptr;
-    const PelSubmit reading{nullptr, 0, &done};
-    check(pelLutRead(lut.get(), entry.encoding, texels.data(), bytes, &reading));
-    Event(done).wait();
-    return encodeLutExr(lut.info(), entry.encoding, texels, entry.key);
+    constexpr size_t ahead = 16;  // tables on the queue before the thread waits: of more, queues grow slow
+    const size_t count = entry.tables.size();
+    PelLutInfo first{};
+    std::string texels;
+    std::vector<Lut> luts;
+    for (size_t i = 0; i < count; ++i) {
+        luts.push_back(submitted(device, entry.tables[i].filled()));
+        if (luts.size() < ahead && i + 1 < count) continue;
+        size_t bytes = 0;
+        check(pelLutGetSize(luts[0].get(), entry.encoding, &bytes));
+        if (texels.empty()) first = luts[0].info(), texels.resize(bytes * count);
+        Event last;  // the queue is in order
+        PelError failed = PEL_SUCCESS;
+        for (size_t k = 0; k < luts.size() && !failed; ++k) {
+            PelEvent done = nullptr;
+            const PelSubmit reading{nullptr, 0, &done};
+            failed = pelLutRead(luts[k].get(), entry.encoding, &texels[bytes * (i + 1 - luts.size() + k)],
+                                bytes, &reading);
+            if (!failed) last = Event(done);
+        }
+        if (last) last.wait();  // also where one failed, for the others write to the texels
+        check(failed);
+        luts.clear();
+    }
+    return encodeLutExr(first, entry.encoding, texels, entry.key, uint32_t(count));
 }
 
 std::string batchIndexName(const std::string& manifestPath) {

@@ -16,6 +16,7 @@ namespace {
 
 // In memory an entry takes about a kilobyte.
 constexpr size_t mostEntries = 1'000'000, mostProfileBytes = size_t{64} << 20;
+constexpr uint32_t mostStacked = 4096;  // tables of a file
 
 constexpr std::string_view encodingNames[] = {"float", "half"};  // PelLutEncoding
 
@@ -32,6 +33,7 @@ struct Request {
     std::vector<float> radii{0};           // diffusion radii, mm; 0: the profile's own
     std::map<std::string, PelSkin> skins;  // of those profiles that are computed
     std::vector<Size> sizes;
+    uint32_t stack = 1;  // tables of a file
     PelCurvatureLutDesc curvature;
     PelShadowLutDesc shadow;
 };
@@ -109,6 +111,9 @@ Request readRequest(TomlReader& reader, LutPreset preset) {
         r.sizes = {isShadow                      ? Size{r.shadow.width, r.shadow.height}
                    : r.kind == PEL_LUT_CURVATURE ? Size{r.curvature.width, r.curvature.height}
                                                  : Size{specular.width, specular.height}};
+    reader.integer("stack", r.stack, {1, mostStacked});
+    if (r.stack > 1 && !r.name.empty())
+        reader.fail("name", "cannot stand beside 'stack', whose files are named by their content");
     reader.number("radius_min", r.curvature.radiusMin, range::curvatureLut::radiusMin);
     reader.number("radius_max", r.curvature.radiusMax, range::curvatureLut::radiusMax);
     reader.number("width_min", r.shadow.widthMin, range::shadowLut::widthMin);
@@ -158,6 +163,7 @@ class Expansion {
                         for (const std::string& form : r.forms)
                             for (const std::string& axis : r.axes)
                                 addOne(reader, r, encoding, size, profile, form, axis, radius);
+                finishStack(reader, r);
             }
     }
 
@@ -165,7 +171,7 @@ class Expansion {
     // A profile and its part of the key: its numbers, not only its name, since a changed file is another
     // request.
     struct Known {
-        Profile profile;
+        std::shared_future<Profile> profile;
         std::string key;
     };
 
@@ -186,8 +192,26 @@ class Expansion {
 
     const Known& profile(const TomlReader& reader, const std::string& name) {
         auto [at, fresh] = known_.try_emplace(name);
-        if (fresh) try {
-                Profile& p = at->second.profile = load(name);
+        const auto skin = skins_.find(name);
+        if (fresh && skin != skins_.end()) {
+            // Made when a table needs it, by the thread that makes the table.
+            at->second.profile = std::async(std::launch::deferred, [name, pigments = skin->second] {
+                Profile made = Profile::skinLayers(pigments);
+                made.setName(name);
+                return made;
+            });
+            Key key;
+#define ADD(type, field, ...) key(#field, pigments.field);
+            const PelSkin& pigments = skin->second;
+            PEL_EACH_SKIN_FIELD(ADD)
+#undef ADD
+            at->second.key = key.out.str();
+        } else if (fresh)
+            try {
+                std::promise<Profile> loaded;
+                at->second.profile = loaded.get_future();
+                loaded.set_value(load(name));
+                const Profile& p = at->second.profile.get();
                 const PelProfileInfo info = p.info();
                 Key key;
                 key("profile", info.name)("radius", info.radius);
@@ -204,11 +228,6 @@ class Expansion {
     }
 
     Profile load(const std::string& name) {
-        if (const auto skin = skins_.find(name); skin != skins_.end()) {
-            Profile made = Profile::skinLayers(skin->second);
-            made.setName(name);
-            return made;
-        }
         if (extensionOf(name) != "toml") return findProfile(name).profile;
         if (folder_) {
             std::string text = readWholeFile((*folder_ / name).string(), textLimit);
@@ -226,14 +245,15 @@ class Expansion {
     void addOne(const TomlReader& reader, const Request& r, const std::string& encoding, const Size& size,
                 const std::string& profileName, const std::string& form, const std::string& axis,
                 float radius) {
-        BatchEntry entry{pelLutInfoDefaults(), {}, {}, {}, {}, {}, reader.line()};
-        entry.info.kind = r.kind;
+        BatchEntry entry{{{pelLutInfoDefaults(), {}}}, {}, {}, {}, {}, reader.line()};
+        BatchTable& table = entry.tables.front();
+        table.info.kind = r.kind;
         entry.encoding = PelLutEncoding(indexOf(reader, "encoding", encoding, encodingNames));
         Key key;
         key("kind", lutKinds[r.kind])("version", pelVersion())("encoding", encoding)("size", size.text());
         if (r.kind != PEL_LUT_SPECULAR) {
             const Known& known = profile(reader, profileName);
-            entry.profile = known.profile;
+            table.profile = known.profile;
             key.out << known.key;
             key("diffusion_radius", radius);
         }
@@ -242,27 +262,34 @@ class Expansion {
             desc.width = size.width, desc.height = size.height;
             desc.axis = PelLutAxis(indexOf(reader, "axis", axis, lutAxes));
             desc.diffusionRadius = radius;
-            desc.profile = entry.profile.get();
         };
         if (r.kind == PEL_LUT_CURVATURE) {
-            PelCurvatureLutDesc& desc = entry.info.curvature;
+            PelCurvatureLutDesc& desc = table.info.curvature;
             fill(desc, r.curvature);
             desc.form = PelCurvatureForm(indexOf(reader, "form", form, curvatureForms));
             key("form", form)("axis", axis)("radius_min", desc.radiusMin)("radius_max", desc.radiusMax);
         } else if (r.kind == PEL_LUT_SHADOW) {
-            PelShadowLutDesc& desc = entry.info.shadow;
+            PelShadowLutDesc& desc = table.info.shadow;
             fill(desc, r.shadow);
             key("width_min", desc.widthMin)("width_max", desc.widthMax)("sharpening", desc.sharpening);
             // Left out of the key at their values of version 1, so that older files keep their names.
             if (desc.axis != PEL_AXIS_LINEAR) key("axis", axis);
             if (desc.closedEnds) key("closed_ends", 1);
         } else {
-            entry.info.specular.width = size.width, entry.info.specular.height = size.height;
+            table.info.specular.width = size.width, table.info.specular.height = size.height;
         }
         entry.key = key.out.str();
-        if (r.name.empty()) {
-            entry.file = std::string(lutKinds[r.kind]) + "-" + hexDigits(contentHash(entry.key)) + ".exr";
-        } else {
+        if (r.stack > 1) {
+            if (stack_.tables.empty()) {
+                stack_ = std::move(entry);
+            } else {
+                stack_.tables.push_back(std::move(table));
+                stack_.key += entry.key;
+            }
+            if (stack_.tables.size() == r.stack) finishStack(reader, r);
+            return;
+        }
+        if (!r.name.empty()) {
             entry.name = namedBy(reader, r,
                                  {{"kind", std::string(lutKinds[r.kind])},
                                   {"profile", extensionOf(profileName) == "toml"
@@ -275,6 +302,20 @@ class Expansion {
                                   {"diffusion_radius", radius > 0 ? shortest(radius) : "own"}});
             entry.file = entry.name + ".exr";
         }
+        addFile(reader, r, std::move(entry));
+    }
+
+    // Long keys are replaced by their hash.
+    void finishStack(const TomlReader& reader, const Request& r) {
+        if (stack_.tables.empty()) return;
+        stack_.key =
+            concat("stack=", stack_.tables.size(), ";keys=", hexDigits(contentHash(stack_.key)), ";");
+        addFile(reader, r, std::exchange(stack_, {}));
+    }
+
+    void addFile(const TomlReader& reader, const Request& r, BatchEntry entry) {
+        if (entry.name.empty())
+            entry.file = std::string(lutKinds[r.kind]) + "-" + hexDigits(contentHash(entry.key)) + ".exr";
         const auto [other, fresh] = files_.try_emplace(entry.file, manifest_.entries.size());
         if (fresh) {
             manifest_.entries.push_back(std::move(entry));
@@ -322,6 +363,7 @@ class Expansion {
     std::map<std::string, Known> known_;
     std::map<std::string, PelSkin> skins_;
     std::map<std::string, size_t> files_;  // to the entry
+    BatchEntry stack_{};                   // not yet full
     double asked_ = 0;                     // tables, including repeated ones
     size_t profileBytes_ = 0;
 };

@@ -1,6 +1,7 @@
 // The manifest of `pellucid batch`: TOML that lists look-up tables one by one and as grids. Keys:
 // docs/guide/batch.md.
 #pragma once
+#include <future>
 #include <map>
 #include <pellucid/pellucid.hpp>
 #include <string>
@@ -9,14 +10,21 @@
 namespace pellucid::io {
 
 // One table to make.
+struct BatchTable {
+    PelLutInfo info;                      // kind and description, without a profile handle
+    std::shared_future<Profile> profile;  // invalid for specular tables; one of pigments is made by get()
+
+    PelLutInfo filled() const;  // with the handle
+};
+
+// One file to make.
 struct BatchEntry {
-    PelLutInfo info;          // kind and description; profile handles are those of `profile`
-    Profile profile;          // empty for specular tables
-    PelLutEncoding encoding;  // float or half
-    std::string key;          // everything that determines the texels, as text
-    std::string name;         // given by the manifest; may be empty
-    std::string file;         // name.exr, or kind and hash of the key: equal requests have equal names
-    int line;                 // of the manifest
+    std::vector<BatchTable> tables;  // one; of a stack as many of one size, below each other
+    PelLutEncoding encoding;         // float or half
+    std::string key;                 // everything that determines the texels, as text
+    std::string name;                // given by the manifest; may be empty
+    std::string file;                // name.exr, or kind and hash of the key: equal requests have equal names
+    int line;                        // of the manifest
 };
 
 struct BatchError {

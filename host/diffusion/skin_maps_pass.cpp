@@ -20,33 +20,35 @@ class SkinMapsPass final : public Pass {
   public:
     static bool needed(const ShaderPlan& plan) { return usesSkinMaps(plan.state); }
 
-    PassScratch scratch(const ShaderPlan&) const override { return {4 * sizeof(float), 0, 0, true}; }
+    PassScratch scratch(const ShaderPlan&) const override { return {pixelBytes, 0, 0, true}; }
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
         auto& images = plan.state.images;
         const ImageView& frame = images[PEL_SLOT_RADIANCE];
-        const size_t plane = size_t(frame.width) * frame.height * sizeof(float);
-        resize(albedo_, device, 3 * plane);
-        resize(radii_, device, plane);
+        const size_t pixels = size_t(frame.width) * frame.height;
+        resize(albedo_, device, albedoBytes * pixels);
+        resize(radii_, device, radiusBytes * pixels);
         skin_ = images[PEL_SLOT_SKIN], ids_ = images[PEL_SLOT_MATERIAL], given_ = images[PEL_SLOT_ALBEDO];
         weight_ = ScatterImages();
         weight_.takeRadii(images[PEL_SLOT_SCATTER_WEIGHT]);
-        images[PEL_SLOT_ALBEDO] = scratchImage(albedo_, frame, PEL_FORMAT_PLANAR_RGB32F);
-        plan.radii = scratchImage(radii_, frame, PEL_FORMAT_R32F);
+        images[PEL_SLOT_ALBEDO] = scratchImage(albedo_, frame, PEL_FORMAT_RGBA16F);
+        plan.radii = scratchImage(radii_, frame, PEL_FORMAT_R16F);
     }
     size_t bytes() const override {
         return (albedo_ ? albedo_->bytes() + radii_->bytes() : 0) + tables_.bytes();
     }
 
-    std::vector<cl::ProgramKey> programs(const Device&, const ShaderPlan&) const override {
+    std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
+        const auto code = [&](const ImageView& view) { return formatCode(view, device.info().mathWidth); };
         return {{{"shading/skin_maps.cl"},
-                 {{"PEL_WIDTH", 1},
-                  {"PEL_FORMAT_SKIN", formatCode(skin_, 1)},
+                 {{"PEL_FORMAT_SKIN", code(skin_)},
                   {"PEL_OXYGENATIONS", oxygenations()},
-                  {"PEL_FORMAT_MATERIAL", formatCode(ids_, 1)},
-                  {"PEL_FORMAT_ALBEDO", formatCode(given_, 1)},
-                  {"PEL_FORMAT_RADIUS", formatCode(weight_.radii, 1)},
-                  {"PEL_RADIUS_COMPONENT", weight_.radiusComponent}}}};
+                  {"PEL_FORMAT_MATERIAL", code(ids_)},
+                  {"PEL_FORMAT_ALBEDO", code(given_)},
+                  {"PEL_FORMAT_RADIUS", code(weight_.radii)},
+                  {"PEL_RADIUS_COMPONENT", weight_.radiusComponent},
+                  {"PEL_FORMAT_OUT_ALBEDO", code(plan.state.images[PEL_SLOT_ALBEDO])},
+                  {"PEL_FORMAT_OUT_RADII", code(plan.radii)}}}};
     }
 
     size_t upload(Device& device, ShaderPlan& plan) override {
@@ -88,11 +90,14 @@ class SkinMapsPass final : public Pass {
 
     void enqueueFrame(PassWork& work) override {
         const ImageView& frame = work.plan.state.images[PEL_SLOT_RADIANCE];
-        work.launch(program(), "skin_maps", itemRange(work.device, size_t(frame.width) * frame.height),
-                    constants_, tables_, skin_, ids_, given_, weight_.radii, *albedo_, *radii_);
+        work.launch(program(), "skin_maps", vectorRange(work.device, frame.width, frame.height), constants_,
+                    tables_, skin_, ids_, given_, weight_.radii, *albedo_, *radii_);
     }
 
   private:
+    // Halves: a frame waits for memory.
+    static constexpr size_t albedoBytes = 8, radiusBytes = 2, pixelBytes = albedoBytes + radiusBytes;
+
     int oxygenations() const { return skin_.info().components > 2 ? PEL_SKIN_OXYGENATIONS : 1; }
 
     Ref<Buffer> albedo_, radii_;

@@ -140,6 +140,7 @@ double Profile::reach() const {
         const Rgb t = shape_->transmission(distance);
         return std::max({t[0], t[1], t[2]});
     };
+    if (const double known = reach_; known > 0) return known;
     constexpr double left = 1e-3;
     double inside = 0, outside = radius_;
     while (most(outside) > left) inside = outside, outside *= 2;
@@ -147,6 +148,7 @@ double Profile::reach() const {
         const double middle = (inside + outside) / 2;
         (most(middle) > left ? inside : outside) = middle;
     }
+    reach_ = outside;
     return outside;
 }
 

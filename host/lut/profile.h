@@ -1,6 +1,7 @@
 // PelProfile: diffusion profiles (section 1 of the mathematics) in double precision.
 #pragma once
 #include <array>
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <span>
@@ -77,7 +78,8 @@ class Profile final : public Object {
     double radius_;  // length
     std::unique_ptr<ProfileShape> shape_;
     std::vector<GaussianTerm> terms_;
-    mutable std::mutex nameMutex_;  // guards the name only, which may change
+    mutable std::atomic<double> reach_{0};  // 0: not yet computed
+    mutable std::mutex nameMutex_;          // guards the name only, which may change
     std::string name_;
     const char* source_ = "";
     std::optional<PelSkin> pigments_;

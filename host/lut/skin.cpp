@@ -59,14 +59,13 @@ class Table {
                       upper_.weights(std::log1p(layers.thickness * layers.upperAbsorption / opticalUnit), u),
                   third = lower_.weights(std::log(layers.lowerAbsorption), l);
         Spectrum sum{};
-        for (int a = 0; a < 4; ++a)
-            for (int b = 0; b < 4; ++b)
-                for (int c = 0; c < 4; ++c) {
-                    const float weight = float(t[a] * u[b] * l[c]);
-                    const Spectrum& row =
-                        rows_[(size_t(first + a) * upper_.nodes + second + b) * lower_.nodes + third + c];
-                    for (int k = 0; k < frequencies; ++k) sum[k] += weight * row[k];
-                }
+        for (int i = 0; i < 64; ++i) {  // in one loop, since compilers vectorise nested ones across rows
+            const int a = i / 16, b = i / 4 % 4, c = i % 4;
+            const float weight = float(t[a] * u[b] * l[c]);
+            const Spectrum& row =
+                rows_[(size_t(first + a) * upper_.nodes + second + b) * lower_.nodes + third + c];
+            for (int k = 0; k < frequencies; ++k) sum[k] += weight * row[k];
+        }
         return sum;
     }
 
@@ -116,7 +115,7 @@ Computed compute(const PelSkin& skin, bool radial) {
         return logs;
     }();
     Computed out;
-    Rgb light{};
+    Rgb total{};
     for (int i = 0; i < skinWavelengths; ++i) {
         const SkinCoefficients c = skinCoefficients(skin, skinSpectra[i]);
         const SkinLayers layers{skin.epidermis * c.scattering, c.epidermis / c.scattering,
@@ -127,37 +126,39 @@ Computed compute(const PelSkin& skin, bool radial) {
         for (int n = 0; n < 3; ++n) {
             out.albedo[n] += weight[n] * out.reflectance[i];
             const double share = std::max(0.0, weight[n]) * out.reflectance[i];
-            light[n] += share;
+            total[n] += share;
             out.freePath[n] += share / (c.dermis + c.scattering);
             out.scattered[n] += share * c.scattering / (c.dermis + c.scattering);
         }
         if (!radial) continue;
         const double shift = std::log(c.scattering * lowestFrequency);
+        std::array<float, frequencies + 1> nodes;  // without that of 0, and the first and the last twice
+        std::copy(&values[1], values.end(), &nodes[1]);
+        nodes.front() = values[1], nodes.back() = values.back();
         for (int j = 0; j < fitted; ++j) {
             // Cubic [Catmull-Rom] in the logarithm of the frequency; below the first node quadratic in the
             // frequency, beyond the last a power of it.
-            const double at = (logFrequency[j] - shift) * perLog;
-            double value = values[0] + (values[1] - values[0]) * std::exp(2 * std::min(0.0, at) / perLog);
+            const float at = float((logFrequency[j] - shift) * perLog);
+            float value;
             if (at > 0) {
                 const int cell = std::min(int(at), frequencies - 3);
-                const double x = std::min(at - cell, 1.0), beyond = at - cell - x;
-                const auto node = [&](int q) {
-                    return double(values[std::clamp(cell + q, 0, frequencies - 2) + 1]);
-                };
-                const double p = node(-1), q = node(0), r = node(1), s = node(2);
+                const float x = std::min(at - float(cell), 1.0f), beyond = at - float(cell) - x;
+                const float *node = &nodes[cell], p = node[0], q = node[1], r = node[2], s = node[3];
                 value = q + x / 2 * (r - p + x * (2 * p - 5 * q + 4 * r - s + x * (3 * (q - r) + s - p))) +
                         beyond * (r - q);
+            } else {
+                value = values[0] + (values[1] - values[0]) * std::exp(2 * at / float(perLog));
             }
-            value = std::exp(value);
-            for (int n = 0; n < 3; ++n) out.spectrum[j][n] += std::max(0.0, weight[n]) * value;
+            const double light = std::exp(value);
+            for (int n = 0; n < 3; ++n) out.spectrum[j][n] += std::max(0.0, weight[n]) * light;
         }
     }
     for (int n = 0; n < 3; ++n) {
-        out.freePath[n] /= light[n];
-        out.scattered[n] /= light[n];
+        out.freePath[n] /= total[n];
+        out.scattered[n] /= total[n];
         // What is out of the gamut of sRGB counts as nothing.
         out.albedo[n] = std::clamp(out.albedo[n], 1e-4, 1.0);
-        for (Rgb& value : out.spectrum) value[n] /= light[n];
+        for (Rgb& value : out.spectrum) value[n] /= total[n];
     }
     return out;
 }
@@ -181,22 +182,68 @@ struct Basis {
     }
 };
 
-// Weights of 0 or more of fixed Gaussians, by cyclic descent on their squared error over the frequencies.
+// The weights of 0 or more with the smallest squared error over the frequencies [LH74].
+// Those that are not 0 solve their normal equations; more are let in as long as the error falls.
+std::array<double, terms> weightsOf(const Basis& basis, const std::array<double, terms>& wanted) {
+    std::array<double, terms> weights{};
+    std::array<int, terms> in{};  // the first `count`: those that are not 0
+    const auto isIn = [&](int count, int i) { return std::find(&in[0], &in[count], i) != &in[count]; };
+    for (int count = 0, round = 0; round < 3 * terms; ++round) {
+        int best = -1;
+        double steepest = 1e-9;
+        for (int i = 0; i < terms; ++i) {
+            double slope = wanted[i];
+            for (int k = 0; k < count; ++k) slope -= basis.products[i][in[k]] * weights[in[k]];
+            if (slope > steepest && !isIn(count, i)) best = i, steepest = slope;
+        }
+        if (best < 0) break;
+        in[count++] = best;
+        for (bool negative = true; negative && count > 0;) {
+            // Cholesky's factors, and the solution.
+            double l[terms][terms], x[terms];
+            for (int a = 0; a < count; ++a) {
+                for (int b = 0; b <= a; ++b) {
+                    double sum = basis.products[in[a]][in[b]];
+                    for (int k = 0; k < b; ++k) sum -= l[a][k] * l[b][k];
+                    l[a][b] = a == b ? std::sqrt(std::max(sum, 1e-15)) : sum / l[b][b];
+                }
+                x[a] = wanted[in[a]];
+                for (int k = 0; k < a; ++k) x[a] -= l[a][k] * x[k];
+                x[a] /= l[a][a];
+            }
+            for (int a = count - 1; a >= 0; --a) {
+                for (int k = a + 1; k < count; ++k) x[a] -= l[k][a] * x[k];
+                x[a] /= l[a][a];
+            }
+            // As far towards it as all weights remain 0 or more.
+            double step = 1;
+            for (int a = 0; a < count; ++a)
+                if (x[a] <= 0) step = std::min(step, weights[in[a]] / (weights[in[a]] - x[a]));
+            negative = step < 1;
+            int kept = 0;
+            for (int a = 0; a < count; ++a) {
+                double& w = weights[in[a]];
+                w += step * (x[a] - w);
+                if (w > 1e-12)
+                    in[kept++] = in[a];
+                else
+                    w = 0;
+            }
+            count = kept;
+        }
+    }
+    return weights;
+}
+
 Fit fit(const Computed& computed) {
     static const Basis basis;
     Fit out;
     for (int i = 0; i < terms; ++i) out.gaussians.push_back({variance(i), {}});
     for (int c = 0; c < 3; ++c) {
-        std::array<double, terms> weights{}, slope{};  // slope: of half the squared error
+        std::array<double, terms> wanted{};
         for (int i = 0; i < terms; ++i)
-            for (int j = 0; j < fitted; ++j) slope[i] -= basis.at[i][j] * computed.spectrum[j][c];
-        for (int sweep = 0; sweep < 200; ++sweep)
-            for (int i = 0; i < terms; ++i) {
-                const double next = std::max(0.0, weights[i] - slope[i] / basis.products[i][i]),
-                             change = next - weights[i];
-                weights[i] = next;
-                for (int n = 0; n < terms; ++n) slope[n] += change * basis.products[i][n];
-            }
+            for (int j = 0; j < fitted; ++j) wanted[i] += basis.at[i][j] * computed.spectrum[j][c];
+        const std::array<double, terms> weights = weightsOf(basis, wanted);
         double sum = 0;
         for (double w : weights) sum += w;
         for (int i = 0; i < terms; ++i) {
@@ -210,41 +257,49 @@ Fit fit(const Computed& computed) {
             out.error[c] = std::max(out.error[c], std::abs(value - computed.spectrum[j][c]));
         }
     }
+    std::erase_if(out.gaussians, [](const GaussianTerm& term) { return term.weight == Rgb{}; });
     return out;
 }
 
 // ---- Maps
 
+double logDistanceOf(const Fit& fit) {  // the mean over the channels
+    const Rgb& d = fit.meanDistance;
+    return (std::log(d[0]) + std::log(d[1]) + std::log(d[2])) / 3;
+}
+
 // Tables over the square roots of melanin and blood, over their ranges, for one set of other fields.
 struct Maps {
-    static constexpr int fine = PEL_SKIN_SIDE, coarse = 17;
+    static constexpr size_t side = PEL_SKIN_SIDE, every = 4;  // between nodes for which lengths are computed
     PelSkin skin;
-    std::vector<Rgb> logAlbedo, lab;  // fine
-    std::vector<double> logDistance;  // coarse: mean over the channels
+    std::vector<std::array<double, 4>> nodes;  // roots of the albedo, the logarithm of the mean distance
+    std::vector<Rgb> lab;
 
     static PelSkin at(PelSkin skin, double x, double y) {
         skin.melanin = float(range::skin::melanin.max * x * x);
         skin.blood = float(range::skin::blood.max * y * y);
         return skin;
     }
-    static double logDistanceOf(const PelSkin& skin) {
-        const Rgb d = fit(compute(skin, true)).meanDistance;
-        return (std::log(d[0]) + std::log(d[1]) + std::log(d[2])) / 3;
-    }
-    explicit Maps(const PelSkin& from)
-        : skin(from), logAlbedo(fine * fine), lab(fine * fine), logDistance(coarse * coarse) {
-        const auto each = [&](int side, const auto& work) {
-            inParts(size_t(side * side), partsOf(size_t(side * side), 64), [&](size_t, size_t i, size_t end) {
-                for (const double last = side - 1; i < end; ++i)
-                    work(i, at(skin, double(i % side) / last, double(i / side) / last));
-            });
-        };
-        each(fine, [&](size_t i, const PelSkin& here) {
-            const Rgb albedo = compute(here, false).albedo;
-            logAlbedo[i] = {std::log(albedo[0]), std::log(albedo[1]), std::log(albedo[2])};
-            lab[i] = labFromLinear(albedo);
+    explicit Maps(const PelSkin& from) : skin(from), nodes(side * side), lab(side * side) {
+        inParts(nodes.size(), partsOf(nodes.size(), 64), [&](size_t, size_t i, size_t end) {
+            for (const double last = side - 1; i < end; ++i) {
+                const size_t x = i % side, y = i / side;
+                const bool radial = x % every == 0 && y % every == 0;
+                const Computed here = compute(at(skin, double(x) / last, double(y) / last), radial);
+                lab[i] = labFromLinear(here.albedo);
+                for (int c = 0; c < 3; ++c) nodes[i][c] = std::sqrt(here.albedo[c]);
+                if (radial) nodes[i][3] = logDistanceOf(fit(here));
+            }
         });
-        each(coarse, [&](size_t i, const PelSkin& here) { logDistance[i] = logDistanceOf(here); });
+        for (size_t i = 0; i < nodes.size(); ++i) {
+            const size_t x = i % side, y = i / side, left = std::min(x, side - 2) / every * every,
+                         up = std::min(y, side - 2) / every * every;
+            const double s = double(x - left) / every, t = double(y - up) / every;
+            const auto* a = &nodes[up * side + left];
+            const auto* b = a + every * side;
+            nodes[i][3] =
+                (1 - t) * ((1 - s) * a[0][3] + s * a[every][3]) + t * ((1 - s) * b[0][3] + s * b[every][3]);
+        }
     }
     // Of the skin used last: callers come with one picture in many pieces.
     static std::shared_ptr<const Maps> of(PelSkin skin) {
@@ -257,32 +312,20 @@ struct Maps {
     }
 };
 
-struct Place {  // in a table of `side` * `side`
-    size_t first;
-    double x, y;
-    Place(int side, double u, double v) {
-        const double a = u * (side - 1), b = v * (side - 1);
-        const int i = std::min(int(a), side - 2), j = std::min(int(b), side - 2);
-        first = size_t(j) * side + i;
-        x = a - i;
-        y = b - j;
-    }
-    double mix(double a, double b, double c, double d) const {
-        return (1 - y) * ((1 - x) * a + x * b) + y * ((1 - x) * c + x * d);
-    }
-};
-
-double distanceAt(const Maps& maps, double u, double v) {  // its logarithm
-    const Place p(Maps::coarse, u, v);
-    const double *a = &maps.logDistance[p.first], *b = a + Maps::coarse;
-    return p.mix(a[0], a[1], b[0], b[1]);
-}
-
-Rgb mixed(const std::vector<Rgb>& table, double u, double v) {
-    const Place p(Maps::fine, u, v);
-    const Rgb *a = &table[p.first], *b = a + Maps::fine;
-    return {p.mix(a[0][0], a[1][0], b[0][0], b[1][0]), p.mix(a[0][1], a[1][1], b[0][1], b[1][1]),
-            p.mix(a[0][2], a[1][2], b[0][2], b[1][2])};
+// Interpolates linearly at (u, v), from 0 to 1.
+template <size_t n>
+std::array<double, n> between(const std::vector<std::array<double, n>>& table, double u, double v) {
+    constexpr size_t side = Maps::side;
+    const double a = u * (side - 1), b = v * (side - 1);
+    const size_t i = std::min(size_t(a), side - 2), j = std::min(size_t(b), side - 2);
+    const double x = a - double(i), y = b - double(j);
+    const auto* low = &table[j * side + i];
+    const auto* high = low + side;
+    std::array<double, n> mixed;
+    for (size_t c = 0; c < n; ++c)
+        mixed[c] =
+            (1 - y) * ((1 - x) * low[0][c] + x * low[1][c]) + y * ((1 - x) * high[0][c] + x * high[1][c]);
+    return mixed;
 }
 
 }  // namespace
@@ -336,35 +379,29 @@ Ref<Profile> skinLayersProfile(const PelSkin& skin) {
 void skinAlbedo(const PelSkin& skin, const float* melanin, const float* blood, size_t count, float* albedo,
                 float* radius) {
     const auto maps = Maps::of(skin);
-    const double own = radius ? Maps::logDistanceOf(skin) : 0;
+    const double own = radius ? logDistanceOf(fit(compute(skin, true))) : 0;
     const auto root = [](float value, float instead, const FieldRange& range) {
         return std::sqrt(std::clamp(std::isnan(value) ? instead : value, range.min, range.max) / range.max);
     };
     for (size_t i = 0; i < count; ++i) {
         const double u = root(melanin[i], skin.melanin, range::skin::melanin),
                      v = root(blood[i], skin.blood, range::skin::blood);
-        if (albedo) {
-            const Rgb log = mixed(maps->logAlbedo, u, v);
-            for (int c = 0; c < 3; ++c) albedo[3 * i + c] = float(std::exp(log[c]));
-        }
-        if (radius) {
-            radius[i] = float(std::exp(distanceAt(*maps, u, v) - own));
-        }
+        const auto node = between(maps->nodes, u, v);
+        for (int c = 0; albedo && c < 3; ++c) albedo[3 * i + c] = float(node[c] * node[c]);
+        if (radius) radius[i] = float(std::exp(node[3] - own));
     }
 }
 
 std::vector<float> skinTable(const PelSkin& skin, int oxygenations) {
-    const double own = Maps::logDistanceOf(skin), last = Maps::fine - 1;
+    const double own = logDistanceOf(fit(compute(skin, true)));
     std::vector<float> table;
     for (int o = 0; o < oxygenations; ++o) {
         PelSkin at = skin;
         if (oxygenations > 1) at.oxygenation = float(o) / float(oxygenations - 1);
         const Maps maps(at);
-        for (int i = 0; i < Maps::fine * Maps::fine; ++i) {
-            for (const double log : maps.logAlbedo[size_t(i)]) table.push_back(float(std::exp(log / 2)));
-            const int row = i / Maps::fine, column = i % Maps::fine;
-            table.push_back(float(std::exp(distanceAt(maps, column / last, row / last) - own)));
-        }
+        for (const auto& node : maps.nodes)
+            table.insert(table.end(),
+                         {float(node[0]), float(node[1]), float(node[2]), float(std::exp(node[3] - own))});
     }
     return table;
 }
@@ -382,11 +419,11 @@ void skinFromAlbedo(const PelSkin& skin, const float* albedo, size_t count, floa
             return std::pow(other[0] - lab[0], 2) + std::pow(other[1] - lab[1], 2) +
                    std::pow(other[2] - lab[2], 2);
         };
-        constexpr int last = Maps::fine - 1, every = 4;
+        constexpr int last = Maps::side - 1, every = 4;
         double u = 0, v = 0, best = INFINITY;
         for (int y = 0; y <= last; y += every)
             for (int x = 0; x <= last; x += every)
-                if (const double e = squared(maps->lab[size_t(y) * Maps::fine + x]); e < best)
+                if (const double e = squared(maps->lab[size_t(y) * Maps::side + x]); e < best)
                     best = e, u = double(x) / last, v = double(y) / last;
         best = INFINITY;
         for (double step = double(every) / (2 * last); step > 1e-4; step /= 2)
@@ -396,7 +433,7 @@ void skinFromAlbedo(const PelSkin& skin, const float* albedo, size_t count, floa
                 for (int d = 0; d < 9; ++d) {
                     const double x = std::clamp(fromU + (d % 3 - 1) * step, 0.0, 1.0),
                                  y = std::clamp(fromV + (d / 3 - 1) * step, 0.0, 1.0),
-                                 e = deltaE2000(lab, mixed(maps->lab, x, y));
+                                 e = deltaE2000(lab, between(maps->lab, x, y));
                     if (e < best) best = e, u = x, v = y, moved = true;
                 }
             }

@@ -22,7 +22,7 @@ typedef struct Pair {
     Child left, right;
 } Pair;
 
-static inline Pair loadPair(__global const float* at, uint stride) {
+static inline __attribute__((always_inline)) Pair loadPair(__global const float* at, uint stride) {
     Pair pair;
     floatw left, right;
     loadEvenOdd(at + PEL_PLANE_ID * stride, &left, &right);

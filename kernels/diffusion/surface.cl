@@ -65,11 +65,11 @@ static inline void copyPoints(__global const PelDiffusionFrame* frame, __global 
         storePlane(pyramid, row + PEL_PLANE_CURVATURE * stride,
                    selectw((floatw)(0.0f), mean, sound & (fabs(mean) < (floatw)(1e9f))), mine);
 #endif
-    }
 #if PEL_FORMAT_RADIUS
-    storePlane(pyramid, row + PEL_PLANE_RADIUS * stride, loadRadius(imageSpan(radii, &frame->radii, x, y)),
-               mine);
+        storePlane(pyramid, row + PEL_PLANE_RADIUS * stride,
+                   loadRadius(imageSpan(radii, &frame->radii, x, y)), mine);
 #endif
+    }
     storePlane(pyramid, row + PEL_PLANE_ID * stride, as_floatw(id), mine);
 }
 

@@ -326,13 +326,16 @@ def test_a_folder_that_has_gone_and_what_is_no_file(tmp_path):
 def test_a_manifest_travels_with_its_profiles(tmp_path):
     (tmp_path / "own.toml").write_text('name = "own"\nkind = "gaussians"\nunit = "mm"\nsource = "test"\n'
                                        '[[gaussian]]\nvariance = 1.0\nweight = [1, 1, 1]\n')
-    (tmp_path / "m.toml").write_text('[[lut]]\nsize = 8\nprofile = "own.toml"\n')
+    (tmp_path / "m.toml").write_text('[[lut]]\nsize = 8\nprofile = "own.toml"\n'
+                                     '[[grid]]\nsize = 8\nmelanin = [0.01, 0.1]\nstack = 2\n')
     device, manifest = pel.Device(), batch.Manifest(tmp_path / "m.toml")
-    packed, file = pickle.dumps(manifest), manifest.make(device, 0)
+    packed, files = pickle.dumps(manifest), [manifest.make(device, i) for i in range(2)]
     (tmp_path / "own.toml").unlink()
     (tmp_path / "m.toml").unlink()
     again = pickle.loads(packed)
-    assert again.entries == manifest.entries and again.make(device, 0) == file
-    assert manifest.holds(0, file) and not manifest.holds(0, file[:-1])
+    assert again.entries == manifest.entries
+    for i, file in enumerate(files):
+        assert again.make(device, i) == file
+        assert manifest.holds(i, file) and not manifest.holds(i, file[:-1])
     with pytest.raises(IndexError):
-        manifest.make(device, 1)
+        manifest.make(device, 2)

@@ -140,7 +140,6 @@ TEST_F(BatchCommand, TablesBeginAsTheVersionOrThePresetSays) {
     EXPECT_EQ(tables("version = 2\n" + small + "closed_ends = 0\n")[0]["closed_ends"], 0);
 }
 
-// Wrong entries are reported with their lines, and the others are made.
 TEST_F(BatchCommand, SkinsAreProfiles) {
     const std::string text =
         "[[grid]]\nname = \"{profile}\"\nmelanin = [0.01, 0.1]\nblood = [0.02, 0.05]\nsize = 8\n";
@@ -151,6 +150,45 @@ TEST_F(BatchCommand, SkinsAreProfiles) {
     EXPECT_TRUE(contains(batch("[[grid]]\nmelanin = [0.7]\n").err, "melanin"));
 }
 
+// Tables of one size below each other in one file, the last of which is shorter.
+TEST_F(BatchCommand, AStackHoldsTheTexelsOfItsTables) {
+    const std::string grid = "[[grid]]\nmelanin = [0.01, 0.1, 0.3]\nblood = [0.02, 0.05]\nsize = 8\n",
+                      stacked = grid + "stack = 4\n";
+    made(grid + "name = \"{profile}\"\n");
+    const auto texels = [&](const nlohmann::json& file) {
+        const std::string rgb[] = {"R", "G", "B"};
+        return pellucid::io::readImage(path("out/" + std::string(file["file"]))).interleaved(rgb);
+    };
+    std::map<std::string, std::vector<float>> single;
+    const nlohmann::json tables = index()["tables"];
+    for (const auto& table : tables) single[table["profile"]] = texels(table);
+    fs::remove_all(path("out"));
+    nlohmann::json report = made(stacked);
+    EXPECT_EQ(report["entries"], 2);
+    EXPECT_EQ(report["tables"], 6);
+    const nlohmann::json files = index()["tables"];
+    ASSERT_EQ(files.size(), 2u);
+    EXPECT_EQ(files[0]["stack"].size(), 4u);
+    EXPECT_EQ(files[1]["stack"].size(), 2u);
+    for (const auto& file : files) {
+        std::vector<float> expected;
+        for (const auto& table : file["stack"]) {
+            const std::vector<float>& one = single[table["profile"]];
+            expected.insert(expected.end(), one.begin(), one.end());
+        }
+        EXPECT_EQ(texels(file), expected);
+    }
+    EXPECT_EQ(made(stacked)["kept"], 2);
+    const std::string damaged = path("out/" + std::string(files[1]["file"]));
+    fs::resize_file(damaged, fs::file_size(damaged) - 1);
+    report = made(stacked);
+    EXPECT_EQ(report["kept"], 1);
+    EXPECT_EQ(report["redone"], 1);
+    EXPECT_TRUE(contains(batch(stacked + "name = \"{profile}\"\n").err, "cannot stand beside 'stack'"));
+    EXPECT_TRUE(contains(batch(grid + "stack = 5000\n").err, "stack"));
+}
+
+// Wrong entries are reported with their lines, and the others are made.
 TEST_F(BatchCommand, SaysWhatIsWrong) {
     const struct {
         std::string text;
@@ -305,7 +343,7 @@ TEST_F(BatchCommand, FilesHoldTheTexelsOfTheTable) {
         EXPECT_EQ(pellucid::io::readImage(path("t.exr")).channels.at(0).type,
                   half ? pellucid::io::ChannelType::Half : pellucid::io::ChannelType::Float);
         const pellucid::Lut lut = pellucid::io::readLut(device, path("t.exr"));
-        const auto& info = entry.info;
+        const PelLutInfo info = entry.tables.front().filled();
         EXPECT_EQ(lut.info().kind, info.kind);
         const pellucid::Lut again = info.kind == PEL_LUT_CURVATURE ? pellucid::Lut(device, info.curvature)
                                     : info.kind == PEL_LUT_SHADOW  ? pellucid::Lut(device, info.shadow)

@@ -121,7 +121,7 @@ def skins(session: Session, out: Path, size: int) -> list[str]:
     pictures = []
     lines = ["![One head, six skins](skins.png)", "",
              "One head, six skins, by melanin and blood alone: the viewer's presets, nearest to measured "
-             "mean colours.", "", "| skin | melanin | blood | L\\*, a\\*, b\\* | ITA | mean distance, mm |",
+             "colours.", "", "| skin | melanin | blood | L\\*, a\\*, b\\* | ITA | mean distance, mm |",
              "|---|---|---|---|---|---|"]
     for name, _, _ in SKINS:
         session.look = Look.from_dict({**PRESETS[name], "ambient": 0.08})

@@ -144,11 +144,12 @@ ARRANGEMENTS = {"Three points": ((55, 30, 1.0), (-50, 10, 0.15), (160, 15, 0.2))
 
 PIGMENTS = "melanin", "eumelanin", "blood", "oxygenation", "epidermis"
 
-# Name, melanin and blood: the skins nearest to mean colours of arms, L* 63.0, 60.9 (inner arms; Xiao et
-# al., Characterising the variations in ethnic skin colours, 2017), 53.7, 49.2, 43.7 and 38.1 (upper and
-# lower arms; Alaluf et al., Ethnic variation in melanin content and composition, 2002).
-SKINS = (("Skin, pale", 0.026, 0.006), ("Skin, light", 0.03, 0.008), ("Skin, medium", 0.055, 0.013),
-         ("Skin, brown", 0.082, 0.013), ("Skin, dark", 0.097, 0.026), ("Skin, very dark", 0.133, 0.037))
+# Name, melanin and blood: the skins nearest to measured colours. L* 68.4: a fair inner arm (Cooksey, Allen,
+# Tsai, Reference data set of human skin reflectance, 2017); 63.0: the mean of inner arms (Xiao et al.,
+# Characterising the variations in ethnic skin colours, 2017); 53.7, 49.2, 43.7, 38.1: means of upper and
+# lower arms (Alaluf et al., Ethnic variation in melanin content and composition, 2002).
+SKINS = (("Skin, pale", 0.009, 0.008), ("Skin, light", 0.026, 0.006), ("Skin, medium", 0.055, 0.013),
+         ("Skin, brown", 0.082, 0.013), ("Skin, dark", 0.098, 0.026), ("Skin, very dark", 0.134, 0.037))
 
 # What a preset leaves as it is: lights and view.
 KEPT_BY_PRESETS = ("lamps", "ambient", "surroundings", "surroundings_light", "surroundings_turn",

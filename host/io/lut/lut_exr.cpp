@@ -41,7 +41,8 @@ struct Bytes {
     }
 };
 
-Bytes header(const PelLutInfo& info, PelLutEncoding encoding, const std::string& key, size_t& sumAt) {
+Bytes header(const PelLutInfo& info, PelLutEncoding encoding, const std::string& key, uint32_t stack,
+             size_t& sumAt) {
     const auto [width, height] = lutSize(info);
     Bytes channels;
     for (const char* name : {"B", "G", "R"})  // alphabetical, as the format requires
@@ -56,12 +57,13 @@ Bytes header(const PelLutInfo& info, PelLutEncoding encoding, const std::string&
     b.attribute("channels", "chlist", channels.data);
     b.attributeOf("compression", "compression", uint8_t(0));
     for (const char* window : {"dataWindow", "displayWindow"})
-        b.attributeOf(window, "box2i", 0, 0, int(width) - 1, int(height) - 1);
+        b.attributeOf(window, "box2i", 0, 0, int(width) - 1, int(height * stack) - 1);
     b.attributeOf("lineOrder", "lineOrder", uint8_t(0));
     b.attributeOf("pixelAspectRatio", "float", 1.0f);
     b.attributeOf("screenWindowCenter", "v2f", 0.0f, 0.0f);
     b.attributeOf("screenWindowWidth", "float", 1.0f);
-    for (const auto& [name, value] : describeLut(info)) {
+    if (stack > 1) b.attributeOf("pellucid:stack", "int", int(stack));
+    for (const auto& [name, value] : stack > 1 ? decltype(describeLut(info))() : describeLut(info)) {
         if (const auto* s = std::get_if<std::string>(&value)) b.attribute(name, "string", *s);
         if (const auto* i = std::get_if<int>(&value)) b.attributeOf(name, "int", *i);
         if (const auto* f = std::get_if<float>(&value)) b.attributeOf(name, "float", *f);
@@ -98,17 +100,17 @@ void scanLines(Bytes& b, uint32_t width, uint32_t height, std::string_view texel
 }  // namespace
 
 std::string encodeLutExr(const PelLutInfo& info, PelLutEncoding encoding, std::string_view texels,
-                         const std::string& key) {
+                         const std::string& key, uint32_t stack) {
     if (encoding != PEL_LUT_HALF && encoding != PEL_LUT_FLOAT)
         throw std::invalid_argument("encodeLutExr: the encoding must be half or float");
     const auto [width, height] = lutSize(info);
     size_t sumAt = 0;
-    Bytes b = header(info, encoding, key, sumAt);
-    b.data.reserve(b.data.size() + texels.size() + 16 * size_t(height));
+    Bytes b = header(info, encoding, key, stack, sumAt);
+    b.data.reserve(b.data.size() + texels.size() + 16 * size_t(height) * stack);
     if (encoding == PEL_LUT_HALF)
-        scanLines<uint16_t>(b, width, height, texels);
+        scanLines<uint16_t>(b, width, height * stack, texels);
     else
-        scanLines<float>(b, width, height, texels);
+        scanLines<float>(b, width, height * stack, texels);
     b.data.replace(sumAt, noSum.size(), hexDigits(contentHash(b.data)));
     return std::move(b.data);
 }
