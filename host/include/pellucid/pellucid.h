@@ -613,7 +613,7 @@ PEL_API PelError pelSkinGetInfo(const PelSkin* skin, PelSkinInfo* info);
  * reflects. */
 PEL_API PelError pelSkinReflectance(const PelSkin* skin, const float* nanometres, uint32_t count,
                                     float* reflectance);
-/* A profile in mm: 14 Gaussians. Radius: as for Burley's. */
+/* A profile in mm: up to 14 Gaussians. Radius: as for Burley's. */
 PEL_API PelError pelProfileCreateSkinLayers(const PelSkin* skin, PelProfile* profile);
 /* Maps: for `count` values of melanin and blood, with the other fields of `skin`, RGB albedos (3 * count) and
  * lengths relative to the profile of `skin` (count), for the second component of PEL_SLOT_SCATTER_WEIGHT;
