@@ -65,13 +65,11 @@ def test_opengl_host_draws_a_ring_and_its_shadow(tmp_path):
     assert image.shape == (540, 960, 3)
     green = (image[..., 1] > 1.15 * image[..., 0]) & (image[..., 1] > 0.2)
     rows, columns = np.nonzero(green)
-    # The ring is about the middle of the picture, with a hole, a little wider than high for the camera looks
-    # down on it.
+    # The ring is about the middle of the picture, with a hole, and wider than high: seen from above.
     assert 0.05 < green.mean() < 0.3
     assert abs(columns.mean() - 480) < 30 and not green[rows.min() + (rows.max() - rows.min()) // 2,
                                                         470:490].all()
-    # Its shadow falls on the wall, away from the light: to the left and down. Where the light comes from,
-    # the wall is lit.
+    # Its shadow falls on the wall to the left and down; where the light comes from, the wall is lit.
     grey = ~green & (image.max(-1) > 0.02)
     left, right = image[:, :480].mean(-1)[grey[:, :480]], image[:, 480:].mean(-1)[grey[:, 480:]]
     dark = np.median(image.mean(-1)[grey]) * 0.6
