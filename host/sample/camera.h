@@ -16,10 +16,10 @@ struct Camera {
     double farPlane = 2000;   // mm
 
     Vec3 forward() const { return normalize(target - eye, {0, 1, 0}); }
-    Matrix4 view() const;                         // world to view
-    Matrix4 projection(double aspect) const;      // view to clip; aspect: width / height
-    Matrix4 viewProjection(double aspect) const;  // world to clip
-    Matrix4 inverseViewProjection(double aspect) const;
+    Matrix4 view() const;                     // world to view
+    Matrix4 projection(double aspect) const;  // view to clip; aspect: width / height
+    Matrix4 viewProjection(double aspect) const { return projection(aspect) * view(); }
+    Matrix4 inverseViewProjection(double aspect) const { return viewProjection(aspect).inverse(); }
 };
 
 // Which way a head looks. The default is that of most scans with z up; {y, z}
@@ -29,8 +29,7 @@ struct HeadPose {
     Vec3 front{0, -1, 0};  // unit, across up, where the nose points
 };
 
-// The pose of a mesh by its up axis: 'y' (it looks to +z, as most OBJ files), else 'z' (it looks to -y, as
-// most scans).
+// The pose of a mesh by its up axis: 'y' (it looks to +z, as most OBJ files), else 'z' (to -y, as scans).
 HeadPose poseWithUp(char axis);
 
 // Unit vector away from the head: azimuth 0 is the front, 90 its left ear (on the right of a frontal
