@@ -5,8 +5,7 @@
 namespace pellucid::sample {
 
 // A perspective camera. View space is right-handed: x right, y up, the camera looks along -z. Clip space has
-// x and y in
-// [-w, w], y up (row 0 of an image on top), and z from 0 at the near plane to w at the far plane.
+// x and y in [-w, w], y up (row 0 of an image on top), and z from 0 at the near plane to w at the far plane.
 struct Camera {
     Vec3 eye{0, -1000, 0};    // mm
     Vec3 target{0, 0, 0};     // mm
@@ -22,8 +21,7 @@ struct Camera {
     Matrix4 inverseViewProjection(double aspect) const { return viewProjection(aspect).inverse(); }
 };
 
-// Which way a head looks. The default is that of most scans with z up; {y, z}
-// suits y-up files.
+// Which way a head looks. The default is that of most scans with z up; {y, z} suits y-up files.
 struct HeadPose {
     Vec3 up{0, 0, 1};      // unit, towards the crown
     Vec3 front{0, -1, 0};  // unit, across up, where the nose points
