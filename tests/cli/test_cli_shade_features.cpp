@@ -180,7 +180,8 @@ TEST_F(ShadeFeatures, AnAmbientCubeIsReadFromAFile) {
     refuses("six square faces");
 }
 
-// A shelf in the left half of a cube's lowest face shades that of a floor; a cube of another shape is named.
+// A shelf in the left half of a cube's lowest face shades the left half of a floor; a cube of another shape
+// is named.
 TEST_F(ShadeFeatures, ACubeShadowMapFromTheSceneFile) {
     begin(width, height);
     const auto place = [](int x, int y, size_t c) { return c == 0 ? 4 * x - 22 : c == 1 ? 2 * y : 0; };
