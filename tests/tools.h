@@ -61,8 +61,7 @@ inline uint32_t sizedRows(uint32_t width, uint32_t height) {
 }
 
 // float32 to half and back by bits, rounding to nearest even: what the kernels' vstore_half_rte must agree
-// with.
-// For values of half's range.
+// with. For values of half's range.
 inline uint16_t toHalf(float value) {
     uint32_t bits;
     std::memcpy(&bits, &value, 4);

@@ -1,6 +1,5 @@
 #include "demo/demo_head.h"
 
-#include <algorithm>
 #include <filesystem>
 
 #include "io/mesh/mesh_parts.h"
@@ -70,8 +69,7 @@ std::vector<sample::Tint> tintsOf(const io::PartedMesh& head, const Bounds (&eye
     return tints;
 }
 
-// The lips of the heads are open by a hair, and teeth reach into them: moved back and in, they stay in the
-// mouth's shade.
+// The lips are open by a hair, and teeth reach into them: moved back and in, they stay in the mouth's shade.
 void closeMouth(io::PartedMesh& head) {
     constexpr float back = 4;  // mm
     std::vector<bool> moved(head.mesh.vertexCount());

@@ -28,18 +28,6 @@ GltfValue GltfValue::operator[](size_t index) const {
     return GltfValue(*file_, (*json_)[index], concat(where_, "[", index, "]"));
 }
 
-size_t GltfValue::count(const char* key) const {
-    return has(key) ? (*this)[key].size() : 0;
-}
-
-bool GltfValue::hasExtension(const char* name) const {
-    return has("extensions") && (*this)["extensions"].has(name);
-}
-
-GltfValue GltfValue::extension(const char* name) const {
-    return (*this)["extensions"][name];
-}
-
 size_t GltfValue::size() const {
     if (!json_->is_array()) fail("is no array");
     return json_->size();
@@ -69,18 +57,6 @@ uint64_t GltfValue::whole(uint64_t most) const {
 const std::string& GltfValue::text() const {
     if (!json_->is_string()) fail("is no text");
     return json_->get_ref<const std::string&>();
-}
-
-double GltfValue::number(const char* key, double otherwise, double low, double high) const {
-    return has(key) ? (*this)[key].number(low, high) : otherwise;
-}
-
-uint64_t GltfValue::whole(const char* key, uint64_t otherwise, uint64_t most) const {
-    return has(key) ? (*this)[key].whole(most) : otherwise;
-}
-
-std::string GltfValue::text(const char* key, const std::string& otherwise) const {
-    return has(key) ? (*this)[key].text() : otherwise;
 }
 
 bool GltfValue::flag(const char* key) const {

@@ -23,10 +23,10 @@ class GltfValue {
     // Of an array; the index is below size().
     GltfValue operator[](size_t index) const;
     // Elements of an array member; 0 if there is no such member.
-    size_t count(const char* key) const;
+    size_t count(const char* key) const { return has(key) ? (*this)[key].size() : 0; }
     // The extension NAME of this object; call hasExtension first.
-    bool hasExtension(const char* name) const;
-    GltfValue extension(const char* name) const;
+    bool hasExtension(const char* name) const { return has("extensions") && (*this)["extensions"].has(name); }
+    GltfValue extension(const char* name) const { return (*this)["extensions"][name]; }
 
     size_t size() const;  // of an array
     double number(double low, double high) const;
@@ -35,13 +35,18 @@ class GltfValue {
     const std::string& where() const { return where_; }
 
     // Of a member, or `otherwise` if it is not there.
-    double number(const char* key, double otherwise, double low, double high) const;
-    uint64_t whole(const char* key, uint64_t otherwise, uint64_t most) const;
-    std::string text(const char* key, const std::string& otherwise) const;
+    double number(const char* key, double otherwise, double low, double high) const {
+        return has(key) ? (*this)[key].number(low, high) : otherwise;
+    }
+    uint64_t whole(const char* key, uint64_t otherwise, uint64_t most) const {
+        return has(key) ? (*this)[key].whole(most) : otherwise;
+    }
+    std::string text(const char* key, const std::string& otherwise) const {
+        return has(key) ? (*this)[key].text() : otherwise;
+    }
     bool flag(const char* key) const;  // false without it
     void numbers(const char* key, double* values, size_t count, double low, double high) const;
-    // This number, and that of a member, as the index of an element of the document's `array`, which must
-    // have it.
+    // This number, and that of a member, as the index of an element of the document's `array`.
     size_t index(const char* array, size_t available) const;
     size_t reference(const char* key, const char* array, size_t available) const {
         return (*this)[key].index(array, available);

@@ -117,8 +117,7 @@ Triple row(const Matrix& m, size_t i) {
     return {m[4 * i], m[4 * i + 1], m[4 * i + 2]};
 }
 
-// Transforms a normal by the cofactors of the upper left 3 x 3 matrix, which is also correct for mirrored
-// parts.
+// Transforms a normal by the cofactors of the upper left 3 x 3 matrix: correct for mirrored parts, too.
 Triple turned(const Matrix& m, const Triple& n) {
     return {dot(cross(row(m, 1), row(m, 2)), n), dot(cross(row(m, 2), row(m, 0)), n),
             dot(cross(row(m, 0), row(m, 1)), n)};

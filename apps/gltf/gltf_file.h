@@ -1,6 +1,5 @@
-// Scenes of glTF 2.0 (.gltf, .glb): triangles in the world, materials, cameras and lights as plain data.
-// What is read, and what is left out with a warning, is in docs/guide/gltf.md. Source: Khronos Group, glTF
-// 2.0 Specification.
+// Scenes of glTF 2.0 (.gltf, .glb): triangles in the world, materials, cameras and lights as plain data
+// [Khronos, glTF 2.0 Specification]. docs/guide/gltf.md says what is left out with a warning.
 #pragma once
 #include <cmath>
 #include <functional>
@@ -59,8 +58,7 @@ struct GltfScene {
     std::vector<SceneLight> lights;
 };
 
-// Reads a file that the scene names by a relative path without "..", "." or a scheme. Percent signs are
-// decoded.
+// Reads a file that the scene names by a relative path without "..", "." or a scheme; percent signs decoded.
 using GltfResource = std::function<std::string(const std::string& relative)>;
 
 // Throws FileError, whose message names the place in the file ("meshes[2].primitives[0].indices"): damaged,

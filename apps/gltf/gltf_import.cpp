@@ -39,8 +39,7 @@ double reflected(const std::vector<SceneLight>& lights, const Triple& at, const 
     return std::ranges::max(sum);
 }
 
-// A sample of a few thousand triangles that light reaches, under the lights as the file has them. Shadows and
-// scattering are left out.
+// A sample of a few thousand triangles under the lights as the file has them, without shadows and scattering.
 std::vector<LitArea> litSurface(const ImportedGltf& made) {
     const MeshData& mesh = made.gltf.mesh;
     std::vector<LitArea> lit;

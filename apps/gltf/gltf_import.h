@@ -10,21 +10,18 @@ struct GltfLook {
     Triple albedo{};          // without the texture
     std::string profileName;  // of a profile made for it; "" if there is none
     std::string profileText;  // the profile file
-    // How the material was imported, for the report: "plain", "metal", "clear", "volume", "thin sheet",
-    // "profile"
+    // How the material was imported: "plain", "metal", "clear", "volume", "thin sheet", "profile"
     std::string how;
 };
 
-// Material `id`. `profile`: a profile of the library or a .toml file that replaces the volume of the glTF
-// material; "" keeps it.
+// Material `id`. `profile`: one of the library or a .toml file in place of the glTF material's volume, or "".
 GltfLook lookOf(const GltfMaterial& material, const std::string& name, uint32_t id,
                 const std::string& profile);
 
 // Unique names of letters, digits, _ and -, for files and keys.
 std::vector<std::string> plainNames(const std::vector<GltfMaterial>& materials);
 
-// Single-scattering albedo of a medium whose half-space has this albedo [Kulla and Conty 2017, from van de
-// Hulst].
+// Single-scattering albedo of a medium whose half-space has this albedo [Kulla and Conty 2017].
 double singleScatterAlbedo(double multiscatter, double anisotropy);
 
 struct GltfImportOptions {

@@ -22,8 +22,7 @@ std::string profileFile(const std::string& name, const std::string& source, cons
            "\"\n" + keys;
 }
 
-// The width b for which a slab of thickness s transmits the fraction T of light: T = exp(-s/b) / 4 + 3
-// exp(-s/3b) / 4.
+// The width b with which a slab of thickness s transmits T of light: T = exp(-s/b) / 4 + 3 exp(-s/3b) / 4.
 double widthFor(double share, double thickness) {
     double low = 1e-4 * thickness, high = 1e4 * thickness;
     for (int i = 0; i < 200; ++i) {
@@ -57,9 +56,8 @@ void volume(const GltfMaterial& m, const std::string& name, GltfLook& look) {
     }
 }
 
-// A wall that transmits light diffusely. The library adds T times the irradiance of the other side and then
-// multiplies by the albedo. So the albedo is the reflected fraction, and T is the ratio of transmitted to
-// reflected light, at most 0.98.
+// A wall that transmits light diffusely. The library adds T times the irradiance of the other side, then
+// multiplies by the albedo: albedo is what is reflected, T transmitted over reflected light, at most 0.98.
 void thinSheet(const GltfMaterial& m, const std::string& name, GltfLook& look) {
     const double thickness = m.thickness > 0 ? 1000 * m.thickness : sheet;
     Triple width;
@@ -107,8 +105,7 @@ GltfLook lookOf(const GltfMaterial& m, const std::string& name, uint32_t id, con
         thinSheet(m, name, look);
     }
     if (!look.profileName.empty()) look.material.profile = name + ".toml";
-    // The GGX width is the square of glTF's roughness. f0 is one number, so that a metal's base colour is
-    // averaged.
+    // The GGX width is the square of glTF's roughness. f0 is one number: the mean of a metal's base colour.
     const double ratio = m.ior > 0 ? (m.ior - 1) / (m.ior + 1) : 1,
                  metal = (m.baseColor[0] + m.baseColor[1] + m.baseColor[2]) / 3;
     p.specularModel = PEL_SPECULAR_GGX;

@@ -1,5 +1,4 @@
-// pellucid import: a glTF scene as a mesh, a scene file and, where the build has the sample renderer, a
-// G-buffer.
+// pellucid import: a glTF scene as a mesh, a scene file and, with the sample renderer, a G-buffer.
 
 #include "cli/mesh_curvature.h"
 #include "gltf/import_view.h"

@@ -11,8 +11,7 @@ struct ImportView {
     int camera;  // index, or -1: frames everything
 };
 
-// Renders into `folder`: gbuffer.exr, and shadow maps of directional and spot lights; writes the scene's
-// channels, camera and lights.
+// Renders gbuffer.exr and shadow maps into `folder`; sets the scene's channels, camera and lights.
 void drawImport(Run& run, const std::string& folder, io::ImportedGltf& imported, const ImportView& view);
 
 }  // namespace pellucid::cli

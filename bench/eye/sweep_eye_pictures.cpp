@@ -1,7 +1,5 @@
 // Draws docs/figures/eye_pupils.png, eye_caustic.png, eye_limbus.png and eye_tracer.png:
 //   sweep_eye_pictures FOLDER
-#include <cstdio>
-#include <stdexcept>
 
 #include "eye/eye_picture.h"
 #include "io/image/image_file.h"

@@ -2,10 +2,8 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
-#include <chrono>
-#include <stdexcept>
-
 #include "measure.h"
+#include "timing.h"
 
 namespace pellucid::bench {
 namespace {
@@ -26,8 +24,7 @@ COPY(float16, copy16)
         out[get_global_id(0)] = SUM_##T(s);                                    \
     }
 #define SUM_float(s) s
-// The sum of all lanes, with another start in each work-item: compilers leave out unused results, and compute
-// equal ones once.
+// The sum of all lanes, with another start in each work-item: compilers drop unused and equal results.
 #define SUM_float8(s) dot(s.lo + s.hi, (float4)(1.0f))
 #define SUM_float16(s) dot(s.lo.lo + s.lo.hi + s.hi.lo + s.hi.hi, (float4)(1.0f))
 CHAINS(float, chains1)
@@ -100,10 +97,6 @@ class Limits {
     std::shared_ptr<std::remove_pointer_t<cl_program>> program_;
 };
 
-double seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 }  // namespace
 
 std::vector<Factory> deviceCases(const Device& device, bool quick) {
@@ -119,9 +112,10 @@ std::vector<Factory> deviceCases(const Device& device, bool quick) {
         double least = INFINITY;
         for (int repeat = 0; repeat < 3; ++repeat)
             for (const int lanes : {0, 4, 16}) {
-                const double start = seconds();
+                const double start = milliseconds();
                 l->copy(lanes);
-                if (repeat > 0 && seconds() - start < least) least = seconds() - start, best = lanes;
+                if (repeat > 0 && milliseconds() - start < least)
+                    least = milliseconds() - start, best = lanes;
             }
         Case c;
         c.what = std::to_string(bytes >> 20) + " MiB, " +
@@ -139,12 +133,13 @@ std::vector<Factory> deviceCases(const Device& device, bool quick) {
         for (const int lanes : {1, 8, 16}) {
             l->multiplyAdd(lanes, items);
             for (int repeat = 0; repeat < 3; ++repeat) {
-                const double start = seconds(), rate = l->multiplyAdd(lanes, items) / (seconds() - start);
+                const double start = milliseconds(),
+                             rate = l->multiplyAdd(lanes, items) / (milliseconds() - start);
                 if (rate > most) most = rate, best = lanes;
             }
         }
         // About 10 ms a run.
-        while (items < (1u << 20) && double(items) * best * operationsPerLane < 0.01 * most) items *= 2;
+        while (items < (1u << 20) && double(items) * best * operationsPerLane < 10 * most) items *= 2;
         Case c;
         c.what = "multiply-add, float" + (best > 1 ? std::to_string(best) : std::string()) + ", 8 chains";
         c.items = c.operations = l->multiplyAdd(best, items);

@@ -1,13 +1,10 @@
 // The cases of `pellucid bench`, and their measurement.
 #pragma once
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <pellucid/pellucid.hpp>
-#include <string>
-#include <vector>
 
 namespace pellucid::bench {
 
@@ -83,8 +80,7 @@ struct Request {
 };
 
 // {"name", "platform", "version", "driver", ..., "first_use", "warm_start", and what measureCases() gives}.
-// Everything but the description happens in other processes, so that a driver that hangs or crashes costs the
-// case that it was at.
+// Measured in other processes, so that a driver that hangs or crashes costs the case that it was at.
 nlohmann::ordered_json measureDevice(const Request& request);
 
 // In this process: {"copy_bytes_per_second", "operations_per_second" (null: not known), "operations":
@@ -93,8 +89,7 @@ nlohmann::ordered_json measureDevice(const Request& request);
 // message}]}
 nlohmann::ordered_json measureCases(const Request& request);
 
-// In this process: {"scenes", "operations" (groups "methods", "shares", "frames", "clips"), "pictures"}
-// (docs/guide/measuring.md).
+// In this process: {"scenes", "operations", "pictures"} (docs/guide/measuring.md).
 nlohmann::ordered_json measureMethods(const Request& request);
 
 // In this process: {"stability": {"share", "operations": [{"name", "range", "unit", "limit", "points",
@@ -106,8 +101,7 @@ nlohmann::ordered_json measureStability(const Request& request);
 void makeTruth(const Device& device, const std::string& folder, const std::string& headFile,
                const std::function<void(const std::string&)>& say, const std::function<bool()>& cancelled);
 
-// What a process pays once: {"device_ms", "table_ms", "shade_ms", "total_ms"} from nothing to the first table
-// and frame.
+// What a process pays once for its first table and frame: {"device_ms", "table_ms", "shade_ms", "total_ms"}.
 nlohmann::ordered_json firstUse(const std::string& device);
 
 // This machine and this build. reportFormat: changes where a reader of reports would have to.

@@ -1,12 +1,9 @@
 // What the methods of scattering cost on the frozen scenes, and how far they are from light.
-#include <filesystem>
-#include <fstream>
-#include <optional>
 
 #include "io/choice_keys.h"
-#include "io/image/image_file.h"
+#include "io/image/picture_library.h"
 #include "io/image/tone_map.h"
-#include "io/input_file.h"
+#include "io/shortest.h"
 #include "measure.h"
 #include "scenes.h"
 #include "timing.h"
@@ -40,11 +37,7 @@ std::vector<Setting> settings() {
         all.back().request.count = false;
         return all.back();
     };
-    const auto text = [](double v, const char* unit) {
-        char buffer[32];
-        std::snprintf(buffer, sizeof buffer, "%g %s", v, unit);
-        return std::string(buffer);
-    };
+    const auto text = [](double v, const char* unit) { return io::printed("%g %s", v, unit); };
     Setting& plain = add("Lambert", "", PEL_SCATTERING_NONE);
     plain.quick = plain.shown = true;
     plain.tunes = "none";
@@ -103,8 +96,7 @@ std::vector<float> valuesAt(const std::vector<float>& rgb, const std::vector<siz
     return some;
 }
 
-// Into `row`: how far values at the drawn pixels are from light, without the noise of the walks, but for P99
-// and CIEDE2000, in which it is.
+// Into `row`: how far values at the drawn pixels are from light; P99 and CIEDE2000 with the walks' noise.
 void addErrors(Json& row, const std::vector<float>& values, const Truth& truth,
                const std::vector<uint8_t>& subsets) {
     const auto compared = [&](const std::vector<uint8_t>& mask) {
@@ -448,15 +440,12 @@ class Methods {
                 for (int c = 0; c < 3 * side; ++c)
                     crop.push_back(sceneAlbedo *
                                    light[3 * (size_t(y) * size_t(s.width) + size_t(x0)) + size_t(c)]);
-            const std::string path = (std::filesystem::temp_directory_path() /
-                                      ("pellucid-bench-" + std::to_string(::getpid()) + ".png"))
-                                         .string();
-            io::writeImage8(path, side, side, 3, io::toSrgb8(crop, io::ToneMap{part.exposure}));
+            const std::vector<uint8_t> pixels = io::toSrgb8(crop, io::ToneMap{part.exposure});
+            const std::string file = io::pngPictures.encode("picture.png", side, side, 3, pixels, true);
             pictures_.push_back({{"scene", name},
                                  {"method", setting.name()},
                                  {"exposure", part.exposure},
-                                 {"png", base64(io::readWholeFile(path, io::textLimit))}});
-            std::filesystem::remove(path);
+                                 {"png", base64(file)}});
         }
     }
 

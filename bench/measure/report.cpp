@@ -1,13 +1,10 @@
 #include "report.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdio>
 #include <functional>
 #include <map>
-#include <vector>
 
+#include "io/shortest.h"
 #include "timing.h"
 
 namespace pellucid::bench {
@@ -153,11 +150,7 @@ Json compareReports(const Json& before, const Json& after) {
 
 std::string describeComparison(const Json& comparison) {
     std::string text;
-    const auto line = [&](const char* format, auto... values) {
-        char buffer[256];
-        std::snprintf(buffer, sizeof buffer, format, values...);
-        text += buffer;
-    };
+    const auto line = [&](auto... parts) { text += io::printed(parts...); };
     for (const Json& device : comparison.at("devices")) {
         text += device.at("name").get<std::string>();
         if (device.contains("old_name"))
@@ -277,12 +270,9 @@ std::string tuningText(const Json& device) {
     if (!all.empty())
         text = "device " + device.at("name").get<std::string>() + ", " +
                device.at("platform").get<std::string>() + "\n";
-    for (const Tuned& t : all) {
-        char line[128];
-        std::snprintf(line, sizeof line, "%s %.4g %.4g %.4g %.4g\n", t.tunes.c_str(), t.target,
-                      percentile90(t.perPixel), t.perFrame, std::sqrt(t.squares / double(t.perPixel.size())));
-        text += line;
-    }
+    for (const Tuned& t : all)
+        text += io::printed("%s %.4g %.4g %.4g %.4g\n", t.tunes.c_str(), t.target, percentile90(t.perPixel),
+                            t.perFrame, std::sqrt(t.squares / double(t.perPixel.size())));
     return text;
 }
 

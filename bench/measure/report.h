@@ -6,8 +6,7 @@
 
 namespace pellucid::bench {
 
-// The report in a text: an object with an array "devices", nested no deeper than any report. Anything else is
-// discarded (is_discarded()).
+// The report in a text: an object with an array "devices"; anything else is discarded (is_discarded()).
 nlohmann::ordered_json parseReport(const std::string& text);
 
 // {"devices": [{"name", "operations": [{"name", "old_ms", "new_ms", "ratio", "noise", "verdict"}]}],

@@ -1,7 +1,5 @@
 #include "scenes.h"
 
-#include <filesystem>
-
 #include "io/image/image_file.h"
 #include "measure.h"
 #include "sample/random_walk.h"

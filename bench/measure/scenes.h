@@ -1,6 +1,5 @@
 // The frozen scenes by which methods of scattering are measured, and what light does there.
 #pragma once
-#include <functional>
 
 #include "diffusion/lit_scenes.h"
 

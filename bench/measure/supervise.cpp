@@ -6,33 +6,22 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <set>
 
+#include "io/shortest.h"
 #include "measure.h"
+#include "timing.h"
 
 namespace pellucid::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string shownSeconds(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g s", value);
-    return text;
-}
-
 constexpr double startSeconds = 120;
 
-double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-// The pellucid command again, or another program, read line by line. Where this process ends, the other one
-// does at its next line.
+// The pellucid command again, or another program, read line by line. It ends with this process.
 class Again {
   public:
     // `environment`: "NAME=VALUE" added to this process's own. Without `loud`, standard error is discarded.
@@ -72,7 +61,7 @@ class Again {
 
     // The next line of its output as JSON; nothing where there is none, of which why() tells the reason.
     std::optional<Json> next(double seconds) {
-        for (const double end = now() + seconds;;) {
+        for (const double end = milliseconds() + 1e3 * seconds;;) {
             if (const size_t at = heard_.find('\n'); at != std::string::npos) {
                 const Json line = Json::parse(heard_.substr(0, at), nullptr, false);
                 heard_.erase(0, at + 1);
@@ -80,11 +69,11 @@ class Again {
             }
             if (request_.cancelled && request_.cancelled())
                 throw pellucid::Error(PEL_ERROR_CANCELLED, "the benchmark was cancelled");
-            const double left = end - now();
-            why_ = "no result within " + shownSeconds(request_.limitSeconds);
+            const double left = end - milliseconds();
+            why_ = io::printed("no result within %g s", request_.limitSeconds);
             if (left <= 0) return {};
             pollfd waits{pipe_, POLLIN, 0};
-            if (::poll(&waits, 1, int(std::clamp(left * 1e3, 1.0, 200.0))) <= 0) continue;
+            if (::poll(&waits, 1, int(std::clamp(left, 1.0, 200.0))) <= 0) continue;
             char part[4096];
             const ssize_t got = ::read(pipe_, part, sizeof part);
             if (got > 0) heard_.append(part, size_t(got));
@@ -110,8 +99,7 @@ class Again {
     std::string heard_, why_;  // heard_: beyond the last line
 };
 
-// The report of one process; null if it did not get there. `part`: what it measures. `at`: the case that it
-// was at.
+// The report of one process; null if it did not get there. `part`: what it measures. `at`: its last case.
 Json runApart(const Request& request, const char* part, const std::set<std::string>& without, Json& at,
               std::string& why) {
     std::vector<std::string> words{"--events", part, "--limit", std::to_string(request.limitSeconds)};

@@ -1,5 +1,4 @@
 // Look-up tables against adaptive quadrature in double precision, at texels drawn once.
-#include <random>
 #include <tuple>
 
 #include "measure.h"

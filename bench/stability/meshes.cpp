@@ -1,5 +1,4 @@
 // Curvature of meshes by each estimator and in each quantity, smoothing, normals, UV scale.
-#include "reference/curvature.h"
 #include "reference/surfaces.h"
 
 #include "stability.h"

@@ -8,8 +8,7 @@ namespace {
 
 using reference::Vec3;
 
-// The middle of a sphere's picture, so that no step to a neighbour comes near an edge of depth, where a
-// decision turns.
+// The middle of a sphere's picture, where no step to a neighbour is near the decision about edges of depth.
 Case screenCurvatureCase(const Point& p) {
     constexpr uint32_t width = 33, height = 9;
     struct Images {

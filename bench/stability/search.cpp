@@ -2,14 +2,7 @@
 // tests; docs/stability.md is made of such reports by write_page.
 //
 // The search: points of the unit cube drawn blindly, then an evolution strategy whose individuals carry their
-// own step [Schwefel 1981], both in a fixed order from a fixed seed, so that the result depends on the device
-// alone.
-#include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <filesystem>
-#include <span>
-#include <thread>
+// own step [Schwefel 1981], in a fixed order from a fixed seed: the result depends on the device alone.
 
 #include "measure/measure.h"
 #include "stability.h"
@@ -85,8 +78,7 @@ double difference(std::span<const float> device, std::span<const double> truth, 
     }
     return unit == Unit::largest ? (largest > 0 ? worst / largest : worst) : worst;
 }
-// Seed 0: of the device against the oracle; else of the oracle against itself, its inputs moved by
-// Jitter(seed).
+// Seed 0: of the device against the oracle; else of the oracle against itself after Jitter(seed).
 std::vector<double> errorsOf(const Operation& o, const std::vector<Point>& points, uint32_t seed) {
     const Case one = o.make(points);
     std::vector<float> left;

@@ -1,6 +1,5 @@
 // The shading kernel, one program for all: each pixel of a frame has normals, place, curvature, shadow,
 // roughness and material of its own. The outputs show the terms one by one.
-#include "faceworks_material.h"
 #include "stability.h"
 
 namespace stability {
@@ -65,8 +64,7 @@ double roughnessOf(const Point& p) {
     return logBetween(p[roughness], 0.03, 1);
 }
 
-// Three lights of three kinds with maps, ambient light of every sort, and materials for all pixels to choose
-// from.
+// Three lights of three kinds with maps, ambient light of every sort, materials for all pixels.
 const Frame& base() {
     static const Frame frame = [] {
         Frame f = randomFrame(7, 16, 1, 3);

@@ -1,15 +1,8 @@
-// The operations of docs/stability.md: from points of the unit cube, which stand for inputs, the errors
-// there.
+// The operations of docs/stability.md: the errors at points of the unit cube, which stand for inputs.
 #pragma once
-#include <cmath>
-#include <cstdio>
-#include <functional>
 #include <memory>
-#include <optional>
-#include <random>
-#include <string>
-#include <vector>
 
+#include "io/shortest.h"
 #include "shading/pass_scene.h"
 #include "tolerances.h"
 
@@ -30,8 +23,7 @@ class Dice {
     std::mt19937 engine_;
 };
 
-// Moves inputs by at most one unit in the last place of float, to see what their rounding alone does to the
-// answer.
+// Moves inputs by at most one unit in the last place of float, to see what their rounding alone does.
 class Jitter {
   public:
     explicit Jitter(uint32_t seed) : dice_(seed) {}
@@ -92,9 +84,7 @@ inline double between(double t, double low, double high) {
 
 inline std::string text(const char* format, double a, double b = 0, double c = 0, double d = 0,
                         double e = 0) {
-    char buffer[256];
-    std::snprintf(buffer, sizeof buffer, format, a, b, c, d, e);
-    return buffer;
+    return io::printed(format, a, b, c, d, e);
 }
 
 // A NaN is the worst of all errors, and stays it.

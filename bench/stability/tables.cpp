@@ -1,5 +1,4 @@
-// Look-up tables, texel by texel: of skin, by every form and axis, shadow and specular; and of every kind of
-// profile.
+// Look-up tables, texel by texel: of skin, by form and axis, shadow and specular; of every kind of profile.
 #include "reference/lut.h"
 
 #include "stability.h"

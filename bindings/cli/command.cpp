@@ -3,7 +3,6 @@
 #include <atomic>
 #include <cctype>
 #include <charconv>
-#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <functional>
@@ -139,10 +138,6 @@ Run::~Run() {
 
 double Run::deviceMilliseconds() const {
     return device_.stats().kernelMilliseconds - before_.kernelMilliseconds;
-}
-
-void Run::note(const std::string& text) const {
-    std::fprintf(stderr, "%s\n", text.c_str());
 }
 
 void Run::warn(const std::string& text) {

@@ -6,10 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <pellucid/pellucid.hpp>
 #include <span>
-#include <stdexcept>
-#include <string>
 #include <string_view>
-#include <vector>
 
 namespace pellucid::cli {
 
@@ -47,8 +44,7 @@ class Progress {
     bool shown_ = false;
 };
 
-// One run of a subcommand: opens the device, shows progress on stderr, prints the report on stdout at the
-// end.
+// One run of a subcommand: opens the device, shows progress on stderr, prints the report at the end.
 class Run {
   public:
     struct Options {
@@ -64,7 +60,7 @@ class Run {
     double deviceMilliseconds() const;  // kernels since this run began
 
     void progress(double fraction, const char* what) { progress_(fraction, what); }  // of work on the host
-    void note(const std::string& text) const;                                        // to stderr, for people
+    void note(const std::string& text) const { std::fprintf(stderr, "%s\n", text.c_str()); }  // for people
     // To stderr, and into the report; with --strict an InputError. Before anything is written.
     void warn(const std::string& text);
     // Key and value of the report, in this order. Numbers, texts, arrays and objects alike.
@@ -89,8 +85,7 @@ double milliseconds(Work&& work) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-// One JSON object on standard output. Names of files that are no UTF-8 come with U+FFFD for what is none:
-// JSON has no other bytes.
+// One JSON object on standard output. What is no UTF-8 in names of files becomes U+FFFD.
 void printJson(const nlohmann::ordered_json& report);
 std::string jsonText(const nlohmann::ordered_json& value, int indent = 2);
 // That object, or a line for each value, which begins after `width` characters.
@@ -188,8 +183,7 @@ std::shared_ptr<CLI::FormatterBase> helpFormatter();
 // After CLI::ExtrasError: which words are not expected, and what may have been meant.
 std::string unknownOptions(const CLI::App& app);
 
-// Names of types (Word) for which shells complete values. A text without a name of its own is a
-// path.
+// Names of types (Word) whose values shells complete. A text without a name of its own is a path.
 constexpr const char *deviceWord = "DEVICE", *profileWord = "PROFILE";
 
 }  // namespace pellucid::cli

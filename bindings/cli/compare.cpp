@@ -128,8 +128,7 @@ std::vector<uint8_t> subsets(const Arguments& a, const Rgb& one, const Rgb& two,
 }
 
 nlohmann::ordered_json toJson(const io::ImageDifference& d) {
-    // JSON has neither Inf, the PSNR of equal pictures, nor NaN, the statistics of no pixels: both become
-    // null.
+    // JSON has neither Inf, the PSNR of equal pictures, nor NaN, statistics of no pixels: both are null.
     return {{"pixels", d.pixels},
             {"rmse", d.rmse},
             {"rmse_all", d.rmseAll},

@@ -1,5 +1,4 @@
 // pellucid curvature: curvature at each vertex of a mesh file.
-#include <cmath>
 
 #include "io/atomic_file.h"
 #include "io/choice_keys.h"

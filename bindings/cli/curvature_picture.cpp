@@ -4,16 +4,14 @@
 #include "sample/gbuffer.h"
 
 namespace pellucid::cli {
-namespace {
 
 constexpr int viewWidth = 900, viewHeight = 1000;
 constexpr io::Srgb8 background{20, 20, 20};
 
-// Darkened a little where the surface turns away, so that its shape can be read. Rendered `supersampling`
-// times as wide and high.
-io::Picture curvatureView(const sample::Scene& scene, const sample::HeadPose& pose,
-                          const sample::Framing& framing, int width, int height, int supersampling, float low,
-                          float high) {
+// A little darker where the surface turns away. Rendered `supersampling` times as wide and high.
+static io::Picture curvatureView(const sample::Scene& scene, const sample::HeadPose& pose,
+                                 const sample::Framing& framing, int width, int height, int supersampling,
+                                 float low, float high) {
     width *= supersampling, height *= supersampling;
     const sample::Camera camera = frameHead(scene.bounds(), pose, framing, double(width) / height);
     sample::GBufferOptions options;
@@ -34,8 +32,6 @@ io::Picture curvatureView(const sample::Scene& scene, const sample::HeadPose& po
         }
     return io::shrunk(picture, supersampling);
 }
-
-}  // namespace
 
 void writeCurvaturePicture(const std::string& path, const io::MeshData& mesh,
                            const std::vector<float>& values, float low, float high, char up,

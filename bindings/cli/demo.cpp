@@ -1,5 +1,4 @@
-// pellucid demo: the whole chain on a real mesh. Load, curvature, look-up tables, G-buffer of the stand-in
-// host, shading, pictures.
+// pellucid demo: the whole chain on a real mesh: curvature, look-up tables, G-buffer, shading, pictures.
 #include <cstdlib>
 #include <filesystem>
 

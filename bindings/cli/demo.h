@@ -53,8 +53,7 @@ struct ShadedPicture {
 struct ShadedView {
     DemoView view;
     std::vector<float> lambert, tables, complete;  // RGB per pixel
-    // Twice as large on each side, before the backdrop: lambert, tables, complete. Empty for views that are
-    // large already.
+    // Twice as large, before the backdrop: lambert, tables, complete. Empty for views that are large already.
     std::vector<io::Picture> fine;
 };
 
@@ -65,14 +64,12 @@ io::Picture developed(const DemoView& view, std::vector<float> radiance);
 // name of the first, as do the next two.
 std::string writePicture(const std::string& folder, const ShadedView& view);
 
-// The contact sheet, demo.png: a row per view with its difference, where light comes through most, curvature,
-// both tables, and `materials`.
+// The contact sheet, demo.png: a row per view, where light comes through most, tables, and `materials`.
 std::string writeSheet(const std::string& folder, const std::vector<ShadedView>& views,
                        const std::vector<ShadedPicture>& materials, const Lut& curvatureLut,
                        const Lut& shadowLut);
 
-// The parts of one view's radiance side by side, with its thickness: NAME_parts.png. `frame`: shaded with all
-// outputs.
+// The parts of a view's radiance, and its thickness: NAME_parts.png. `frame`: shaded with all outputs.
 std::string writeParts(const std::string& folder, const DemoView& view, const io::SceneFrame& frame);
 
 }  // namespace pellucid::cli

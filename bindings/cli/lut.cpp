@@ -5,7 +5,6 @@
 #include "io/lut/profile_file.h"
 
 #include <cstdio>
-#include <type_traits>
 
 #include "command.h"
 #include "io/atomic_file.h"

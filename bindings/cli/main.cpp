@@ -10,16 +10,13 @@
 using namespace pellucid;
 using namespace pellucid::cli;
 
-namespace {
-
-int fail(ExitCode code, const char* message) {
+static int fail(ExitCode code, const char* message) {
     std::fprintf(stderr, "pellucid: %s\n", message);
     return code;
 }
 
-// CLI11 would only say that a subcommand is required. Also for subcommands that need one themselves, such as
-// `lut`.
-void checkSubcommand(const CLI::App& app, int argc, char** argv, const std::string& path = "") {
+// CLI11 would only say that a subcommand is required. Also for those that need one, such as `lut`.
+static void checkSubcommand(const CLI::App& app, int argc, char** argv, const std::string& path = "") {
     if (argc < 2 || argv[1][0] == '-' || app.get_require_subcommand_min() == 0) return;
     std::string names;
     std::vector<std::string> all;
@@ -35,13 +32,11 @@ void checkSubcommand(const CLI::App& app, int argc, char** argv, const std::stri
 }
 
 // Closes standard output: if the report cannot be written, the command has failed.
-int finish(int code) {
+static int finish(int code) {
     const bool written = std::cout.flush() && std::fflush(stdout) == 0 && !std::ferror(stdout);
     return written ? code
                    : fail(exitBadInput, "standard output cannot be written: the report is not complete");
 }
-
-}  // namespace
 
 int main(int argc, char** argv) {
     if (!pel::system::prepareStreams()) return exitWrongUse;

@@ -1,12 +1,10 @@
 // pellucid profile list|show|plot|fit: diffusion profiles, built in or from TOML files. Needs no device.
-#include <cmath>
-#include <cstdio>
-
 #include "command.h"
 #include "io/atomic_file.h"
 #include "io/image/image_file.h"
 #include "io/image/picture.h"
 #include "io/lut/profile_file.h"
+#include "io/shortest.h"
 #include "profile_fit/profile_fit.h"
 
 namespace pellucid::cli {
@@ -111,11 +109,9 @@ void plot(const Arguments& a) {
     for (int d = 0; d <= int(decades); ++d)
         picture.write(10, top + d * (height - top - bottom) / int(decades) - 7, io::concat("1e-", d), grey,
                       2);
-    char text[64];
-    for (int i = 0; i <= 4; ++i) {
-        std::snprintf(text, sizeof text, "%.3g", i * radius);
-        picture.write(left + i * (width - right - left) * 24 / 100, height - bottom + 10, text, grey, 2);
-    }
+    for (int i = 0; i <= 4; ++i)
+        picture.write(left + i * (width - right - left) * 24 / 100, height - bottom + 10,
+                      io::printed("%.3g", i * radius), grey, 2);
     picture.write(left, 12, file.name + ": R full, P dashed, of their peaks; distance in mm", white, 2);
     io::writeImage8(a.output, width, height, 3, picture.rgb);
     printReport({{"name", file.name}, {"output", a.output}}, a.json, nameWidth);

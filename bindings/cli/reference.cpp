@@ -1,5 +1,4 @@
-// pellucid reference: the true picture, by the surface integral over the mesh or by a random walk in its
-// volume.
+// pellucid reference: the true picture, by the surface integral over the mesh or a random walk in it.
 #include <charconv>
 
 #include "fields/skin_spectra.h"
@@ -19,8 +18,7 @@ sample::Vec3 vectorOf(const float (&v)[3]) {
     return {v[0], v[1], v[2]};
 }
 
-// Irradiance / pi of the ambient light along n: real spherical harmonics of order 2 [Ramamoorthi & Hanrahan
-// 2001].
+// Irradiance / pi of the ambient light along n: harmonics of order 2 [Ramamoorthi and Hanrahan 2001].
 std::array<double, 3> ambientAlong(const PelAmbient& ambient, sample::Vec3 n) {
     const double basis[9] = {0.282095,
                              0.488603 * n.y,

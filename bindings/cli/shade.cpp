@@ -114,9 +114,8 @@ struct Inputs {
     std::optional<io::SceneFrame> frame;
 };
 
-// Reads what the scene names into the device's memory. A second thread prepares the frame meanwhile. Its
-// errors are dropped: where there is no frame, the pictures are read again and it is made with them, and
-// reports them.
+// Reads what the scene names into the device's memory. A second thread prepares the frame meanwhile; where it
+// fails, the pictures are read again, and the frame is made with them and reports the error.
 Inputs frameOf(const std::string& gbuffer, const Device& device, const io::SceneFile& scene,
                io::LutStore& luts, const PelShaderOptions& options,
                const std::vector<PelImageSlot>& outputs) {

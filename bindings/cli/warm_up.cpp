@@ -16,8 +16,7 @@ struct Arguments {
 };
 
 void run(const Arguments& a) {
-    // Binaries as well: a process loads one in a fraction of the time that PoCL takes to find a program in
-    // its own cache.
+    // Binaries as well: they load in a fraction of the time that PoCL takes to find its own.
     if (!std::getenv("PELLUCID_CACHE")) pel::system::setVariable("PELLUCID_CACHE", "on");
     Run run(a.run);
     uint32_t groups = (a.luts ? PEL_PROGRAMS_LUTS : 0) | (a.tableLuts ? PEL_PROGRAMS_TABULATED_LUTS : 0) |

@@ -1,5 +1,4 @@
-"""Writes what the binding needs to know about pellucid.h, so that each structure, value and comment stands
-there alone.
+"""Writes what the binding needs to know about pellucid.h, so that structures and comments stand there alone.
 
     generate_types.py HEADER OUT_PY OUT_INC
 
@@ -116,8 +115,7 @@ def wrapped(text, indent, width=110):
 
 
 def python_field(field, kind, shape, enums, structs):
-    """dtype entry, descriptor, type of the argument that sets it ("" for none), and the type as the
-    documentation says."""
+    """dtype entry, descriptor, type of the argument that sets it ("": none), and the documentation's type."""
     p = snake(field)
     if kind == "char":
         return f'("{p}", "S{shape[0]}")', f'Field[str]("{p}")', "", "str"

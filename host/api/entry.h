@@ -43,8 +43,7 @@ T& output(T* pointer, const char* name) {
     return *pointer;
 }
 
-// An entry point that hands out what `make` returns, which is not called if there is nowhere to put the
-// handle.
+// An entry point that hands out what `make` returns, which is called if there is a place for the handle.
 template <class Handle, class Make>
 PelError create(Handle* to, const char* name, const Make& make) noexcept {
     return entry([&] {

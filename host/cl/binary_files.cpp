@@ -64,8 +64,7 @@ std::optional<std::string> BinaryFiles::load(const Digest& name) const {
 bool BinaryFiles::store(const Digest& name, const std::string& binary) const {
     if (binary.empty() || binary.size() > limit_) return false;
     if (!makePrivateFolder(folder_) || !whyNotPrivate(folder_).empty()) return false;
-    // Written under a temporary name and renamed when complete: other processes write and read the same
-    // programs.
+    // Written under a temporary name and renamed: other processes write and read the same programs.
     static std::atomic<unsigned> counter{0};
     const fs::path path = pathOf(name),
                    temporary = folder_ / text(".", path.filename().string(), ".", system::processId(), "-",

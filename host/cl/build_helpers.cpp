@@ -10,9 +10,6 @@
 namespace pel::cl {
 namespace {
 
-thread_local BuildHelpers* current = nullptr;
-thread_local bool readyAlone = false;
-
 // The program that compiles: near this library, or what PELLUCID_BUILD_HELPER names. "": none.
 std::string helperProgram() {
     if (const char* named = std::getenv("PELLUCID_BUILD_HELPER"))
@@ -86,34 +83,6 @@ void BuildHelpers::cancel() {
 void BuildHelpers::checkCancelled() {
     const std::lock_guard lock(mutex_);
     throwIfCancelled();
-}
-
-void BuildHelpers::throwIfCancelled() const {
-    if (cancelled_) fail(PEL_ERROR_CANCELLED, "programs are built no longer");
-}
-
-BuildHelpers* BuildHelpers::ofThread() {
-    return current;
-}
-
-HelpScope::HelpScope(BuildHelpers& helpers) : outer_(current) {
-    current = &helpers;
-}
-
-HelpScope::~HelpScope() {
-    current = outer_;
-}
-
-ReadyScope::ReadyScope() : outer_(readyAlone) {
-    readyAlone = true;
-}
-
-ReadyScope::~ReadyScope() {
-    readyAlone = outer_;
-}
-
-bool ReadyScope::active() {
-    return readyAlone;
 }
 
 }  // namespace pel::cl

@@ -23,11 +23,10 @@ class BuildHelpers {
     void cancel();
     void checkCancelled();
 
-    // Those whom this thread asks for programs (HelpScope), or nullptr.
-    static BuildHelpers* ofThread();
-
   private:
-    void throwIfCancelled() const;
+    void throwIfCancelled() const {
+        if (cancelled_) fail(PEL_ERROR_CANCELLED, "programs are built no longer");
+    }
 
     std::mutex mutex_;  // of the rest
     std::condition_variable freed_;
@@ -37,29 +36,25 @@ class BuildHelpers {
     bool cancelled_ = false;
 };
 
-// During its lifetime this thread has programs compiled by `helpers`.
-class HelpScope {
-  public:
-    explicit HelpScope(BuildHelpers& helpers);
-    ~HelpScope();
-    HelpScope(const HelpScope&) = delete;
-
-  private:
-    BuildHelpers* outer_;
-};
-
-// During its lifetime this thread gets programs that are in memory or on disk; for others ProgramCache throws
-// NotBuilt.
-class ReadyScope {
-  public:
-    ReadyScope();
-    ~ReadyScope();
-    ReadyScope(const ReadyScope&) = delete;
-    static bool active();
-
-  private:
-    bool outer_;
-};
+// Of each thread: who compiles the programs that it asks for, or nullptr; and whether it only gets those in
+// memory or on disk, while ProgramCache throws NotBuilt for others.
+inline thread_local BuildHelpers* helpersOfThread = nullptr;
+inline thread_local bool readyAlone = false;
 struct NotBuilt {};
+
+// During its lifetime one of these has another value.
+template <class T>
+struct ThreadScope {
+    ThreadScope(T& variable, T value) : variable(variable), outer(std::exchange(variable, value)) {}
+    ~ThreadScope() { variable = outer; }
+    ThreadScope(const ThreadScope&) = delete;
+    T &variable, outer;
+};
+struct HelpScope : ThreadScope<BuildHelpers*> {
+    explicit HelpScope(BuildHelpers& helpers) : ThreadScope(helpersOfThread, &helpers) {}
+};
+struct ReadyScope : ThreadScope<bool> {
+    ReadyScope() : ThreadScope(readyAlone, true) {}
+};
 
 }  // namespace pel::cl

@@ -10,8 +10,7 @@ namespace pel::cl {
 
 const char* errorName(cl_int code);
 
-// Throws with OpenCL's error name; out-of-memory codes become PEL_ERROR_OUT_OF_MEMORY, all others
-// PEL_ERROR_DEVICE.
+// Throws with OpenCL's name: PEL_ERROR_OUT_OF_MEMORY where memory ran out, else PEL_ERROR_DEVICE.
 void check(cl_int code, const char* call);
 
 #define PEL_OBJECT(H, Type)                                                          \

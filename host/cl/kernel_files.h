@@ -13,8 +13,7 @@ struct KernelFile {
 
 std::span<const KernelFile> kernelFiles();
 
-// The files one after another. Each #include "..." line is replaced by the file that it names (relative to
-// kernels/), once per file.
+// The files one after another. An #include "..." line becomes the file that it names in kernels/, once.
 std::string kernelSource(std::span<const std::string> names);
 
 }  // namespace pel::cl

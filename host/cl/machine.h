@@ -21,15 +21,13 @@ void* allocateAligned(size_t alignment, size_t bytes);
 void freeAligned(void* at);
 
 // Throws PEL_ERROR_OUT_OF_MEMORY if so many more bytes would use what drivers and others need of the machine,
-// of the process's control group or of its address space (ulimit -v). When that is used up, processes end
-// without an error.
+// of the control group or the address space (ulimit -v): without that, processes end without an error.
 void requireMemory(uint64_t bytes, const char* what);
 
 // Private folders: they hold machine code that this process will run, so nobody else may write there.
 
-// This user's cache folders, the preferred one first: XDG_CACHE_HOME, ~/.cache by HOME, ~/.cache by the
-// user's entry in the system. Relative paths are ignored, as the XDG base directory specification says. They
-// need not exist.
+// This user's cache folders, which need not exist, the preferred one first: XDG_CACHE_HOME, ~/.cache by HOME,
+// ~/.cache by the user's entry in the system. Relative paths are ignored [XDG base directory specification].
 std::vector<std::filesystem::path> cacheHomes();
 
 // Makes the folder and its missing parents, for this user alone. False if that is not possible.
@@ -46,11 +44,9 @@ std::string whyNotWritable(const std::filesystem::path& folder);
 // Bytes that can still be written there; 0 if none.
 uint64_t roomIn(const std::filesystem::path& folder);
 
-// Forked processes. OpenCL drivers have threads, and a fork has none of them: it would wait for them for
-// ever.
+// Forked processes. A fork has none of the threads of OpenCL's drivers: it would wait for them for ever.
 
-// To be called before the first use of OpenCL: from now on this process may use it. Throws as checkProcess
-// does.
+// Before the first use of OpenCL: from now on this process may use it. Throws as checkProcess does.
 void claimProcess();
 // Whether this process is a fork of the owner.
 bool isFork();

@@ -5,8 +5,7 @@
 
 namespace pel::cl {
 
-// Why no library was found that lists OpenCL's devices, with what to do; "" if one was found, or if this
-// build links with one.
+// Why no library that lists devices was found, with what to do; "" if one was, or this build links one.
 std::string whyNoLoader();
 
 }  // namespace pel::cl

@@ -1,6 +1,5 @@
 // Where PoCL keeps compiled kernels. By default PoCL ends the process if a file there is damaged or the disk
-// is full, and without HOME it runs whatever is in a folder of fixed name in /tmp, where anybody may have put
-// it.
+// is full; without HOME it runs what is in a folder of /tmp, where anybody may have put it.
 #pragma once
 #include <filesystem>
 

@@ -57,8 +57,7 @@ bool whole(const fs::path& path, uint64_t size) {
 
 }  // namespace
 
-// PoCL's folders: two letters, then the rest of a program's hash; in that program.bc, and a .so for each
-// kernel and size.
+// PoCL's folders: two letters, then the rest of a program's hash; in it program.bc, and a .so per kernel.
 unsigned removeDamagedPrograms(const fs::path& folder) {
     // Skips files that were complete at the last check and have not been written since, and files that
     // another process may be writing. A large cache takes long to walk: programs that nobody used for a day

@@ -40,8 +40,7 @@ Program ProgramCache::get(const ProgramKey& wanted) {
     if (!slot) slot = std::make_shared<Entry>();
     const std::shared_ptr<Entry> entry = slot;
     lock.unlock();
-    // A thread that asks for a program which another thread is building waits here. After a failure the next
-    // one tries again.
+    // A thread waits here for a program that another one builds. After a failure the next one tries again.
     std::lock_guard building(entry->building);
     if (entry->program) return entry->program;
     const auto start = std::chrono::steady_clock::now();
@@ -72,8 +71,8 @@ Program ProgramCache::build(const std::vector<std::string>& files, const std::st
         counts.loaded = 1;
         return program;
     }
-    if (ReadyScope::active()) throw NotBuilt();
-    if (BuildHelpers* const helpers = BuildHelpers::ofThread())
+    if (readyAlone) throw NotBuilt();
+    if (BuildHelpers* const helpers = helpersOfThread)
         if (const std::string binary = helpers->compile(options, source); !binary.empty())
             if (Program program = binaries_.take(binary, source, options, counts.stored)) return program;
     Program program = compile(source, files, options);
@@ -108,8 +107,7 @@ struct Use {
 Use wanted(cl_device_id device) {
     const char* text = std::getenv("PELLUCID_CACHE");
     const std::string value = text ? text : "";
-    // PoCL compiles everything again to make a binary, but loads one faster than it finds a program in its
-    // cache.
+    // PoCL compiles everything again to make a binary, but loads one faster than it searches its cache.
     if (value.empty() || value == "auto")
         return {!keepsPrograms(device) || isPocl(device), !keepsPrograms(device)};
     if (value == "on" || value == "1") return {true, true};
@@ -170,10 +168,6 @@ BinaryCache::BinaryCache(cl_context context, cl_device_id device) : context_(con
     files_.emplace(folder, limit);
 }
 
-Digest BinaryCache::name(const std::string& source, const std::string& options) const {
-    return Digest().addPart(builtBy_).addPart(options).addPart(source);
-}
-
 Program BinaryCache::load(const std::string& source, const std::string& options) const {
     if (!files_) return {};
     const std::optional<std::string> binary = files_->load(name(source, options));
@@ -201,27 +195,21 @@ Program BinaryCache::programOf(const std::string& binary, const std::string& opt
 bool BinaryCache::store(const Program& program, const std::string& source, const std::string& options) const {
     if (!files_ || !stores_) return false;
     // A program of a context with several devices has an entry for each.
+    const auto got = [&](cl_program_info what, auto* to, size_t values) {
+        return clGetProgramInfo(program.get(), what, values * sizeof *to, to, nullptr) == CL_SUCCESS;
+    };
     cl_uint count = 0;
-    if (clGetProgramInfo(program.get(), CL_PROGRAM_NUM_DEVICES, sizeof count, &count, nullptr) !=
-            CL_SUCCESS ||
-        !count)
-        return false;
+    if (!got(CL_PROGRAM_NUM_DEVICES, &count, 1) || !count) return false;
     std::vector<cl_device_id> devices(count);
     std::vector<size_t> sizes(count);
-    if (clGetProgramInfo(program.get(), CL_PROGRAM_DEVICES, count * sizeof devices[0], devices.data(),
-                         nullptr) != CL_SUCCESS ||
-        clGetProgramInfo(program.get(), CL_PROGRAM_BINARY_SIZES, count * sizeof sizes[0], sizes.data(),
-                         nullptr) != CL_SUCCESS)
+    if (!got(CL_PROGRAM_DEVICES, devices.data(), count) || !got(CL_PROGRAM_BINARY_SIZES, sizes.data(), count))
         return false;
     const size_t mine = size_t(std::find(devices.begin(), devices.end(), device_) - devices.begin());
     if (mine == count || sizes[mine] == 0) return false;
     std::string binary(sizes[mine], '\0');
     std::vector<unsigned char*> places(count);  // NULL: not wanted
     places[mine] = reinterpret_cast<unsigned char*>(binary.data());
-    if (clGetProgramInfo(program.get(), CL_PROGRAM_BINARIES, count * sizeof places[0], places.data(),
-                         nullptr) != CL_SUCCESS)
-        return false;
-    return files_->store(name(source, options), binary);
+    return got(CL_PROGRAM_BINARIES, places.data(), count) && files_->store(name(source, options), binary);
 }
 
 namespace {
@@ -257,8 +245,7 @@ void expand(std::string_view name, std::set<std::string_view>& seen, std::string
 }  // namespace
 
 std::string kernelSource(std::span<const std::string> names) {
-    // Clang warns of vectors wider than the registers in calls. Every function is inlined, or comes from the
-    // driver's own library.
+    // Clang warns of vectors wider than the registers in calls, but every function here is inlined.
     std::string out = "#pragma clang diagnostic ignored \"-Wpsabi\"\n";
     std::set<std::string_view> seen;
     for (const std::string& name : names)

@@ -11,8 +11,7 @@
 
 namespace pel::cl {
 
-// Compile-time choices of a program, NAME=VALUE. Only structure (features, formats, counts); numbers are
-// kernel arguments.
+// Compile-time choices of a program, NAME=VALUE. Only structure: numbers are kernel arguments.
 struct DefineValue : std::string {
     using std::string::string;
     DefineValue(std::string text) : std::string(std::move(text)) {}
@@ -22,8 +21,7 @@ struct DefineValue : std::string {
 };
 using Defines = std::map<std::string, DefineValue>;
 
-// What a program is made of: kernel files, one after another, each included file once; and the choices. Equal
-// requests compare equal.
+// What a program is made of: kernel files in order, each included file once; and the choices.
 struct ProgramKey {
     std::vector<std::string> files;
     Defines defines;
@@ -33,8 +31,7 @@ struct ProgramKey {
 // Programs from binaries that earlier processes left on disk.
 class BinaryCache {
   public:
-    // If the driver keeps compiled programs itself, this cache loads only PoCL's, and stores none unless
-    // PELLUCID_CACHE is "on".
+    // If the driver keeps programs itself, this cache loads PoCL's, and stores if PELLUCID_CACHE is "on".
     BinaryCache(cl_context context, cl_device_id device);
 
     // Empty when there is none, or the driver refuses it.
@@ -48,7 +45,9 @@ class BinaryCache {
 
   private:
     Program programOf(const std::string& binary, const std::string& options) const;
-    Digest name(const std::string& source, const std::string& options) const;
+    Digest name(const std::string& source, const std::string& options) const {
+        return Digest().addPart(builtBy_).addPart(options).addPart(source);
+    }
 
     cl_context context_;
     cl_device_id device_;

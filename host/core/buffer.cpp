@@ -4,8 +4,7 @@ namespace pel {
 
 Buffer::Buffer(Ref<Device> device, cl::Memory memory, size_t bytes)
     : Object(kind), device_(std::move(device)), memory_(std::move(memory)), bytes_(bytes) {
-    // Where the bytes are: in host memory, or in a cl_mem of which this one is a part. Other buffers may be
-    // views of the same bytes.
+    // Where the bytes are, of which other buffers may be views: in host memory, or a part of a cl_mem.
     const cl_mem own = memory_.get(), whole = cl::info<cl_mem>(own, CL_MEM_ASSOCIATED_MEMOBJECT);
     void* const host = cl::info<void*>(own, CL_MEM_HOST_PTR);
     place_ = host    ? Place{nullptr, reinterpret_cast<uintptr_t>(host)}

@@ -1,5 +1,4 @@
-// Memory that host and device share: the library's own, the caller's host memory in place, or the caller's
-// cl_mem.
+// Memory that host and device share: the library's own, the caller's memory in place, or its cl_mem.
 #pragma once
 #include "core/device.h"
 

@@ -9,9 +9,7 @@
 
 namespace pel {
 
-namespace {
-
-bool wantsProfiling(const PelDeviceDesc& desc) {
+static bool wantsProfiling(const PelDeviceDesc& desc) {
     if (desc.profiling > 2)
         invalidArgument("PelDeviceDesc.profiling is ", desc.profiling, "; it must be 0, 1 or 2");
     if (desc.profiling < 2) return desc.profiling == 1;
@@ -21,8 +19,6 @@ bool wantsProfiling(const PelDeviceDesc& desc) {
         invalidArgument("PELLUCID_PROFILING is \"", value, "\"; it must be 0 or 1");
     return value != "0";
 }
-
-}  // namespace
 
 Ref<Device> Device::create(const PelDeviceDesc& desc) {
     const bool profiling = wantsProfiling(desc);
@@ -90,14 +86,6 @@ cl::Event Device::launch(cl::Launch& launch, const cl::Range& range, cl_command_
         if (pending_.size() > 512) foldEvents();
     }
     return event;
-}
-
-cl::Memory Device::allocate(size_t bytes, const void* initial) {
-    return allocate(bytes, initial, false);
-}
-
-cl::Memory Device::allocateZeros(size_t bytes) {
-    return allocate(bytes, nullptr, true);
 }
 
 cl::Memory Device::allocate(size_t bytes, const void* initial, bool zeros) {
@@ -210,10 +198,6 @@ void Device::fill(cl_mem memory, size_t offset, size_t bytes, uint32_t word) {
     if (CountedRun::on()) return;
     cl::check(clEnqueueFillBuffer(queue(), memory, &word, sizeof word, offset, bytes, 0, nullptr, nullptr),
               "clEnqueueFillBuffer");
-}
-
-void Device::finish() {
-    cl::check(clFinish(queue_.get()), "clFinish");
 }
 
 PelDeviceStats Device::stats() {

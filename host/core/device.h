@@ -40,13 +40,12 @@ class Device final : public Object {
         cl::Launch one(program, kernel, values...);
         events.push_back(launch(one, range));
     }
-    // For work that a call waits for: the device's own queue may wait for an event that the caller sets
-    // later.
+    // For work that a call waits for: the device's own queue may wait for an event of the caller.
     cl::Queue anotherQueue() const;
 
-    // Device memory: a copy of `initial`, or uninitialised.
-    cl::Memory allocate(size_t bytes, const void* initial = nullptr);
-    cl::Memory allocateZeros(size_t bytes);
+    // Device memory: a copy of `initial`, else zeros if asked for.
+    cl::Memory allocate(size_t bytes, const void* initial = nullptr, bool zeros = false);
+    cl::Memory allocateZeros(size_t bytes) { return allocate(bytes, nullptr, true); }
     void countTransfer(size_t toDevice, size_t toHost);
     // `destination` and `source` are not NULL. Blocking calls return when the bytes are copied.
     void read(cl_mem memory, size_t offset, size_t bytes, void* destination, bool blocking,
@@ -55,8 +54,7 @@ class Device final : public Object {
                cl_command_queue queue = nullptr);
     // Enqueues the write of these bytes, from the memory's first one on.
     void writeLater(cl_mem memory, std::vector<unsigned char> bytes);
-    // The first bytes of memory that no queued command uses, at once: on another queue, and with shared
-    // memory without a transfer.
+    // The first bytes of memory that no queued command uses, at once, on another queue.
     void readOnSideQueue(cl_mem memory, size_t bytes, void* destination) {
         exchange(memory, bytes, nullptr, destination);
     }
@@ -69,7 +67,7 @@ class Device final : public Object {
     // Enqueues: fills `bytes`, a multiple of 4, from `offset` on with copies of `word`.
     void fill(cl_mem memory, size_t offset, size_t bytes, uint32_t word);
 
-    void finish();
+    void finish() { cl::check(clFinish(queue_.get()), "clFinish"); }
     PelDeviceStats stats();
 
     bool hasProgress();
@@ -82,7 +80,6 @@ class Device final : public Object {
   private:
     ~Device() override;
     void foldEvents();
-    cl::Memory allocate(size_t bytes, const void* initial, bool zeros);
     cl::Memory hostsMemory(size_t bytes) const;
     void exchange(cl_mem memory, size_t bytes, const void* source, void* destination);
 

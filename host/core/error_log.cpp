@@ -36,8 +36,7 @@ void keep(const char* what) noexcept {
     }
 }
 
-// Calls `tell` with the callbacks, unless one of them is running on this thread: what it does wrong might go
-// wrong again and again.
+// Calls `tell` with the callbacks, unless one of them is running on this thread and might fail for ever.
 template <class Tell>
 void call(Tell&& tell) {
     if (telling) return;

@@ -5,8 +5,7 @@
 
 namespace pel {
 
-// A new handle with a caller's count of 1. The table takes over the reference. Throws
-// PEL_ERROR_OUT_OF_MEMORY.
+// A new handle with a caller's count of 1; takes the reference. Throws PEL_ERROR_OUT_OF_MEMORY.
 void* addHandle(Ref<Object> object);
 // The object, alive for as long as the caller keeps the Ref. Throws PEL_ERROR_INVALID_ARGUMENT with the
 // reason if the handle is not in use or of another kind.
@@ -32,8 +31,7 @@ Handle toHandle(Ref<T> object) {
     return reinterpret_cast<Handle>(addHandle(Ref<Object>::adopt(object.detach())));
 }
 
-// For structures of the C interface that the library itself fills: a handle that lives as long as this
-// object.
+// For structures of the C interface that the library fills: a handle that lives as long as this object.
 template <class Handle, class T>
 class LentHandle {
   public:

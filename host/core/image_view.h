@@ -39,12 +39,10 @@ ImageView makeImageView(const PelImageDesc* given, Device& device, const char* w
 // Enqueues the copies of textures that images are of, each once; `back`: to the textures.
 void copyTextures(const std::vector<ImageView>& images, bool back);
 
-// Whether `a` and `b` share a byte of a pixel. Also finds buffers over the same host memory and parts of one
-// cl_mem.
+// Whether `a` and `b` share a byte of a pixel, also by host memory or as parts of one cl_mem.
 bool sharesBytes(const ImageView& a, const ImageView& b);
 
-// Whether writing `a` pixel by pixel could change pixels of `b` that are read later: they overlap, but not
-// pixel on pixel in one cl_mem.
+// Whether writing `a` could change pixels of `b` before they are read: an overlap other than pixel on pixel.
 bool overlapsElsewhere(const ImageView& a, const ImageView& b);
 
 }  // namespace pel

@@ -6,8 +6,7 @@
 
 namespace pel {
 
-// Kernels for devices of several lanes (lib/width.clh) have vectors of their own: few long work-items. Other
-// devices run many short ones.
+// Devices of several lanes (lib/width.clh) run few long work-items with vectors, others many short ones.
 struct LaunchPolicy {
     size_t group;         // work-items of kernels that loop over tiles or columns
     size_t columns;       // of a table's row per work-item, where a texel is cheap
@@ -22,8 +21,7 @@ inline LaunchPolicy launchPolicy(const Device& device) {
     return launchPolicy(device.info().mathWidth);
 }
 
-// Groups that share `tiles` among them: enough of them to keep every compute unit busy to the end, and no
-// more.
+// Groups that share `tiles` among them: just enough to keep every compute unit busy to the end.
 inline size_t groupsFor(const Device& device, size_t tiles) {
     return std::min<size_t>(tiles, 64 * size_t(device.info().computeUnits));
 }

@@ -23,8 +23,7 @@ class SizedMemory {
   public:
     const cl::Memory& memory() const { return memory_; }
     size_t bytes() const { return held_; }
-    // Makes it this long, with anything in it or with zeros, after the old memory is gone. False, and nothing
-    // is done, if it is.
+    // Makes it this long, with anything in it or zeros. False, and nothing is done, if it is.
     bool resize(Device& device, size_t bytes, bool zeros = false) {
         if (bytes == bytes_) return false;
         bytes_ = 0;

@@ -1,5 +1,4 @@
-// Structures that cross the C interface carry their size, so that callers built with an older or newer header
-// work.
+// Structures of the C interface carry their size, so that callers built with another version's header work.
 #pragma once
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,4 @@
-// PelEvent, and the steps of every call that does work: wait first, then enqueue, then block or return an
-// event.
+// PelEvent, and the steps of calls that do work: wait, then enqueue, then block or return an event.
 #pragma once
 #include "core/device.h"
 

@@ -16,8 +16,7 @@ inline size_t partsOf(size_t count, size_t least) {
     return std::max<size_t>(1, std::min(processors, count / least));
 }
 
-// Calls work(part, begin, end) for each part, side by side. What one throws is thrown here after all have
-// ended.
+// Calls work(part, begin, end) for each part, side by side. Throws what one throws after all have ended.
 template <class Work>
 void inParts(size_t count, size_t parts, const Work& work) {
     std::mutex mutex;

@@ -1,19 +1,17 @@
-// The only way in which this program writes files: a file appears complete or not at all, and the previous
-// file stays until then.
+// The only way to write files here: a file appears complete or not at all, and the old one stays until then.
 #pragma once
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace pellucid::io {
 
-// A file under a temporary, random name beside its target: newly made, never through a link, and locked while
-// its writer lives. write() adds to it, commit() renames it and flushes the folder. Without commit() the
-// destructor removes it.
+// A file under a temporary, random name beside its target: newly made, never through a link, locked while its
+// writer lives. commit() renames it and flushes the folder; without it the destructor removes the file.
 class AtomicFile {
   public:
-    // Throws FileError if the folder is missing or not writable, or if a folder, a pipe or a device has this
-    // name.
+    // Throws FileError if the folder is missing or not writable, or the name that of something else.
     explicit AtomicFile(std::string target);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
@@ -41,13 +39,23 @@ void flushFolder(const std::string& path);
 // including containers. 8 hexadecimal digits.
 const std::string& machineTag();
 
-// Removes what killed programs left in a folder: temporary files that nobody locks, a minute after they were
-// last written; and those of other machines, whose locks are not visible everywhere, after a day. Returns how
-// many.
+// Removes what killed programs left in a folder, and returns how many: temporary files that nobody locks, a
+// minute after the last write; after a day those of other machines, whose locks may not be visible.
 size_t removeAbandonedFiles(const std::string& folder);
 
-// Throws FileError unless a file can be created or replaced at `path`; call it before long work. Removes
-// abandoned files beside it.
+// Throws FileError unless `path` can be written; call it before long work. Removes abandoned files, too.
 void checkWritable(const std::string& path);
+
+// For the sources of each system. A name .STEM.MACHINE-RANDOM.tmp.EXTENSION that nobody can predict, shorter
+// than any file system's limit:
+std::string temporaryName(const std::string& name);
+// The files of such names in a folder, and after how many seconds without a write they count as abandoned.
+struct TemporaryFile {
+    std::string name;
+    double abandonedAfter;
+};
+std::vector<TemporaryFile> temporaryFiles(const std::string& folder);
+std::string folderOf(const std::string& path);
+void refuseOtherThanFile(const std::string& path);
 
 }  // namespace pellucid::io

@@ -1,7 +1,6 @@
 // The one exception of host/io: a file that cannot be read or written.
 #pragma once
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "io/concat.h"

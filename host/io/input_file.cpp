@@ -3,18 +3,16 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 
+#include "io/shortest.h"
+
 namespace pellucid::io {
 namespace fs = std::filesystem;
-namespace {
 
 constexpr const char* limitVariable = "PELLUCID_INPUT_LIMIT_MIB";
-
-}  // namespace
 
 uint64_t inputLimit() {
     constexpr uint64_t standard = 2048;
@@ -30,10 +28,8 @@ uint64_t inputLimit() {
 }
 
 std::string tooLarge(double bytes, uint64_t limit) {
-    char text[160];
-    std::snprintf(text, sizeof text, "%.1f MiB, more than the limit of %.0f MiB (%s raises it)",
-                  bytes / (1 << 20), double(limit) / (1 << 20), limitVariable);
-    return text;
+    return printed("%.1f MiB, more than the limit of %.0f MiB (%s raises it)", bytes / (1 << 20),
+                   double(limit) / (1 << 20), limitVariable);
 }
 
 void refuseTooLarge(const std::string& path, uint64_t bytes, uint64_t limit) {

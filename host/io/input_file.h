@@ -2,7 +2,6 @@
 #pragma once
 #include <cstdint>
 #include <initializer_list>
-#include <string_view>
 
 #include "io/file_error.h"
 
@@ -15,8 +14,7 @@ uint64_t inputLimit();
 // A number of bytes for messages, in MiB, and what raises the limit.
 std::string tooLarge(double bytes, uint64_t limit);
 
-// Most bytes of texts that are parsed into trees (scenes, profiles, manifests, reports): in memory they take
-// some thirty times as much.
+// Most bytes of texts that become trees (scenes, profiles, ...), which take some thirty times as much.
 inline constexpr uint64_t textLimit = uint64_t{16} << 20;
 
 // Throws FileError: a file of so many bytes is more than `limit`.
@@ -42,8 +40,7 @@ class ExtensionError : public FileError {
     using FileError::FileError;
 };
 
-// Throws ExtensionError unless the extension of `path` is one of `known`; the message lists them. Returns the
-// extension.
+// The extension of `path`. Throws ExtensionError unless it is one of `known`; the message lists them.
 std::string requireExtension(const std::string& path, std::initializer_list<std::string_view> known);
 
 }  // namespace pellucid::io

@@ -5,10 +5,9 @@
 #include <vector>
 
 namespace pellucid::io {
-namespace {
 
 // Edits (insert, delete, replace) between two words [Levenshtein 1966].
-size_t distance(std::string_view a, std::string_view b) {
+static size_t distance(std::string_view a, std::string_view b) {
     std::vector<size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), size_t{0});
     for (size_t i = 0; i < a.size(); ++i) {
@@ -22,8 +21,6 @@ size_t distance(std::string_view a, std::string_view b) {
     }
     return row.back();
 }
-
-}  // namespace
 
 std::string nearestWord(std::string_view given, std::span<const std::string> known) {
     size_t least = 2 + given.size() / 3;

@@ -2,7 +2,6 @@
 #pragma once
 #include <charconv>
 #include <cmath>
-#include <string_view>
 #include <vector>
 
 #include "io/file_error.h"

@@ -12,8 +12,7 @@ class Depth {
   public:
     Depth(const std::string& file, std::string_view text) : file_(file), text_(text) {}
 
-    // Dots and brackets outside strings and comments. Numbers contain a dot or two, which is far from the
-    // limit.
+    // Dots and brackets outside strings and comments. Numbers have a dot or two: far from the limit.
     void check() {
         while (at_ < text_.size()) {
             const char c = text_[at_];

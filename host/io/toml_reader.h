@@ -6,7 +6,6 @@
 #include <functional>
 #include <memory>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "fields/field_ranges.h"
@@ -22,8 +21,7 @@ struct TomlTable;  // an opaque toml::table
 // Throws FileError with the line if keys have more than 16 parts or brackets nest more than 16 deep.
 void checkTomlDepth(const std::string& file, std::string_view text);
 
-// Parses the text of `file`. Throws FileError with the line if it is not TOML, nests too deep, or has more
-// than textLimit bytes.
+// Throws FileError with the line if the text is not TOML, nests too deep, or has over textLimit bytes.
 std::shared_ptr<const TomlTable> parseToml(const std::string& file, const std::string& text);
 
 class TomlReader {

@@ -5,11 +5,7 @@
 
 namespace pellucid::sample {
 
-namespace {
-
 constexpr double degrees = std::numbers::pi / 180;
-
-}  // namespace
 
 Matrix4 Camera::view() const {
     const Vec3 f = forward(), u = perpendicular(f, up), r = cross(f, u);
@@ -20,14 +16,6 @@ Matrix4 Camera::projection(double aspect) const {
     const double h = 1 / std::tan(0.5 * verticalFov * degrees), range = farPlane - nearPlane;
     return Matrix4::fromRows({h / aspect, 0, 0}, 0, {0, h, 0}, 0, {0, 0, -farPlane / range},
                              -farPlane * nearPlane / range, {0, 0, -1}, 0);
-}
-
-Matrix4 Camera::viewProjection(double aspect) const {
-    return projection(aspect) * view();
-}
-
-Matrix4 Camera::inverseViewProjection(double aspect) const {
-    return viewProjection(aspect).inverse();
 }
 
 HeadPose poseWithUp(char axis) {

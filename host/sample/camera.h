@@ -5,8 +5,7 @@
 namespace pellucid::sample {
 
 // A perspective camera. View space is right-handed: x right, y up, the camera looks along -z. Clip space has
-// x and y in
-// [-w, w], y up (row 0 of an image on top), and z from 0 at the near plane to w at the far plane.
+// x and y in [-w, w], y up (row 0 of an image on top), and z from 0 at the near plane to w at the far plane.
 struct Camera {
     Vec3 eye{0, -1000, 0};    // mm
     Vec3 target{0, 0, 0};     // mm
@@ -16,21 +15,19 @@ struct Camera {
     double farPlane = 2000;   // mm
 
     Vec3 forward() const { return normalize(target - eye, {0, 1, 0}); }
-    Matrix4 view() const;                         // world to view
-    Matrix4 projection(double aspect) const;      // view to clip; aspect: width / height
-    Matrix4 viewProjection(double aspect) const;  // world to clip
-    Matrix4 inverseViewProjection(double aspect) const;
+    Matrix4 view() const;                     // world to view
+    Matrix4 projection(double aspect) const;  // view to clip; aspect: width / height
+    Matrix4 viewProjection(double aspect) const { return projection(aspect) * view(); }
+    Matrix4 inverseViewProjection(double aspect) const { return viewProjection(aspect).inverse(); }
 };
 
-// Which way a head looks. The default is that of most scans with z up; {y, z}
-// suits y-up files.
+// Which way a head looks. The default is that of most scans with z up; {y, z} suits y-up files.
 struct HeadPose {
     Vec3 up{0, 0, 1};      // unit, towards the crown
     Vec3 front{0, -1, 0};  // unit, across up, where the nose points
 };
 
-// The pose of a mesh by its up axis: 'y' (it looks to +z, as most OBJ files), else 'z' (it looks to -y, as
-// most scans).
+// The pose of a mesh by its up axis: 'y' (it looks to +z, as most OBJ files), else 'z' (to -y, as scans).
 HeadPose poseWithUp(char axis);
 
 // Unit vector away from the head: azimuth 0 is the front, 90 its left ear (on the right of a frontal

@@ -9,7 +9,6 @@
 #include "sample/waves.h"
 
 namespace pellucid::sample {
-
 namespace {
 
 // The view's rays.

@@ -69,8 +69,7 @@ inline Vec3 vectorAt(const Image& image, int x, int y) {
     return {image.at(0, x, y), image.at(1, x, y), image.at(2, x, y)};
 }
 
-// Pixels are independent of each other and of the number of threads. Throws std::invalid_argument for a
-// negative size.
+// Pixels do not depend on the number of threads. Throws std::invalid_argument for a negative size.
 GBuffer renderGBuffer(const Scene& scene, const Camera& camera, int width, int height,
                       const GBufferOptions& options = {});
 

@@ -1,8 +1,6 @@
 #include "sample/lit_mesh.h"
 
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 
 namespace pellucid::sample {
 namespace {

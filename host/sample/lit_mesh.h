@@ -1,5 +1,4 @@
-// Irradiance on a mesh, with ray-traced shadows, and triangles split until it is linear on each: what
-// pelSurfaceIntegral takes.
+// Irradiance on a mesh, with ray-traced shadows, on triangles split until it is linear on each.
 #pragma once
 #include <pellucid/pellucid.hpp>
 
@@ -40,9 +39,8 @@ Surface surfaceAt(const Mesh& mesh, const SurfacePoint& point);
 std::vector<SurfacePoint> nearestPoints(const Scene& scene, std::span<const float> positions,
                                         std::vector<double>& distances);
 
-// RGB per point. The cosine is that of the interpolated normals. Shadow rays begin at a point lifted to the
-// surface that these normals mean, so that facets throw no shadows on each other [Hanika 2021, "Hacking the
-// shadow terminator"].
+// RGB per point. The cosine is that of the interpolated normals. Shadow rays begin at the surface that these
+// mean, so that facets throw no shadows on each other [Hanika 2021, "Hacking the shadow terminator"].
 std::vector<float> irradianceAt(const Scene& scene, const Lighting& lighting,
                                 std::span<const SurfacePoint> points);
 
@@ -68,8 +66,7 @@ struct LitMeshOptions {
 LitMesh lightMesh(const Scene& scene, const Lighting& lighting, const LitMeshOptions& options,
                   const std::function<void(double)>& progress = {});
 
-// What light leaves a lit mesh after scattering under its surface (docs/mathematics.md, section 9), by the
-// library.
+// What light leaves a lit mesh after scattering in it (docs/mathematics.md, section 9), by the library.
 
 // RGB per point. `points`: xyz each; none give none. `desc` says how: profile, radius, unit, cut and
 // tolerance; mesh, points and result are filled in here.

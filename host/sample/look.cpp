@@ -3,18 +3,15 @@
 #include <algorithm>
 
 namespace pellucid::sample {
-namespace {
 
-double smoothstep(double from, double to, double x) {
+static double smoothstep(double from, double to, double x) {
     const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
     return t * t * (3 - 2 * t);
 }
 
-LinearColor mix(const LinearColor& a, const LinearColor& b, double t) {
+static LinearColor mix(const LinearColor& a, const LinearColor& b, double t) {
     return {a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t, a[2] + (b[2] - a[2]) * t};
 }
-
-}  // namespace
 
 LinearColor Tint::at(Vec3 p) const {
     const Vec3 d = p - centre;

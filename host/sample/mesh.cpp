@@ -6,7 +6,6 @@
 #include <string>
 
 namespace pellucid::sample {
-
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -19,8 +18,7 @@ void addVertex(Mesh& mesh, Vec3 position, Vec3 normal, double u, double v, doubl
     mesh.curvature.push_back(float(curvature));
 }
 
-// Two triangles per cell of a (rows + 1) x (columns + 1) grid of vertices; those with no area, at poles, are
-// left out.
+// Two triangles per cell of a (rows + 1) x (columns + 1) grid of vertices, without empty ones at poles.
 void addGrid(Mesh& mesh, int rows, int columns, bool poles) {
     for (int i = 0; i < rows; ++i)
         for (int j = 0; j < columns; ++j) {

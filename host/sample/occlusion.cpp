@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 namespace pellucid::sample {
-namespace {
 
 constexpr int pattern = 4;           // pixels along a side
 constexpr double offset = 0.05;      // mm from the surface, for the vertex normals lean from the triangles'
@@ -12,13 +11,12 @@ constexpr double alikeNormal = 0.8;  // cosine
 constexpr double alikeHeight = 0.5;  // mm above or below the tangent plane
 
 // The share of cosine-distributed rays from `p` that hit nothing. `k`: the place in the pattern.
-float unoccluded(const Scene& scene, Vec3 p, Vec3 n, int rays, int k) {
+static float unoccluded(const Scene& scene, Vec3 p, Vec3 n, int rays, int k) {
     const Vec3 across = normalize(std::abs(n.x) < 0.5 ? cross(n, {1, 0, 0}) : cross(n, {0, 1, 0})),
                along = cross(n, across);
     int clear = 0;
     for (int i = 0; i < rays; ++i) {
-        // One set of points over all pixels of the pattern: the cosine's square in equal steps, azimuths by
-        // the golden ratio.
+        // One set of points over all pixels of the pattern: equal steps of cosine squared, golden azimuths.
         const double step = i * pattern * pattern + k, height2 = (step + 0.5) / (pattern * pattern * rays),
                      angle = 2 * std::numbers::pi * std::fmod(step / std::numbers::phi, 1.0);
         const double side = std::sqrt(1 - height2);
@@ -28,8 +26,6 @@ float unoccluded(const Scene& scene, Vec3 p, Vec3 n, int rays, int k) {
     }
     return float(clear) / float(rays);
 }
-
-}  // namespace
 
 Image ambientOcclusion(const Scene& scene, const GBuffer& g, int rays) {
     if (rays < 1) throw std::invalid_argument("ambientOcclusion: at least one ray a pixel");

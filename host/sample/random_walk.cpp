@@ -6,8 +6,6 @@
 #include <chrono>
 #include <exception>
 #include <numbers>
-#include <stdexcept>
-#include <string>
 
 namespace pellucid::sample {
 namespace {
@@ -43,8 +41,7 @@ class Random {
     uint64_t state_;
 };
 
-// Point i of the four-dimensional R sequence [Roberts 2018], shifted: starts and wavelengths that are spread
-// evenly.
+// Point i of the four-dimensional R sequence [Roberts 2018], shifted: evenly spread starts and wavelengths.
 std::array<double, 4> spread(uint32_t i, const std::array<double, 4>& shift) {
     constexpr double root = 1.1673039782614187;  // of x^5 = x + 1
     std::array<double, 4> p;
@@ -57,8 +54,7 @@ std::array<double, 4> spread(uint32_t i, const std::array<double, 4>& shift) {
     return p;
 }
 
-// The share of unpolarised light that a smooth boundary reflects; `ratio`: index of the far side over that of
-// the near side.
+// Unpolarised light that a smooth boundary reflects; `ratio`: far side's index over that of the near side.
 double fresnel(double cosine, double ratio) {
     const double sine2 = (1 - cosine * cosine) / (ratio * ratio);
     if (sine2 >= 1) return 1;
@@ -154,8 +150,7 @@ class Walker {
     // Returns the weight with which the walk leaves at `exit`; 0 if it does not leave.
     double walk(const Start& start, const Wave& wave, const std::array<double, 4>& first, Random& random,
                 SurfacePoint& exit, uint64_t& lost) const {
-        // Delta tracking [Woodcock 1965]: paths of the layer that absorbs more. In the other one some events
-        // change nothing.
+        // Delta tracking [Woodcock 1965]: paths of the more absorbing layer; some events change nothing.
         const double most = std::max(wave.outerAbsorption, wave.absorption),
                      path = 1 / (wave.scattering + most), index = medium_.refractiveIndex;
         double cosine = std::sqrt(first[0]), weight = 1;

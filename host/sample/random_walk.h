@@ -1,5 +1,4 @@
-// Light that walks through the volume of a body (docs/mathematics.md, section 14): what the surface integral
-// itself approximates.
+// Light that walks through a body (docs/mathematics.md, section 14): what the surface integral approximates.
 #pragma once
 #include "sample/lit_mesh.h"
 
@@ -80,8 +79,7 @@ struct WalkedLight {
 };
 
 // Walks from each of `points` (on triangles of the whole scene that enclose the medium) until the surface is
-// met, and takes the irradiance there, with ray-traced visibility. The result depends on the seed, not on the
-// number of threads.
+// met, and takes the irradiance there, with ray-traced visibility. Threads do not change the result.
 WalkedLight walkLight(const WalkBody& body, const Lighting& lighting, std::span<const SurfacePoint> points,
                       const LayeredMedium& medium, const WalkOptions& options);
 

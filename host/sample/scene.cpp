@@ -36,8 +36,7 @@ Mesh copyOf(const MeshView& view) {
 
 Scene::Scene(const MeshView& view)
     : mesh_(copyOf(view)), bounds_(boundsOf(mesh_.view())), device_(std::make_unique<Device>()) {
-    // One thread builds the tree, so that it is the same tree every time: on edges shared by two triangles it
-    // decides which of them is hit.
+    // One thread builds the tree, so that it is always the same: it decides which triangle of an edge is hit.
     RTCDevice device = device_->device = rtcNewDevice("threads=1");
     if (!device) fail(nullptr, "starting");
     RTCScene scene = device_->scene = rtcNewScene(device);

@@ -6,7 +6,6 @@
 #include <string>
 
 namespace pellucid::sample {
-
 namespace {
 
 ShadowMap emptyMap(ShadowProjection projection, Vec3 forward, int size) {

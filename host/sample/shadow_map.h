@@ -34,8 +34,7 @@ struct ShadowMap {
     double distance(double z) const;  // mm along the axis
 };
 
-// The map encloses the scene with `margin` mm to spare on every side. Throws std::invalid_argument for a
-// negative size.
+// The map encloses the scene with `margin` mm to spare. Throws std::invalid_argument for a negative size.
 ShadowMap renderShadowMap(const Scene& scene, const DirectionalLight& light, int size, double margin = 1);
 // Near and far plane are fitted to the scene; what is nearer than a thousandth of the far plane is not seen.
 ShadowMap renderShadowMap(const Scene& scene, const SpotLight& light, int size);

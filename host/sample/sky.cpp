@@ -7,12 +7,10 @@
 
 namespace pellucid::sample {
 
-namespace {
-
 constexpr double pi = std::numbers::pi;
 
 // Nodes and weights of the Gauss-Legendre rule on [-1, 1]: Newton's method on the recurrence.
-std::vector<std::pair<double, double>> gaussLegendre(int count) {
+static std::vector<std::pair<double, double>> gaussLegendre(int count) {
     std::vector<std::pair<double, double>> rule;
     for (int i = 0; i < count; ++i) {
         double x = std::cos(pi * (i + 0.75) / (count + 0.5)), slope = 1;
@@ -27,8 +25,6 @@ std::vector<std::pair<double, double>> gaussLegendre(int count) {
     }
     return rule;
 }
-
-}  // namespace
 
 std::array<double, 9> harmonicBasis(Vec3 d) {
     const double c0 = std::sqrt(1 / (4 * pi)), c1 = std::sqrt(3 / (4 * pi)), c2 = std::sqrt(15 / (4 * pi)),

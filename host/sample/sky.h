@@ -26,9 +26,8 @@ struct Sky {
 };
 
 // Projects irradiance / pi of an environment: a sky of radiance 1 all round gives 1 for every normal. The
-// integral is a product rule, Gauss-Legendre in the cosine to z and uniform round z, exact for polynomials up
-// to degree 127. The cosine's weights per order are pi, 2 pi / 3, pi / 4 [Ramamoorthi and Hanrahan, SIGGRAPH
-// 2001].
+// integral is a product rule, Gauss-Legendre in the cosine to z and uniform round z, exact up to degree 127.
+// The cosine's weights per order are pi, 2 pi / 3, pi / 4 [Ramamoorthi and Hanrahan, SIGGRAPH 2001].
 Harmonics projectIrradiance(const std::function<Rgb(Vec3)>& radiance);
 Harmonics projectIrradiance(const Sky& sky);
 

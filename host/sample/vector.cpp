@@ -19,16 +19,11 @@ std::array<float, 16> Matrix4::toFloats() const {
     return f;
 }
 
-std::array<double, 4> Matrix4::transformPoint(Vec3 p) const {
-    std::array<double, 4> r;
-    for (int i = 0; i < 4; ++i)
-        r[i] = m[4 * i] * p.x + m[4 * i + 1] * p.y + m[4 * i + 2] * p.z + m[4 * i + 3];
-    return r;
-}
-
 Vec3 Matrix4::project(Vec3 p) const {
-    const auto h = transformPoint(p);
-    return {h[0] / h[3], h[1] / h[3], h[2] / h[3]};
+    const auto row = [&](int i) {
+        return m[4 * i] * p.x + m[4 * i + 1] * p.y + m[4 * i + 2] * p.z + m[4 * i + 3];
+    };
+    return {row(0) / row(3), row(1) / row(3), row(2) / row(3)};
 }
 
 Matrix4 operator*(const Matrix4& a, const Matrix4& b) {

@@ -13,17 +13,12 @@ struct Vec3 {
     friend Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
     friend Vec3 operator*(Vec3 a, double s) { return {a.x * s, a.y * s, a.z * s}; }
     friend Vec3 operator*(double s, Vec3 a) { return a * s; }
+    friend double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+    friend Vec3 cross(Vec3 a, Vec3 b) {
+        return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    }
+    friend double length(Vec3 a) { return std::sqrt(dot(a, a)); }
 };
-
-inline double dot(Vec3 a, Vec3 b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-inline Vec3 cross(Vec3 a, Vec3 b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-inline double length(Vec3 a) {
-    return std::sqrt(dot(a, a));
-}
 
 // The unit vector along a, or `otherwise` where a has no direction.
 inline Vec3 normalize(Vec3 a, Vec3 otherwise = {0, 0, 1}) {
@@ -31,8 +26,7 @@ inline Vec3 normalize(Vec3 a, Vec3 otherwise = {0, 0, 1}) {
     return l > 0 ? a * (1 / l) : otherwise;
 }
 
-// A unit vector across `direction`, as near to `wish` as can be; a coordinate axis where the two are
-// parallel.
+// A unit vector across `direction`, as near to `wish` as can be, or to an axis where they are parallel.
 Vec3 perpendicular(Vec3 direction, Vec3 wish);
 
 // Row-major, multiplies column vectors: out[i] = sum over j of m[4 i + j] in[j], as in pellucid.h.
@@ -44,9 +38,8 @@ struct Matrix4 {
         return {{x.x, x.y, x.z, xw, y.x, y.y, y.z, yw, z.x, z.y, z.z, zw, w.x, w.y, w.z, ww}};
     }
     std::array<float, 16> toFloats() const;
-    std::array<double, 4> transformPoint(Vec3 p) const;  // homogeneous, not divided
-    Vec3 project(Vec3 p) const;                          // divided by the fourth component
-    Matrix4 inverse() const;                             // throws std::domain_error when singular
+    Vec3 project(Vec3 p) const;  // divided by the fourth component
+    Matrix4 inverse() const;     // throws std::domain_error when singular
     friend Matrix4 operator*(const Matrix4& a, const Matrix4& b);
 };
 

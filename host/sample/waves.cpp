@@ -3,13 +3,11 @@
 #include <numbers>
 
 namespace pellucid::sample {
-
 namespace {
 
 constexpr double tau = 2 * std::numbers::pi;
 
-// A 32-bit linear congruential generator with a mixed output; the standard's distributions differ between
-// libraries.
+// A 32-bit linear congruential generator, mixed; the standard's distributions differ between libraries.
 class Random {
   public:
     explicit Random(uint32_t seed) : state_(seed * 2654435769u + 1u) {}
@@ -25,8 +23,7 @@ class Random {
     uint32_t state_;
 };
 
-// Log of how much a Gaussian footprint weakens wave k. Single precision from here on is plenty for relief,
-// and faster.
+// Log of how much a Gaussian footprint weakens wave k. Single precision is plenty for relief, and fast.
 float attenuation(Vec3 k, const Footprint& f) {
     const double kn = dot(k, f.normal), ka = dot(k, f.along);
     const double tangential = dot(k, k) - kn * kn + ka * ka * (f.stretch * f.stretch - 1);

@@ -26,8 +26,7 @@ class WaveField {
 
     // Height of mean square 1 over a surface, blurred over the footprint.
     double value(Vec3 p, const Footprint& footprint) const;
-    // Slope along the tangent plane, of mean square 1 over a surface, blurred over each footprint; out[i] for
-    // footprints[i].
+    // Slope along the tangent plane, of mean square 1, blurred over each footprint; out[i] for footprints[i].
     void slope(Vec3 p, const Footprint* footprints, int count, Vec3* out) const;
 
   private:

@@ -1,5 +1,4 @@
-"""Doxygen's filter: ordinary comments of a header become documentation, so that the header itself stays free
-of marks.
+"""Doxygen's filter: ordinary comments of a header become documentation; the header stays free of marks.
 
 A comment on lines of its own describes what follows, one behind code what stands before it. A heading (/*
 ---- Words ---- */) stays out.

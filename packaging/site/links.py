@@ -1,5 +1,4 @@
-"""Links and anchors of a site on disk: what leads nowhere, and what must be fetched from elsewhere to read a
-page."""
+"""Links and anchors of a site on disk: what leads nowhere, and what pages need from elsewhere."""
 
 from html.parser import HTMLParser
 from pathlib import Path

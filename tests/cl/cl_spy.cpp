@@ -98,8 +98,7 @@ struct Held {
     size_t bytes;
     int64_t references;
 };
-// Outlives every static object. Not on the heap between the library's own blocks: those could not be
-// returned to the system.
+// Outlives every static object. Not on the heap, where it would keep the library's blocks.
 std::pmr::map<cl_mem, Held>& heldBuffers() {
     static std::byte first[1 << 20];
     static auto* room = new std::pmr::monotonic_buffer_resource(first, sizeof first);

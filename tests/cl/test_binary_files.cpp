@@ -3,6 +3,7 @@
 
 #include "cl/binary_files.h"
 #include "io/io_files.h"
+#include "variable.h"
 
 namespace fs = std::filesystem;
 using pel::cl::BinaryFiles;
@@ -105,17 +106,8 @@ TEST_F(BinaryFile, OldestGoWhenThereIsTooMuch) {
 
 TEST_F(BinaryFile, WhereItIs) {
     const auto folder = [](const char* own, const char* xdg, const char* home) {
-        std::vector<std::pair<const char*, std::string>> before;
-        for (const auto& [name, value] :
-             {std::pair{"PELLUCID_CACHE_DIR", own}, {"XDG_CACHE_HOME", xdg}, {"HOME", home}}) {
-            const char* old = std::getenv(name);
-            if (old) before.emplace_back(name, old);
-            value ? ::setenv(name, value, 1) : ::unsetenv(name);
-        }
-        const std::string found = pel::cl::binaryFolder().string();
-        for (const char* name : {"PELLUCID_CACHE_DIR", "XDG_CACHE_HOME", "HOME"}) ::unsetenv(name);
-        for (const auto& [name, value] : before) ::setenv(name, value.c_str(), 1);
-        return found;
+        const Variable ours("PELLUCID_CACHE_DIR", own), caches("XDG_CACHE_HOME", xdg), user("HOME", home);
+        return pel::cl::binaryFolder().string();
     };
     EXPECT_EQ(folder(nullptr, nullptr, "/home/x"), "/home/x/.cache/pellucid");
     EXPECT_EQ(folder(nullptr, "/var/c", "/home/x"), "/var/c/pellucid");

@@ -1,5 +1,4 @@
-// The first use of OpenCL in a process, by many threads at once. A program of its own, for nothing may come
-// before.
+// The first use of OpenCL in a process, by many threads at once. A program of its own: nothing comes before.
 #include "test.h"
 
 #include <barrier>

@@ -1,5 +1,4 @@
-// Where PoCL keeps compiled kernels: in a folder of this user's alone, and nothing in it that PoCL would die
-// of.
+// Where PoCL keeps compiled kernels: in a folder of this user's alone, with nothing that PoCL would die of.
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/file.h>
@@ -11,6 +10,7 @@
 #include "cl/pocl_cache.h"
 #include "io/io_files.h"
 #include "system/process.h"
+#include "variable.h"
 
 namespace fs = std::filesystem;
 using pel::cl::whyNotPrivate;
@@ -98,8 +98,7 @@ TEST_F(PoclCache, TheUsersOwnIsLeftAlone) {
     EXPECT_FALSE(fs::exists(ours()));
 }
 
-// A folder that others may write to, another user's, a file, a link of another's: none is used, and nothing
-// is left in /tmp.
+// A folder open to others, another user's, a file, a link: none is used, and nothing is left in /tmp.
 TEST_F(PoclCache, FoldersOfOthersAreRefused) {
     fs::create_directory(path("temporary"));
     fs::permissions(path("temporary"), fs::perms::owner_all);
@@ -135,12 +134,9 @@ TEST_F(PoclCache, WithoutHomeNothingInTheTemporaryFolderIsTrusted) {
               0);
     EXPECT_GE(kernels(fs::path(path("home")) / "pellucid/pocl", ".so").size(), 1u);
     const auto homes = pel::cl::cacheHomes();
-    const char* home = std::getenv("HOME");
-    const std::string saved = home ? home : "";
-    ::unsetenv("HOME");
+    const Variable home("HOME", nullptr);
     EXPECT_FALSE(pel::cl::cacheHomes().empty()) << "the system knows";
     for (const fs::path& each : pel::cl::cacheHomes()) EXPECT_TRUE(each.is_absolute());
-    if (home) ::setenv("HOME", saved.c_str(), 1);
     EXPECT_EQ(fs::exists(fixed), there);
 }
 

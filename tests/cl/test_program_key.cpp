@@ -1,5 +1,6 @@
 // Programs kept on disk are for one driver with its settings: another setting compiles anew.
 #include "io/io_files.h"
+#include "variable.h"
 
 namespace {
 
@@ -39,25 +40,24 @@ TEST_F(ProgramKey, HasTheDriversSettings) {
     for (const char* name :
          {"CL_CONFIG_TEST", "POCL_TEST", "RUSTICL_TEST", "LP_TEST", "GALLIVM_TEST", "IGC_TEST"}) {
         for (const char* value : {"1", "2"}) {
-            ::setenv(name, value, 1);
+            const Variable setting(name, value);
             EXPECT_EQ(table(), (Counts{0, first.stored})) << name << "=" << value << " was forgotten";
             EXPECT_EQ(table(), (Counts{first.stored, 0})) << name << "=" << value << " the second time";
         }
-        ::unsetenv(name);
     }
     // Variables that do not change the compiled program: others, and the one for the cache folder.
     for (const char* name : {"UNRELATED_TEST", "POCL_CACHE_TEST"}) {
-        ::setenv(name, "1", 1);
+        const Variable setting(name, "1");
         EXPECT_EQ(table(), (Counts{first.stored, 0})) << name;
-        ::unsetenv(name);
     }
 }
 
 TEST_F(ProgramKey, HasTheWidth) {
     const uint32_t own = pellucid::Device("").info().mathWidth;
-    ::setenv("PELLUCID_MATH_WIDTH", own == 1 ? "8" : "1", 1);
+    const Variable width("PELLUCID_MATH_WIDTH");
+    width.set(own == 1 ? "8" : "1");
     EXPECT_EQ(table(), (Counts{0, first.stored}));
-    ::unsetenv("PELLUCID_MATH_WIDTH");
+    width.set(nullptr);
     EXPECT_EQ(table(), (Counts{first.stored, 0}));
 }
 

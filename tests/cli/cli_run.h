@@ -14,13 +14,14 @@ class CommandTest : public FolderTest {
         nlohmann::json json() const { return nlohmann::json::parse(out); }
     };
 
-    // `environment`: "NAME=value" words put before the command.
-    Result run(const std::vector<std::string>& arguments, const std::string& environment = "") const {
-        return start(joined(arguments), environment);
-    }
     // The words of a line as a shell reads them, with redirections; each @ stands for the test's folder.
+    // `environment`: "NAME=value" words put before the command.
     Result cli(const std::string& line, const std::string& environment = "") const {
-        return start(filled(line), filled(environment));
+        const std::string out = scratch_ + "/stdout", err = scratch_ + "/stderr";
+        const int status = std::system((filled(environment) + " '" PELLUCID_COMMAND "' >'" + out + "' 2>'" +
+                                        err + "' </dev/null " + filled(line))
+                                           .c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
     }
     // The same, which must succeed; and its report.
     Result done(const std::string& line, const std::string& environment = "") const {
@@ -35,11 +36,12 @@ class CommandTest : public FolderTest {
     // Wrong use or bad input: this exit code, this text on stderr, nothing on stdout, no file left behind.
     void refused(const std::string& line, int exitCode, const std::string& message,
                  const std::string& environment = "") const {
-        expectRefusal(filled(line), exitCode, message, filled(environment));
-    }
-    void expectRefused(const std::vector<std::string>& arguments, int exitCode, const std::string& message,
-                       const std::string& environment = "") const {
-        expectRefusal(joined(arguments), exitCode, message, environment);
+        const size_t files = filesInFolder();
+        const Result result = cli(line, environment);
+        EXPECT_EQ(result.exitCode, exitCode) << line << "\n" << result.err;
+        EXPECT_TRUE(contains(result.err, message)) << line;
+        EXPECT_EQ(result.out, "") << line;
+        EXPECT_EQ(filesInFolder(), files) << line;
     }
 
     // The keys that every report has.
@@ -69,30 +71,5 @@ class CommandTest : public FolderTest {
     }
 
   private:
-    Result start(const std::string& words, const std::string& environment) const {
-        const std::string out = scratch_ + "/stdout", err = scratch_ + "/stderr";
-        const int status = std::system(
-            (environment + " '" PELLUCID_COMMAND "' >'" + out + "' 2>'" + err + "' </dev/null " + words)
-                .c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
-    }
-    void expectRefusal(const std::string& words, int exitCode, const std::string& message,
-                       const std::string& environment) const {
-        const size_t files = filesInFolder();
-        const Result result = start(words, environment);
-        EXPECT_EQ(result.exitCode, exitCode) << words << "\n" << result.err;
-        EXPECT_TRUE(contains(result.err, message)) << words;
-        EXPECT_EQ(result.out, "") << words;
-        EXPECT_EQ(filesInFolder(), files) << words;
-    }
-    static std::string joined(const std::vector<std::string>& arguments) {
-        std::string line;
-        for (const std::string& argument : arguments) {
-            line += " '";
-            for (char c : argument) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
-            line += "'";
-        }
-        return line;
-    }
     std::string scratch_;
 };

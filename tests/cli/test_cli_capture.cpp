@@ -1,9 +1,9 @@
-// PELLUCID_CAPTURE: `pellucid shade` makes the same bits of a captured frame as the program that it was
-// captured from.
+// PELLUCID_CAPTURE: `pellucid shade` makes the same bits of a captured frame as the program it comes from.
 #include "cli_run.h"
 #include "eye/eye_frame.h"
 #include "io/image/image_file.h"
 #include "shading/scattering_frame.h"
+#include "variable.h"
 
 using namespace shade_test;
 using pellucid::Lut;
@@ -15,7 +15,6 @@ namespace {
 class Capture : public CommandTest {
   protected:
     void TearDown() override {
-        ::unsetenv("PELLUCID_CAPTURE");
         pelSetLogCallback(nullptr, nullptr);
         CommandTest::TearDown();
     }
@@ -25,11 +24,10 @@ class Capture : public CommandTest {
         pelSetLogCallback([](void* said, PelLogLevel, const char*,
                              const char* line) { static_cast<std::string*>(said)->append(line) += '\n'; },
                           &said_);
-        ::setenv("PELLUCID_CAPTURE", path(folder).c_str(), 1);
+        const Variable capture("PELLUCID_CAPTURE", path(folder).c_str());
         shader.commit();
         said_.clear();
         shader.execute();
-        ::unsetenv("PELLUCID_CAPTURE");
         pelSetLogCallback(nullptr, nullptr);
     }
     std::vector<float> radianceOf(const std::string& file) const {

@@ -65,8 +65,7 @@ TEST_F(CliCurvature, ColoursAndWeights) {
 }
 
 TEST_F(CliCurvature, WhatCanBeRepairedIsCounted) {
-    // Two unreferenced vertices, a repeated index, a third face on an edge, and a face with a zero-length
-    // edge.
+    // Two unreferenced vertices, a repeated index, a third face on an edge, a zero-length edge.
     const auto all =
         values(octahedron("9 9 9\n9 9 9\n0 0 5\n0 0 5\n", "3 0 0 2\n3 0 2 8\n3 8 9 3\n", "10 11"),
                "--estimator edge");

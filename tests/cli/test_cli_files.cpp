@@ -1,5 +1,4 @@
-// What the command does with files that are none, disks that are full, names that are no text, and limits of
-// the system.
+// The command with files that are none, full disks, names that are no text, and limits of the system.
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/mount.h>
@@ -10,8 +9,7 @@
 
 namespace {
 
-// A tmpfs of so many KiB, which only this program and its children see. It ends with the program. Mounting
-// needs root.
+// A tmpfs of so many KiB for this program and its children alone, until it ends. Mounting needs root.
 class SmallDisk {
   public:
     explicit SmallDisk(size_t kibibytes) {
@@ -76,8 +74,7 @@ class Files : public CommandTest {
 
 }  // namespace
 
-// Some 250 libraries come with OpenImageIO; the command starts without them. tests/outside checks that they
-// are found.
+// The command starts without OpenImageIO's 250 libraries. tests/outside checks that they are found.
 TEST_F(Files, PicturesAreAModuleOfTheirOwn) {
     const std::string libraries = cli("--version", "LD_TRACE_LOADED_OBJECTS=1").out;
     EXPECT_TRUE(contains(libraries, "libpellucid.so"));

@@ -1,5 +1,4 @@
-// `pellucid reference` and `pellucid compare` as their users run them: a ball whose reference has a closed
-// form.
+// `pellucid reference` and `pellucid compare` as users run them: a ball whose reference has a closed form.
 #include "cli_shade.h"
 #include "reference/random_walk.h"
 #include "reference/surface_integral.h"

@@ -1,5 +1,4 @@
-// `pellucid shade` and `pellucid warm-up`: G-buffer and scene file in, pictures out; what is wrong with
-// either.
+// `pellucid shade` and `pellucid warm-up`: G-buffer and scene in, pictures out; what is wrong with either.
 #include "cli_shade.h"
 #include "io/image/color_map.h"
 

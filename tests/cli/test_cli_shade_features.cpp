@@ -56,8 +56,7 @@ double farthest(const std::vector<float>& a, const std::vector<float>& b) {
 }  // namespace
 
 TEST_F(ShadeFeatures, TablesOfMaterialsAndProfileFiles) {
-    // The same profile as a file beside the scene and as an EXR made from it; another material looks
-    // otherwise.
+    // The same profile as a file and as an EXR made from it; another material looks otherwise.
     write("own.toml",
           "name = \"own\"\nsource = \"a test\"\nkind = \"table\"\nunit = \"mm\"\n[[sample]]\ndistance = 0\n"
           "value = [3, 2, 1]\n[[sample]]\ndistance = 4\nvalue = [0.1, 0.1, 0]\n");
@@ -285,8 +284,7 @@ TEST_F(ShadeFeatures, DepthThatGivesNoLikelySizeIsSaid) {
     };
     EXPECT_TRUE(contains(with(250, 1), "depth channel reaches 250"));
     scene_.materials[0].profile = "skin";
-    // A camera at the origin that looks along z, with 90 degrees of view: near plane at 0.1 m, far plane at
-    // 100 m.
+    // A camera at the origin that looks along z, 90 degrees of view, planes at 0.1 m and 100 m.
     const float near = 0.1f, far = 100;
     std::fill(scene_.camera.inverseViewProjection, scene_.camera.inverseViewProjection + 16, 0.0f);
     float* m = scene_.camera.inverseViewProjection;

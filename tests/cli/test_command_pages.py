@@ -1,5 +1,4 @@
-"""Manual pages and completions are made from the command itself, and the guide's tables are what it says
-today.
+"""Manual pages and completions are made from the command, and the guide's tables are what it says today.
 
 test_command_pages.py COMMAND
 """

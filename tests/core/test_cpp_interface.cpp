@@ -1,7 +1,6 @@
 // What pellucid.hpp adds to the C interface: what it keeps alive, what it does not compile, and short
 // forms. That messages name the image they are about.
 #include "shading/shader_ready.h"
-#include "test.h"
 
 using namespace pellucid;
 using shade_test::device;

@@ -1,26 +1,8 @@
 // Devices, buffers, errors, events: what every other object stands on.
 #include <CL/cl.h>
-#include "test.h"
+#include "variable.h"
 
 using namespace pellucid;
-
-namespace {
-
-// A variable of the environment for as long as this lives.
-class Variable {
-  public:
-    explicit Variable(const char* name)
-        : name_(name), before_(std::getenv(name)), saved_(before_ ? before_ : "") {}
-    Variable(const Variable&) = delete;
-    ~Variable() { before_ ? setenv(name_, saved_.c_str(), 1) : unsetenv(name_); }
-    void set(const char* value) const { setenv(name_, value, 1); }
-
-  private:
-    const char *name_, *before_;
-    std::string saved_;
-};
-
-}  // namespace
 
 TEST(Device, EnumeratesAndSelects) {
     const std::vector<PelDeviceInfo> all = Device::all();

@@ -1,5 +1,4 @@
-// A fork of a process that uses OpenCL has the drivers' locks and none of their threads: each call says so
-// instead of waiting.
+// A fork of a process that uses OpenCL has drivers' locks without their threads: calls say so at once.
 #include <sys/wait.h>
 #include <unistd.h>
 

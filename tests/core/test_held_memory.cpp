@@ -9,22 +9,18 @@ using pellucid::LiveMesh;
 using pellucid::MeshTopology;
 using pellucid::Shader;
 
-namespace {
-
 // Bytes that `release` gives back.
-uint64_t freed(const std::function<void()>& release) {
+static uint64_t freed(const std::function<void()>& release) {
     const int64_t before = spy::counts().memoryBytes;
     release();
     return uint64_t(before - spy::counts().memoryBytes);
 }
 
 // What is said may leave out small lists.
-void expectSaid(uint64_t said, uint64_t held, const std::string& of) {
+static void expectSaid(uint64_t said, uint64_t held, const std::string& of) {
     EXPECT_LE(said, held) << of;
     EXPECT_GE(double(said), (1 - tolerance::heldMemory) * double(held)) << of;
 }
-
-}  // namespace
 
 TEST(HeldMemory, OfAShaderByMethod) {
     constexpr uint32_t side = 160;
@@ -76,8 +72,7 @@ TEST(HeldMemory, OfAShaderByMethod) {
             expectSaid(said, held, "method " + std::to_string(scattering));
             continue;
         }
-        // What the tables of the profile take by themselves, which other shaders may share, is not said:
-        // their copy side by side is.
+        // The tables of the profile, which other shaders may share, are not said; their copy is.
         EXPECT_LE(said, held);
         EXPECT_GE(said, held / 2.05);
     }

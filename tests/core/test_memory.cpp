@@ -40,8 +40,7 @@ extern "C" __attribute__((visibility("default"))) cl_int clSetMemObjectDestructo
 
 namespace {
 
-// Reports a failure to the parent by the exit code, which expectations of Google Test in a child would not
-// do.
+// Reports a failure to the parent by the exit code; Google Test in a child would not do that.
 #define CHILD_EXPECT(condition)                                                                            \
     do {                                                                                                   \
         if (!(condition)) {                                                                                \

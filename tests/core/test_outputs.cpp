@@ -1,5 +1,4 @@
-// What a call writes into memory of its caller: nothing that was not asked for, and nothing at all if the
-// call is refused.
+// What a call writes to its caller: nothing that was not asked for, and nothing if the call is refused.
 #include "mesh/mesh_calls.h"
 
 using namespace pellucid;

@@ -11,9 +11,8 @@ namespace fuzz {
 
 using namespace pellucid;
 
-namespace {
-
-Reader mesh(const std::string& extension, std::vector<std::string> seeds, std::vector<std::string> words) {
+static Reader mesh(const std::string& extension, std::vector<std::string> seeds,
+                   std::vector<std::string> words) {
     return {extension,
             std::move(seeds),
             [file = "m." + extension](const std::string& bytes) {
@@ -39,15 +38,13 @@ Reader mesh(const std::string& extension, std::vector<std::string> seeds, std::v
 }
 
 // XXH32, behind 8 + 4 + 24 bytes of header, as host/mesh/mesh_topology_file.cpp has it.
-std::string mendTopology(std::string b) {
+static std::string mendTopology(std::string b) {
     constexpr size_t sumAt = 36, start = sumAt + 4 + sizeof(PelMeshReport);
     if (b.size() < start) return b;
     const uint32_t hash = XXH32(b.data() + start, (b.size() - start) / 4 * 4, 0);
     std::memcpy(b.data() + sumAt, &hash, 4);
     return b;
 }
-
-}  // namespace
 
 void addMeshes(std::vector<Reader>& all, const Folder& folder) {
     all.push_back(

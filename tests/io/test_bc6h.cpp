@@ -97,8 +97,7 @@ TEST(Bc6h, NegativeNanAndInfinityBecomeNumbers) {
 
 class Bc6hFile : public FolderTest {};
 
-// What OpenImageIO, which decodes with code of its own, reads from a DDS file: three floats per texel; none
-// if it knows no BC6H.
+// What OpenImageIO reads from a DDS file, with its own decoder: three floats per texel, if it knows BC6H.
 std::vector<float> foreignTexels(const std::string& path, int width, int height) {
     const auto input = OIIO::ImageInput::open(path);
     if (!input) return {};
@@ -135,8 +134,7 @@ TEST_F(Bc6hFile, OpenImageIoReadsTheSame) {
     expectSame(found, expected);
 }
 
-// Blocks that our encoder would never write: random bits in each of its four modes, and in the reserved ones,
-// which are black.
+// Blocks that our encoder would never write: random bits in its four modes, and in the black reserved ones.
 TEST_F(Bc6hFile, OpenImageIoReadsRandomBlocksOfEveryMode) {
     constexpr int across = 32, down = 8 * 4;  // a row of blocks for each code, four times
     constexpr uint8_t codes[] = {0x03, 0x07, 0x0B, 0x0F, 0x13, 0x17, 0x1B, 0x1F};

@@ -1,8 +1,8 @@
-// The library and the scene file accept and refuse the same values of each field (pellucid_fields.h), at both
-// ends of its range and beyond.
+// Library and scene file accept and refuse the same values of each field (pellucid_fields.h), at both ends.
 #include "fields/field_ranges.h"
 #include "io/file_error.h"
 #include "io/scene/scene_file.h"
+#include "io/shortest.h"
 #include "io_files.h"
 
 using namespace pellucid;
@@ -27,9 +27,7 @@ void fill(T& field, float value) {
 // A number as it is written in a file.
 template <class T>
 std::string said(float value) {
-    char number[32];
-    std::snprintf(number, sizeof number, std::is_integral_v<T> ? "%.0f" : "%.9e", double(value));
-    const std::string one = number;
+    const std::string one = io::printed(std::is_integral_v<T> ? "%.0f" : "%.9e", double(value));
     return std::is_array_v<T> ? "[" + one + ", " + one + ", " + one + "]" : one;
 }
 

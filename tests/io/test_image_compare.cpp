@@ -1,5 +1,4 @@
-// Numbers of `pellucid compare`: colour differences against published pairs, errors against sums by hand,
-// sub-sets on a made picture.
+// Numbers of `pellucid compare`: colour differences as published, errors summed by hand, sub-sets.
 #include "io/image/image_compare.h"
 #include "io/image/image_file.h"
 #include "io_files.h"
@@ -54,8 +53,7 @@ TEST(ColorDifference, PublishedPairs) {
             << "pair " << ++number;
 }
 
-// The corners of sRGB and its greys, as published for its matrix and the white D65 (B. Lindbloom, CIE
-// colour calculator).
+// The corners of sRGB and its greys, as published for its matrix and D65 [B. Lindbloom, CIE calculator].
 TEST(ColorDifference, LabOfKnownColours) {
     const std::pair<std::array<double, 3>, io::Lab> known[] = {
         {{1, 0, 0}, {53.2408, 80.0925, 67.2032}},
@@ -125,8 +123,7 @@ TEST(CompareImages, NoiseOfTwoHalvesIsNotInTheError) {
     for (size_t i = 0; i < count; ++i) first.push_back(normal(random)), second.push_back(normal(random));
     const io::ImageDifference d = io::compareImages(a, first, {}, nullptr, second);
     for (size_t c = 0; c < 3; ++c) {
-        // The squared error has a standard deviation of noise^2 / sqrt(pixels) = 5e-5, four of which are
-        // allowed.
+        // The squared error's standard deviation is noise^2 / sqrt(pixels) = 5e-5; four are allowed.
         EXPECT_NEAR(d.rmse[c] * d.rmse[c], difference * difference, 2e-4);
         EXPECT_NEAR(d.noise[c], noise / std::sqrt(2), 0.002);
         EXPECT_NEAR(d.mean[c], difference, 0.002);

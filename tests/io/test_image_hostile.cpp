@@ -1,5 +1,4 @@
-// Images that are no friends: other formats under a known name, sizes that nothing could hold, headers that
-// lie.
+// Hostile images: other formats under a known name, sizes that nothing could hold, headers that lie.
 #include <OpenImageIO/imageio.h>
 #include <sys/resource.h>
 
@@ -51,12 +50,12 @@ struct Exr {
 
 class HostileImage : public FolderTest {
   protected:
-    // The refusal, found out with less than `most` MiB more memory than before.
-    std::string refusal(const std::string& name, const std::string& bytes, uint64_t limit = inputLimit(),
-                        double most = 64) const {
+    // The refusal, found out with less than 64 MiB more memory than before.
+    std::string refusal(const std::string& name, const std::string& bytes,
+                        uint64_t limit = inputLimit()) const {
         const double before = peak();
         const std::string message = messageOf<FileError>([&] { decodeImage(name, bytes, {}, limit); });
-        EXPECT_LT(peak() - before, most) << name << " took MiB";
+        EXPECT_LT(peak() - before, 64) << name << " took MiB";
         return message;
     }
     static double peak() {
@@ -65,7 +64,8 @@ class HostileImage : public FolderTest {
         return double(usage.ru_maxrss) / 1024;
     }
     // As OpenImageIO writes it, under its own extension; "" where this build of it cannot.
-    std::string written(const std::string& extension, int channels = 3, int side = 8) const {
+    std::string written(const std::string& extension, int channels = 3) const {
+        constexpr int side = 8;
         const std::string file = path("w." + extension);
         OIIO::ImageSpec spec(side, side, channels, OIIO::TypeDesc::UINT8);
         spec.attribute("oiio:UnassociatedAlpha", 1);  // the bytes as they are

@@ -1,5 +1,4 @@
-// host/io/mesh/mesh_file.h: what is loaded of each format, warnings, what is refused and with which
-// message.
+// host/io/mesh/mesh_file.h: what is loaded of each format, warnings, what is refused with which message.
 #include <regex>
 
 #include "io/file_error.h"
@@ -324,8 +323,7 @@ TEST_F(MeshFile, GoodFilesOfEveryFormatHaveNoWarning) {
 }
 
 TEST_F(MeshFile, TrianglesThatFaceAnotherWayThanTheirNeighboursAreToldOrTurned) {
-    // A tetrahedron, outwards; its second triangle turned round; and that in vertices of their own, as STL
-    // has them.
+    // A tetrahedron, outwards; its second triangle turned; and that with vertices of their own, as of STL.
     const auto off = [](const std::string& second) {
         return "OFF\n4 4 0\n" + four + "3 0 2 1\n3 " + second + "\n3 1 2 3\n3 0 3 2\n";
     };

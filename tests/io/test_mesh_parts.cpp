@@ -80,8 +80,7 @@ TEST_F(MeshParts, SubdivisionIsCatmullClarks) {
     for (size_t t = 0; t < mesh.mesh.triangleCount(); ++t) EXPECT_GT(area(mesh.mesh, t), 0);
 }
 
-// A quad and a pentagon beside it, with a seam between them: coordinates are linear in each face's corners,
-// and the seam stays.
+// A quad and a pentagon with a seam between them, which stays: coordinates are linear in each face's corners.
 TEST_F(MeshParts, TextureCoordinatesAreLinearAndSeamsStay) {
     const std::string text =
         "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 4 0 0\nv 5 1 0\nv 4 2 0\n"

@@ -6,11 +6,7 @@
 
 using namespace pellucid;
 
-namespace {
-
 const std::string head = "name = \"x\"\nsource = \"here\"\nunit = \"cm\"\n";  // three lines
-
-}  // namespace
 
 TEST(ProfileFile, EveryMaterialOfTheLibraryLoads) {
     ASSERT_GE(Profile::libraryNames().size(), 9u);
@@ -96,8 +92,7 @@ TEST(ProfileFit, MoreGaussiansFitBetter) {
     EXPECT_THROW(io::fitGaussians(marble, 0), std::invalid_argument);
 }
 
-// What is printed is what the saved file gives: weights of 1 in each channel, and the error of the profile
-// that loading makes.
+// What is printed is what the saved file gives: weights of 1 in each channel, and the loaded profile's error.
 TEST(ProfileFit, TheSavedFileHasThePrintedError) {
     for (const char* name : {"marble", "skin", "skin-burley", "ketchup"})
         for (int count : {1, 2, 3, 6}) {

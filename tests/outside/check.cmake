@@ -78,8 +78,7 @@ run(${CMAKE_COMMAND} -G Ninja -S ${WORK}/moved/share/doc/pellucid/examples -B ${
 run(${CMAKE_COMMAND} --build ${WORK}/examples --target example_own_kernel example_progress)
 run(${WORK}/examples/example_own_kernel)
 
-# BMP files come from a module beside the library, in a moved tree too; without it the message names it, and
-# PNG needs none.
+# BMP files come from a module beside the library; without it the message names it, and PNG needs none.
 set(moved_command ${WORK}/moved/bin/pellucid)
 if(EXISTS ${moved_command})
   run(${moved_command} lut specular --size 8x8 -o ${WORK}/table.bmp)

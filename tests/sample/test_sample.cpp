@@ -347,9 +347,8 @@ TEST(SampleCamera, DirectionsRoundTheHead) {
     EXPECT_GT(camera.viewProjection(1).project({0, 0, 1}).y, 0);
 }
 
-// Under the middle of a square ceiling of half side a at height a: four times the form factor of a corner,
-// (2/pi) (1/sqrt 2) atan(1/sqrt 2) / 2 [Howell, A Catalog of Radiation Heat Transfer Configuration Factors,
-// B-3].
+// Under the middle of a square ceiling of half side a at height a: four times a corner's (2/pi) (1/sqrt 2)
+// atan(1/sqrt 2) / 2 [Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-3].
 TEST(Sample, AmbientOcclusionUnderASquareIsItsFormFactor) {
     constexpr double half = 40;
     const sample::Mesh floor = sample::makeRectangle(-2000, 2000, -2000, 2000, 0);

@@ -5,6 +5,7 @@
 
 #include "io/image/image_file.h"
 #include "io/mesh/mesh_parts.h"
+#include "io/shortest.h"
 #include "npy.h"
 #include "reference/random_walk.h"
 #include "reference/skin_walk.h"
@@ -47,8 +48,7 @@ double cosineAt(const sample::Scene& scene, const sample::SurfacePoint& point) {
     return p.z / length(p);
 }
 
-// Squared differences to `expected` without noise: the mean of the product of both halves' differences, and
-// its standard error.
+// Squared differences to `expected` without noise (the mean product of both halves'), and its standard error.
 struct Error {
     double mean = 0, uncertainty = 0;
 };
@@ -331,9 +331,8 @@ pellucid::io::PartedMesh subdividedHead(const std::filesystem::path& folder) {
         const std::array<float, 3> p{positions[i], -positions[i + 2], positions[i + 1]};
         const auto [at, isNew] = welded.try_emplace(p, welded.size() + 1);
         numbers.push_back(at->second);
-        char line[80];
-        std::snprintf(line, sizeof line, "v %.8g %.8g %.8g\n", double(p[0]), double(p[1]), double(p[2]));
-        if (isNew) text += line;
+        if (isNew)
+            text += pellucid::io::printed("v %.8g %.8g %.8g\n", double(p[0]), double(p[1]), double(p[2]));
     }
     const auto vertex = [&](size_t corner) { return numbers[size_t(triangles[corner])]; };
     for (size_t t = 0; t < triangles.size(); t += 6) {
@@ -396,8 +395,7 @@ TEST(WalkLight, HeadEqualsAnotherProgramsWalk) {
                                                       {0.8, 0.8, 0.8}, sample::Boundary::IndexMatched);
         const sample::WalkedLight light = walkLight(body, lighting, points, m, {uint32_t(sized(64, 4))});
         for (size_t channel = 0; channel < 3; ++channel) {
-            // Both programs have two halves, so that the product of their differences has no noise in the
-            // mean.
+            // Both programs have two halves: the product of their differences has no noise in the mean.
             double sum = 0, square = 0, bias = 0, spread = 0;
             for (size_t i = 0; i < rows.size(); ++i) {
                 const double e = light.first[3 * i + channel] - rows[i][4 + 2 * channel],

@@ -11,12 +11,10 @@ namespace fs = std::filesystem;
 class BatchCommand : public CommandTest {
   protected:
     // Runs a manifest of this text, m.toml, into the folder `out`.
-    Result batch(const std::string& text, const std::vector<std::string>& more = {},
+    Result batch(const std::string& text, const std::string& more = "",
                  const std::string& environment = "") const {
         std::ofstream(path("m.toml")) << text;
-        std::vector<std::string> words{"batch", path("m.toml"), "-o", path("out"), "--json"};
-        words.insert(words.end(), more.begin(), more.end());
-        return run(words, environment);
+        return cli("batch @m.toml -o @out --json " + more, environment);
     }
     nlohmann::json made(const std::string& text) const {
         const Result result = batch(text);
@@ -215,7 +213,7 @@ TEST_F(BatchCommand, SaysWhatIsWrong) {
         SCOPED_TRACE(text);
         const fs::path last = path("out/m.index.json");
         const std::string before = fs::exists(last) ? read(last.string()) : "";
-        const Result result = batch(text, {}, "POCL_MEMORY_LIMIT=1");  // GiB: too little for the large one
+        const Result result = batch(text, "", "POCL_MEMORY_LIMIT=1");  // GiB: too little for the large one
         EXPECT_EQ(result.exitCode, 3);
         for (const std::string& part : said) EXPECT_TRUE(contains(result.err, part));
         if (made >= 0) {
@@ -232,10 +230,10 @@ TEST_F(BatchCommand, SaysWhatIsWrong) {
         EXPECT_TRUE(contains(batch("[[lut]]\nsize = 8\nname = \"" + std::string(name) + "\"\n").err,
                              "m.toml:3: 'name'"))
             << name;
-    EXPECT_EQ(run({"batch", path("none.toml"), "-o", path("out")}).exitCode, 3);
-    EXPECT_EQ(run({"batch", path("m.toml"), "-o", "/dev/null/folder"}).exitCode, 3);
-    EXPECT_EQ(run({"batch", path("m.toml")}).exitCode, 2);
-    EXPECT_EQ(run({"batch", path("m.toml"), "-o", path("new")}).exitCode, 3);
+    EXPECT_EQ(cli("batch @none.toml -o @out").exitCode, 3);
+    EXPECT_EQ(cli("batch @m.toml -o /dev/null/folder").exitCode, 3);
+    EXPECT_EQ(cli("batch @m.toml").exitCode, 2);
+    EXPECT_EQ(cli("batch @m.toml -o @new").exitCode, 3);
     EXPECT_FALSE(fs::exists(path("new/m.index.json")));
 }
 
@@ -279,7 +277,7 @@ TEST_F(BatchCommand, SeveralDevicesShareAManifest) {
         "axis = [\"linear\", \"root\"]\n";
     made(text);
     fs::rename(path("out"), path("one"));
-    const auto result = batch(text, {"--device", "", "--device", "", "-j", "4"});
+    const auto result = batch(text, "--device '' --device '' -j 4");
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const auto devices = result.json()["devices"];
     ASSERT_EQ(devices.size(), 2u);
@@ -288,7 +286,7 @@ TEST_F(BatchCommand, SeveralDevicesShareAManifest) {
     EXPECT_GT(devices[1]["made"], 0);
     for (const fs::path& file : files())
         EXPECT_EQ(read(file.string()), read(path("one/" + file.filename().string()))) << "the same bytes";
-    EXPECT_EQ(batch(text, {"--device", "abacus"}).exitCode, 4);
+    EXPECT_EQ(batch(text, "--device abacus").exitCode, 4);
 }
 
 TEST_F(BatchCommand, AFullDiskIsAClearError) {
@@ -297,9 +295,9 @@ TEST_F(BatchCommand, AFullDiskIsAClearError) {
         GTEST_SKIP() << "no right to mount a small file system of one's own";
     const std::string text = "[[grid]]\nsize = [40, 44, 48, 52, 56, 60, 64, 68]\n",
                       full = "unshare -rm sh -c 'mount -t tmpfs -o size=64k none \"" + path("out") +
-                             "\" && { \"$0\" \"$@\"; echo $? >\"" + path("code") +
-                             "\"; ls -A -I \"*.json\" \"" + path("out") + "\" >\"" + path("left") + "\"; }'";
-    const auto result = batch(text, {}, full);
+                             "\" && { \"$0\" $*; echo $? >\"" + path("code") + "\"; ls -A -I \"*.json\" \"" +
+                             path("out") + "\" >\"" + path("left") + "\"; }'";
+    const auto result = batch(text, "", full);
     EXPECT_EQ(read(path("code")), "3\n") << result.err;
     EXPECT_TRUE(contains(result.err, "cannot be written: No space left on device"));
     const std::string left = read(path("left"));
@@ -310,7 +308,7 @@ TEST_F(BatchCommand, AFullDiskIsAClearError) {
 
 TEST_F(BatchCommand, ProgressIsInPlaceOnATerminalAndLinesElsewhere) {
     const std::string m = write("m.toml", "[[grid]]\nsize = 16\n" + radii(4000, 0.001));
-    const auto plain = run({"batch", m, "-o", path("out")});
+    const auto plain = cli("batch '" + m + "' -o @out");
     EXPECT_TRUE(contains(plain.err, "4000 of 4000, "));
     EXPECT_TRUE(contains(plain.err, " per second"));
     EXPECT_EQ(plain.err.find('\r'), std::string::npos);

@@ -42,8 +42,7 @@ def fit_ball(points):
 
 
 def ball_of(points):
-    """Centre, radius and gaze. The cornea stands out of the ball: it is left out of the second fit, and
-    shows the gaze."""
+    """Centre, radius and gaze, which the cornea shows: it stands out, and is left out of the second fit."""
     found = fit_ball(points)
     if found is None:
         return None
@@ -64,8 +63,7 @@ def ball_of(points):
 
 
 def find(things, unit):
-    """[(material, keys of [[eye]])]. A material that several eyeballs share is copied, for each eye has one
-    of its own."""
+    """[(material, keys of [[eye]])]. A material of several eyeballs is copied, for each eye has its own."""
     eyes, taken = [], set()
     for thing in things:
         for slot, material in enumerate(thing.data.materials):

@@ -32,8 +32,7 @@ class Bounds:
 
 
 def load(options, unit):
-    """Adds options.mesh to the current scene: Z up, in Blender units; the file's own unit is taken to be one
-    of them."""
+    """Adds options.mesh to the current scene: Z up, in Blender units, which the file's own is taken to be."""
     path = options.mesh
     if not os.path.isfile(path):
         raise Fault(f"{path}: there is no such file")

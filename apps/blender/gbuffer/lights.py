@@ -77,8 +77,7 @@ def file_name(name, taken):
 
 
 def render_shadow_map(scene, lamp, bounds, options, taken):
-    """Depths seen from a sun or a spot, 0 near to 1 far and where nothing is. `taken`: files of other
-    lights."""
+    """Depths seen from a sun or spot, 0 near to 1 far and where nothing is. `taken`: other lights' files."""
     if lamp.kind == "POINT":
         warn(f"light '{lamp.name}' is a point light: no shadow map is rendered for it")
         return
@@ -131,8 +130,7 @@ def render_shadow_map(scene, lamp, bounds, options, taken):
 
 
 def depth_material(kind, factor, offset):
-    """Emits depth * factor + offset, or factor / depth + offset, clamped to [0, 1]. Depth is along the
-    camera's axis."""
+    """Emits depth * factor + offset, or factor / depth + offset, from 0 to 1; depth along the view axis."""
     material = bpy.data.materials.new("pellucid depth")
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
@@ -174,8 +172,7 @@ def write_depth(scene, path, kind, factor, offset):
 
 
 def ambient(source, folder):
-    """The nine spherical harmonics of irradiance / pi that the world sends, as the scene file has them; None
-    without."""
+    """Nine spherical harmonics of irradiance / pi from the world, as the scene file has them, or None."""
     if source.world is None:
         return None
     width, height = 64, 32

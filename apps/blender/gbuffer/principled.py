@@ -81,8 +81,7 @@ class Surface:
                     warn(f"material '{self.name}': what feeds {name} is left out; its value counts")
 
     def chosen(self, eyes, fallback):
-        """The preset by name: one of FIXED but auto, "own" for the shader's scattering, or a material of the
-        library."""
+        """The preset: one of FIXED but auto, "own" for the shader's scattering, or a library material."""
         preset = fallback if self.preset == AUTO else self.preset
         if self.name in eyes:
             return EYE
@@ -99,8 +98,7 @@ def file_name(name):
 
 
 def profile_text(surface, unit):
-    """A profile file: Blender's radius is 4 pi times the d of Burley's profile; in Blender units of `unit`
-    mm."""
+    """A profile file; Blender's radius is 4 pi times d of Burley's profile, in Blender units of `unit` mm."""
     distance = [max(r * unit / (4 * math.pi), 1e-4) for r in surface.scattering.radius]
     name = "".join(c for c in surface.name if c.isprintable() and c not in '"\\')[:40] or "material"
     return (f'version = 1\nname = "{name}"\nkind = "burley"\nunit = "mm"\nsource = "Blender: subsurface '

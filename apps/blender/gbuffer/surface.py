@@ -1,5 +1,4 @@
-"""Materials: ids, albedo and normals as passes of their own, and a diffuse surface while the G-buffer
-renders."""
+"""Materials: ids, albedo and normals as passes, and a diffuse surface while the G-buffer renders."""
 
 import bpy
 

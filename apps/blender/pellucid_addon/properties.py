@@ -1,5 +1,4 @@
-"""What the panel sets. A material's preset is the custom property pellucid_preset, which the script reads in
-a saved file too."""
+"""What the panel sets. A material's preset is the custom property pellucid_preset, so that files keep it."""
 
 import json
 import os

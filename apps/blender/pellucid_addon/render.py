@@ -1,5 +1,4 @@
-"""The button: a copy of the file is rendered by another Blender to a G-buffer, which `pellucid shade` makes
-a picture of.
+"""The button: another Blender renders a copy of the file to a G-buffer, which `pellucid shade` shades.
 
 Nothing of the open file changes: no material, no setting, no path.
 """

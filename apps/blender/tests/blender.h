@@ -1,5 +1,4 @@
-// Blender for the tests: the installed `blender`, or what PELLUCID_BLENDER names, such as blender_module
-// with bpy of PyPI.
+// Blender for the tests: `blender`, or what PELLUCID_BLENDER names, such as blender_module with PyPI's bpy.
 #pragma once
 #include "test.h"
 

@@ -30,10 +30,9 @@ std::vector<float> rgb(const io::Image& image, const std::string& layer = "Combi
 class BlenderGBuffer : public CommandTest {
   protected:
     std::vector<float> shade(const std::string& gbuffer, const std::string& scene) const {
-        const Result result =
-            run({"shade", gbuffer, "--scene", write("scene.toml", scene), "-o", path("out.exr")});
-        EXPECT_EQ(result.exitCode, 0) << result.err;
-        return result.exitCode == 0 ? rgb(io::readImage(path("out.exr")), "") : std::vector<float>();
+        write("scene.toml", scene);
+        done("shade '" + gbuffer + "' --scene @scene.toml -o @out.exr");
+        return rgb(io::readImage(path("out.exr")), "");
     }
 };
 
@@ -87,8 +86,7 @@ TEST_F(BlenderReference, ScatteringComesCloserToThePathTracedSphere) {
     write("burley.toml",
           "name = \"burley\"\nkind = \"burley\"\nunit = \"cm\"\nsource = \"Blender\"\n"
           "distance = [0.0292, 0.0109, 0.00541]\n");
-    // No shadow: a sphere casts none on itself, and Blender's is black past the terminator, where scattered
-    // light is.
+    // No shadow: a sphere casts none on itself, and Blender's is black past the terminator.
     const std::vector<float> out = shade(
         path("gbuffer.exr"), "unit_mm = 10\n" + std::string(names) + "curvature = \"Curvature.X\"\n" + light +
                                  "[[material]]\nid = 1\nprofile = \"burley.toml\"\n"
@@ -117,8 +115,7 @@ TEST_F(BlenderReference, ScatteringComesCloserToThePathTracedSphere) {
     }
 }
 
-// The same names and habits in a file made here: layers, half and float mixed, depth of 1e10 and zeros
-// behind, z up.
+// The same names and habits in a file made here: layers, half and float mixed, depth of 1e10, z up.
 TEST_F(BlenderGBuffer, ConventionsOnAFileOfOurOwn) {
     const int size = 48;
     io::Image image;
@@ -158,7 +155,6 @@ TEST_F(BlenderGBuffer, ConventionsOnAFileOfOurOwn) {
     // A missing pass is named, with what there is.
     std::string wrong = names;
     wrong.replace(wrong.find("DiffCol.R"), 9, "Diffuse.R");
-    expectRefused({"shade", path("gbuffer.exr"), "--scene",
-                   write("scene.toml", wrong + light + "[[material]]\nid = 1\n"), "-o", path("no.exr")},
-                  3, "ViewLayer.DiffCol.R");
+    write("scene.toml", wrong + light + "[[material]]\nid = 1\n");
+    refused("shade @gbuffer.exr --scene @scene.toml -o @no.exr", 3, "ViewLayer.DiffCol.R");
 }

@@ -16,8 +16,7 @@ class BlenderScript : public CommandTest {
         if (!blender::installed()) GTEST_SKIP() << "blender is not installed";
     }
 
-    // Runs render_gbuffer.py after the script `scene`, if one is named. Returns the exit code; Blender's
-    // output is in said.txt.
+    // Runs render_gbuffer.py after the script `scene`, if one is named; said.txt has Blender's output.
     int render(const std::string& before, const std::string& arguments, const std::string& scene = "") const {
         const std::string folder = PELLUCID_SOURCE_DIR "/apps/blender/";
         return run("PELLUCID_COMMAND='" PELLUCID_COMMAND "' " + before + " '" + blender::command() +
@@ -31,14 +30,11 @@ class BlenderScript : public CommandTest {
         const int status = std::system(line.c_str());
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
-    using CommandTest::run;
     std::string said() const { return read(path("said.txt")); }
 
     std::vector<float> shade(const std::string& gbuffer, const std::string& scene) const {
-        const Result result = run({"shade", gbuffer, "--scene", scene, "-o", path("out.exr")});
-        EXPECT_EQ(result.exitCode, 0) << result.err;
-        return result.exitCode == 0 ? rgb(io::readImage(path("out.exr")), "R", "G", "B")
-                                    : std::vector<float>();
+        done("shade '" + gbuffer + "' --scene '" + scene + "' -o @out.exr");
+        return rgb(io::readImage(path("out.exr")), "R", "G", "B");
     }
     static std::vector<float> rgb(const io::Image& image, const std::string& r, const std::string& g,
                                   const std::string& b) {
@@ -77,8 +73,7 @@ TEST_F(BlenderScript, ABlendFileGivesBlendersLambertPicture) {
         EXPECT_FLOAT_EQ(scene.options.millimetresPerUnit, 10) << "a unit is a centimetre there";
         EXPECT_FLOAT_EQ(scene.materials[0].material.deepScatterNormalOffset, 0.02f);
         EXPECT_FLOAT_EQ(scene.materials[0].material.deepScatterRadius, 0.5f) << "a custom property counts";
-        // The world: radiance 0.5 + 0.5 (0.6 x + 0.8 z) in red. Irradiance / pi keeps the first order by two
-        // thirds.
+        // The world: radiance 0.5 + 0.5 (0.6 x + 0.8 z) in red; irradiance / pi keeps 2/3 of the first order.
         const double y0 = std::sqrt(4 * M_PI), y1 = std::sqrt(4 * M_PI / 3);
         const double expected[4] = {0.5 * y0, 0, 0.8 / 3 * y1, 0.6 / 3 * y1};
         for (int i = 0; i < 9; ++i) {
@@ -212,13 +207,12 @@ TEST_F(BlenderScript, AMeshFileScatters) {
     // cos(20 degrees) of 10 mm, the height of which is 19.4 mm, up along z; within a pixel.
     EXPECT_NEAR(high, 9.4, 0.5);
     EXPECT_NEAR(low, -10, 0.5);
-    const Result result = run({"shade", path("out/gbuffer.exr"), "--scene", path("out/scene.toml"), "-o",
-                               path("out/p.exr"), "--stats", "--json"});
-    ASSERT_EQ(result.exitCode, 0) << result.err;
-    const nlohmann::json features = result.json().at("stats").at("features");
+    const nlohmann::json stats =
+        reportOf("shade @out/gbuffer.exr --scene @out/scene.toml -o @out/p.exr --stats").at("stats");
+    const nlohmann::json features = stats.at("features");
     for (const char* feature : {"direct_scatter", "deep_scatter", "thickness_taps", "specular"})
         EXPECT_NE(std::find(features.begin(), features.end(), feature), features.end()) << feature;
-    EXPECT_EQ(result.json().at("stats").at("pixels_invalid"), 0);
+    EXPECT_EQ(stats.at("pixels_invalid"), 0);
     const std::vector<float> out = rgb(io::readImage(path("out/p.exr")), "R", "G", "B");
     // Past the terminator, to the right in the back, red light is left and blue is not.
     float red = 0;
@@ -247,9 +241,7 @@ TEST_F(BlenderScript, OddThings) {
     ASSERT_EQ(scene.lights.size(), 2u);
     ASSERT_EQ(scene.materials.size(), 2u);
     EXPECT_NE(scene.lights[0].shadowMapFile, scene.lights[1].shadowMapFile);
-    const Result result =
-        run({"shade", folder + "/gbuffer.exr", "--scene", folder + "/scene.toml", "-o", path("p.exr")});
-    EXPECT_EQ(result.exitCode, 0) << result.err;
+    shade(folder + "/gbuffer.exr", folder + "/scene.toml");
     // The light that is tilted less looks down: from the box's top, 6 up, to the text, 1 below the ground.
     const float* m = scene.lights[0].light.worldToShadow;
     const float depths = m[10] * scene.lights[0].light.shadowDepthRange;

@@ -21,8 +21,7 @@ class Import : public CommandTest {
     }
     static bool draws() { return fs::exists(fs::path(PELLUCID_BINARY_DIR) / "host/libpellucid_sample.a"); }
     Result shaded() const {
-        return run(
-            {"shade", out("gbuffer.exr"), "--scene", out("scene.toml"), "-o", out("radiance.exr"), "--json"});
+        return cli("shade @out/gbuffer.exr --scene @out/scene.toml -o @out/radiance.exr");
     }
     // The mean of R, G and B where there is a material.
     std::vector<double> mean() const {
@@ -79,9 +78,8 @@ TEST_F(Import, ABallOfWaxBecomesAPicture) {
             "KHR_materials_volume": {"thicknessFactor": 0.02, "attenuationDistance": 0.0015,
                                      "attenuationColor": [0.4, 0.3, 0.1]},
             "KHR_materials_volume_scatter": {"multiscatterColor": [0.95, 0.8, 0.5]}}})"_json);
-    const Result result = run({"import", write("wax.glb", wax), "-o", out(), "--size", "96x96", "--json"});
-    ASSERT_EQ(result.exitCode, 0) << result.err;
-    const nlohmann::json report = result.json();
+    write("wax.glb", wax);
+    const nlohmann::json report = reportOf("import @wax.glb -o @out --size 96x96");
     expectReport(report);
     EXPECT_EQ(report["materials"][0]["name"], "Candle wax");
     EXPECT_EQ(report["materials"][0]["taken_for"], "volume");
@@ -120,11 +118,10 @@ TEST_F(Import, LightsCamerasAndProfilesOfOnesOwn) {
                 {"extensions": {"KHR_lights_punctual": {"light": 0}}},
                 {"extensions": {"KHR_lights_punctual": {"light": 1}}, "translation": [0, 0, 0.1]},
                 {"extensions": {"KHR_lights_punctual": {"light": 2}}, "translation": [0.1, 0, 0.1]}]})"_json);
-    const Result result = run({"import", write("head.glb", file), "-o", out(), "--profile", "Head=skin",
-                               "--lights", "1", "--json"});
-    ASSERT_EQ(result.exitCode, 0) << result.err;
-    EXPECT_EQ(result.json()["materials"][0]["profile"], "skin");
-    EXPECT_EQ(result.json()["lights"], 3);
+    write("head.glb", file);
+    const nlohmann::json report = reportOf("import @head.glb -o @out --profile Head=skin --lights 1");
+    EXPECT_EQ(report["materials"][0]["profile"], "skin");
+    EXPECT_EQ(report["lights"], 3);
     const io::SceneFile scene = io::readScene(out("scene.toml"));
     EXPECT_EQ(scene.lights[1].light.type, PEL_LIGHT_SPOT);
     EXPECT_NEAR(scene.lights[0].light.color[0], 1, 1e-5);
@@ -138,9 +135,9 @@ TEST_F(Import, LightsCamerasAndProfilesOfOnesOwn) {
         EXPECT_EQ(g.width, 1024);
         EXPECT_EQ(g.height, 682);
     }
-    expectRefused({"import", path("head.glb"), "-o", out(), "--profile", "Neck=skin"}, 2, "there are Head");
-    expectRefused({"import", path("head.glb"), "-o", out(), "--profile", "granite"}, 3, "granite");
-    expectRefused({"import", path("head.glb"), "-o", out(), "--camera", "7"}, 2, "the scene has 1");
+    refused("import @head.glb -o @out --profile Neck=skin", 2, "there are Head");
+    refused("import @head.glb -o @out --profile granite", 3, "granite");
+    refused("import @head.glb -o @out --camera 7", 2, "the scene has 1");
 }
 
 // Each camera is drawn, or left out with a warning; what is written can be shaded.
@@ -152,22 +149,24 @@ TEST_F(Import, CamerasFarAwayAndBentOutOfShape) {
         const std::string nodes = std::string(R"([{"mesh":0,"children":[1]},{"camera":0,)") + place + "}]";
         const std::string file = gltf::square(
             "", nodes, R"(,"cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1}}])");
-        const Result result =
-            run({"import", write("far.glb", file), "-o", out(), "--size", "32x32", "--json"});
-        ASSERT_EQ(result.exitCode, 0) << place << result.err;
-        EXPECT_NO_THROW(io::readScene(out("scene.toml"))) << place;
+        SCOPED_TRACE(place);
+        write("far.glb", file);
+        done("import @far.glb -o @out --size 32x32");
+        EXPECT_NO_THROW(io::readScene(out("scene.toml")));
         if (draws()) {
-            EXPECT_EQ(shaded().exitCode, 0) << place;
+            EXPECT_EQ(shaded().exitCode, 0);
         }
     }
 }
 
 TEST_F(Import, RefusesWhatIsWrong) {
-    expectRefused({"import", path("none.glb"), "-o", out()}, 3, "none.glb");
-    expectRefused({"import", write("a.glb", "glTF"), "-o", out()}, 3, "a.glb: ends within the header");
-    expectRefused({"import", write("a.obj", "v 0 0 0"), "-o", out()}, 2, "a.obj");
-    const std::string missing = gltf::squareJson("", R"([{"mesh":0}])", "", R"(,"uri":"none.bin")");
-    expectRefused({"import", write("b.gltf", missing), "-o", out()}, 3, "none.bin");
+    write("a.glb", "glTF");
+    write("a.obj", "v 0 0 0");
+    write("b.gltf", gltf::squareJson("", R"([{"mesh":0}])", "", R"(,"uri":"none.bin")"));
+    refused("import @none.glb -o @out", 3, "none.glb");
+    refused("import @a.glb -o @out", 3, "a.glb: ends within the header");
+    refused("import @a.obj -o @out", 2, "a.obj");
+    refused("import @b.gltf -o @out", 3, "none.bin");
 }
 
 // What assimp's tests keep: good files become pictures, bad ones a message; nothing crashes.
@@ -189,8 +188,7 @@ TEST_F(Import, SamplesOfOtherPeople) {
         if (extension != ".gltf" && extension != ".glb") continue;
         const std::string name = fs::relative(entry.path(), samples).string();
         fs::remove_all(out());
-        const Result result =
-            run({"import", entry.path().string(), "-o", out(), "--size", "48x48", "--json"});
+        const Result result = cli("import '" + entry.path().string() + "' -o @out --size 48x48");
         const auto known = bad.find(name);
         if (result.exitCode == 3) {
             ++refused;

@@ -1,5 +1,4 @@
-// glTF: geometry, nodes, materials, cameras and lights of small files that are made here, and files that
-// are wrong.
+// glTF: geometry, nodes, materials, cameras and lights of small files made here, and files that are wrong.
 #include <nlohmann/json.hpp>
 
 #include "gltf/gltf_import.h"
@@ -297,8 +296,7 @@ TEST(Gltf, WrongFilesSayWhatAndWhere) {
     expectError(square({}, bad), {"meshes[0].primitives[0]", "index 9", "4 vertices"});
 }
 
-// The work of a file is bounded by what the file draws: nodes times primitives that draw nothing are not
-// visited.
+// Work is bounded by what a file draws: nodes times primitives that draw nothing are not visited.
 TEST(Gltf, PrimitivesAreDecodedOnceHoweverManyNodesPlaceThem) {
     constexpr size_t count = 20000;
     json scene = edited({{"/nodes", json::array()}, {"/scenes/0/nodes", numbers(count)}});

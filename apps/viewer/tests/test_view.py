@@ -222,8 +222,7 @@ def test_tiles_are_those_that_the_shader_counts(session):
         session.count = False
         by = dict(zip(("none", "preintegrated", "separable", "screen", "light", "texture"),
                       counted.tiles_by_scattering))
-        # Where shadows end, the picture without scattering has an edge of a millimetre and the other a sharp
-        # one: a few tiles more.
+        # At shadows' ends Lambert's edge is a millimetre wide and the other sharp: a few tiles more.
         assert abs(int(by[name]) - int(tapped)) <= 0.15 * tapped + 2, (method, tapped, by)
 
 
@@ -290,8 +289,7 @@ def test_pictures_are_as_small_as_the_time_asks():
 
 
 def test_the_mouse_takes_the_object_along():
-    """A drag over a part of the picture's height: the point under the mouse follows it, seen from the front
-    and from the side."""
+    """A drag over a part of the picture's height: the point under the mouse follows, from front and side."""
     look = Look()
     shown = types.SimpleNamespace(orbit=Orbit(distance=30), look=look, other=None,
                                   renderer=types.SimpleNamespace(radius=10.0))

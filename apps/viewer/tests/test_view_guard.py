@@ -43,8 +43,7 @@ def let_in(guard):
     return headers[b"set-cookie"].decode().split(";")[0]
 
 
-# What other programs on 127.0.0.1 set: JSON, names with slashes, quotes that stay open, no value, no name,
-# other letters.
+# What other programs on 127.0.0.1 set: JSON, slashes, open quotes, no value, no name, other letters.
 OTHERS = ['prefs={"a":1}', "a/b=1", 'x="open', "alone", "=", ";;;", "name=\x01\xff", "pellucid_view_8350",
           "a=b=c"]
 

@@ -43,8 +43,7 @@ def wait_for(condition, what, seconds=PATIENCE):
     raise AssertionError(f"waited {seconds} s for {what}")
 
 
-# The viewer, with a device that is gone once the file LOST is there, and without the pictures that make
-# edges smooth at rest.
+# The viewer, whose device is gone once the file LOST is there, without pictures of smooth edges.
 PROGRAM = """
 import os, sys
 import pellucid as pel
@@ -259,8 +258,7 @@ def test_a_slider_changes_the_picture_and_builds_nothing(page):
     kernels = page.execute_script("return window.pelKernels")
     for share in (0.15, 0.85):
         assert differ(*act_and_compare(page, lambda to=share: click_slider(page, "slider-roughness", to)))
-    # Those that the page builds while it rests may be counted now; test_view.py sees that sliders build none
-    # after that.
+    # Those built at rest may be counted now; test_view.py sees that sliders build none after that.
     assert page.execute_script("return window.pelKernels") <= kernels + 4
 
 

@@ -1,5 +1,4 @@
-"""What goes on beside the viewer's pictures: the reference on its own thread, units of meshes, files for
-pages that are closed."""
+"""What goes on beside the viewer's pictures: the reference's thread, units of meshes, closed pages."""
 import asyncio
 import threading
 import time
@@ -107,8 +106,7 @@ def test_a_mesh_of_another_unit_is_noticed(session, tmp_path, scale, better):
 
 
 def test_a_file_for_a_closed_page_is_dropped(monkeypatch):
-    """The export of a page that was closed meanwhile ends without a traceback; one that fails says so on its
-    page."""
+    """The export of a page closed meanwhile ends without a traceback; one that fails says so on its page."""
     from nicegui import Client, core, ui
     from nicegui.page import page
 

@@ -11,8 +11,7 @@ from typing import Any
 
 
 def free_port(host: str, port: int) -> int:
-    """This port, or the next one that no program listens at. Raises OSError where there is none, or no such
-    host."""
+    """This port, or the next one that no program listens at. OSError where there is none, or no such host."""
     family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
     for offset in range(50):
         with socket.socket(family, kind, protocol) as probe:

@@ -13,8 +13,7 @@ def unit(v: ArrayLike) -> NDArray[np.float64]:
 
 
 def direction(up: ArrayLike, front: ArrayLike, azimuth: float, elevation: float) -> NDArray[np.float64]:
-    """Unit vector away from a head: azimuth 0 is its front, 90 its left ear, elevation 90 straight up.
-    Degrees."""
+    """Unit vector away from a head. Degrees: azimuth 0 is its front, 90 its left ear, elevation 90 is up."""
     a, e = np.radians(azimuth), np.radians(elevation)
     u, f = unit(up), unit(front)
     return unit((f * np.cos(a) + np.cross(u, f) * np.sin(a)) * np.cos(e) + u * np.sin(e))

@@ -1,5 +1,4 @@
-"""Writes what is shown as files: a G-buffer and a scene that `pellucid shade` renders to the same bits,
-pictures, the look."""
+"""Writes what is shown: a G-buffer and a scene that `pellucid shade` renders alike, pictures, the look."""
 from __future__ import annotations
 
 import json

@@ -14,8 +14,7 @@ from starlette.responses import PlainTextResponse, RedirectResponse, Response
 
 
 def cookie_values(header: str, name: str) -> list[str]:
-    """The values of the cookie `name`. Other programs on this host set cookies too, in any form: those are
-    skipped."""
+    """The values of the cookie `name`. Cookies of other programs on this host, of any form, are skipped."""
     found = []
     for part in header.split(";"):
         key, equals, value = part.partition("=")

@@ -67,8 +67,7 @@ def _lamps() -> list[Lamp]:
 
 @dataclass
 class Look(MaterialValues):
-    """Materials, lights and how the picture is shown: the material's fields that have a slider, and those
-    below. Lengths in mm."""
+    """Materials, lights and how the picture is shown: material fields with a slider, and these. In mm."""
 
     profile: str = "skin"            # of the library, "pigments" or "custom"
     distance: tuple[float, float, float] = (0.29, 0.11, 0.054)  # mm, of "custom": Burley's d per channel

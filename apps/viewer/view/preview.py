@@ -23,8 +23,7 @@ def clustered(vertices: NDArray[np.float32], triangles: NDArray[np.uint32],
     used = np.unique(triangles)
     v = vertices[used].astype(np.float64)
     place = np.floor((v[:, 0:3] - v[:, 0:3].min(0)) / cell).astype(np.int64)
-    # Vertices that lie at one point stay together, or cracks would open between faces with normals of their
-    # own.
+    # Vertices at one point stay together: no cracks between faces with normals of their own.
     _, point = np.unique(v[:, 0:3], axis=0, return_inverse=True)
     point = point.reshape(-1)
     normal = np.stack([np.bincount(point, v[:, c]) for c in (3, 4, 5)], 1)[point]
@@ -55,8 +54,7 @@ def spacing(vertices: NDArray[np.float32], triangles: NDArray[np.uint32]) -> flo
 def levels(vertices: NDArray[np.float32], triangles: NDArray[np.uint32],
            most: tuple[int, ...] = (50000, 20000)) -> list[tuple[float, NDArray[np.float32],
                                                                  NDArray[np.uint32]]]:
-    """The mesh itself, and coarser ones of about `most` triangles: (spacing, vertices, triangles) each,
-    finest first."""
+    """The mesh, and coarser ones of about `most` triangles: (spacing, vertices, triangles), finest first."""
     whole = spacing(vertices, triangles)
     made = [(whole, vertices, triangles)]
     for wanted in most:

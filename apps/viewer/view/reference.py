@@ -72,8 +72,7 @@ class Reference:
         self.fraction = 0.0
 
     def start(self, report: Optional[Callable[[], None]]) -> None:
-        """Computes on a thread and calls `report` there after each piece of the work; without `report`
-        computes at once."""
+        """Computes on a thread that calls `report` after each piece of the work; without `report` at once."""
         if report is None:
             self._run(lambda: None, int(self._seen.sum()))
         else:

@@ -131,8 +131,7 @@ class Renderer:
         return _Level(spacing, [draw, shadow, buffer, indices])
 
     def level(self, length: float) -> int:
-        """The coarsest version of the mesh whose edges are at most about `length` long: 0 is the mesh
-        itself."""
+        """The coarsest version of the mesh with edges of at most about `length`: 0 is the mesh itself."""
         return max((i for i, level in enumerate(self._levels) if level.spacing <= length), default=0)
 
     def _target(self, width: int, height: int) -> _Target:
@@ -184,8 +183,7 @@ class Renderer:
 
     def shadow_map(self, to_light: ArrayLike, size: int, up: ArrayLike = (0.0, 1.0, 0.0),
                    level: int = 0) -> tuple[NDArray[np.float32], Any]:
-        """Depth seen from a distant light, (size, size), and the Light that describes it. The map encloses
-        the whole mesh."""
+        """Depth from a distant light, (size, size), of the whole mesh, and the Light that describes it."""
         assert self.mesh is not None
         self.context.__enter__()
         direction, r = unit(to_light), 1.02 * self.radius

@@ -1,5 +1,4 @@
-"""A scene file in the viewer: its G-buffer is drawn already, so that the camera stays; materials and lights
-can be tuned."""
+"""A scene file in the viewer: its G-buffer is drawn, so the camera stays; materials and lights are tuned."""
 from __future__ import annotations
 
 import time

@@ -1,5 +1,4 @@
-"""The method of scattering in texture space: light that falls on the skin, drawn into its texture and
-scattered there."""
+"""Scattering in texture space: light that falls on the skin, drawn into its texture and scattered there."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
@@ -17,8 +16,7 @@ if TYPE_CHECKING:
 
 
 class Texture:
-    """The scattered light of one mesh, made again when light or profile change. Raises ValueError for a mesh
-    without texture coordinates."""
+    """The scattered light of a mesh, made again for new light or profile. ValueError: it has no UVs."""
 
     def __init__(self, session: Session, size: int) -> None:
         mesh = session.mesh

@@ -59,8 +59,7 @@ class Panel:
         self.viewer.changed()
 
     async def deliver(self, make: Callable[[], bytes], name: str) -> None:
-        """Makes a file on the session's thread and has the browser download it, unless the page was closed
-        meanwhile."""
+        """Makes a file on the session's thread, for the browser to download unless the page was closed."""
         client = ui.context.client
         try:
             data = await self.viewer.on_thread(make)

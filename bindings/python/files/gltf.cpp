@@ -1,5 +1,4 @@
-// glTF scenes for Python: what `pellucid import` makes of a file, as arrays and structures. And profiles
-// from files.
+// glTF scenes for Python, as arrays and structures: what `pellucid import` makes. Profiles from files.
 #include <pybind11/stl.h>
 
 #include <filesystem>

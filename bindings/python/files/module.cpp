@@ -50,8 +50,7 @@ py::dict loadMesh(const std::string& path, int levels) {
     return toDict(mesh);
 }
 
-// One of the project's heads, or None for a mesh without its parts. The albedo of a vertex holds its look
-// and tints.
+// One of the project's heads, or None for a mesh without its parts. A vertex's albedo has look and tints.
 py::object loadHead(const std::string& path, int levels) {
     demo::DemoHead head;
     std::vector<float> albedo;
@@ -142,8 +141,7 @@ Bytes toneMapped(const Pixels& rgb, float exposure, float shoulder, const std::s
 }
 
 // Where each module has a C++ library of its own, as in wheels, pybind11's translator knows the exceptions
-// of the module alone that was loaded first: this one's need another. Those that are registered later are
-// asked first.
+// of the first loaded module alone: this one needs its own. Those registered later are asked first.
 void translateExceptions(std::exception_ptr pending) {
     try {
         if (pending) std::rethrow_exception(pending);

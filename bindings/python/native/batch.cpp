@@ -9,7 +9,6 @@
 #include "io/lut/lut_exr.h"
 
 namespace pel::python {
-
 namespace {
 using pellucid::io::BatchManifest;
 

@@ -7,7 +7,6 @@
 #include "native.h"
 
 namespace pel::python {
-
 namespace {
 using Clock = std::chrono::steady_clock;
 // How long Ctrl-C may go unnoticed.
@@ -44,8 +43,7 @@ auto takeGil(Take&& take) {
     if (gone && std::this_thread::get_id() != endingThread.load()) stayHere();
     try {
         return take();
-        // nothing else comes out of CPython; and who leaves this block without throwing on stops the process,
-        // too
+        // nothing else comes out of CPython; leaving this block without throwing on stops the process, too
     } catch (...) {
         stayHere();
     }

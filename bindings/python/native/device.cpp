@@ -2,7 +2,6 @@
 #include "native.h"
 
 namespace pel::python {
-
 namespace {
 py::object errorCallback = py::none(), logCallback = py::none();
 

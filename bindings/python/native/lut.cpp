@@ -2,7 +2,6 @@
 #include "native.h"
 
 namespace pel::python {
-
 namespace {
 // The table, and the event of its integration.
 template <class Desc, PelError (*Create)(PelDevice, const Desc*, PelLut*, const PelSubmit*)>

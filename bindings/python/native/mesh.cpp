@@ -4,10 +4,9 @@
 
 namespace pel::python {
 
-namespace {
-
-PelMeshTopologyDesc topologyDesc(uint32_t numVertices, uintptr_t indices, uint64_t numIndices, uint32_t weld,
-                                 float tolerance, uintptr_t positions, uint32_t positionStride) {
+static PelMeshTopologyDesc topologyDesc(uint32_t numVertices, uintptr_t indices, uint64_t numIndices,
+                                        uint32_t weld, float tolerance, uintptr_t positions,
+                                        uint32_t positionStride) {
     PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
     desc.numVertices = numVertices;
     desc.indices = static_cast<const uint32_t*>(pointer(indices));
@@ -18,8 +17,6 @@ PelMeshTopologyDesc topologyDesc(uint32_t numVertices, uintptr_t indices, uint64
     desc.positionStride = positionStride;
     return desc;
 }
-
-}  // namespace
 
 void bindMesh(py::module_& module) {
     using pellucid::MeshTopology, pellucid::LiveMesh;

@@ -1,5 +1,4 @@
-// The extension module pellucid._native. Defaults and layout of the plain structures are a table generated
-// from pellucid.h.
+// The extension module pellucid._native, with a table of the plain structures generated from pellucid.h.
 #include "native.h"
 
 using namespace pel::python;

@@ -2,22 +2,17 @@
 // waiting that Ctrl-C can end, and structures passed as their bytes. Arguments are Python's: whoever calls
 // keeps them alive. Everything a user sees is in the Python files beside this.
 #pragma once
-#include <pellucid/pellucid.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
 #include <atomic>
-#include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <pellucid/pellucid.hpp>
-#include <string>
 #include <tuple>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 namespace pel::python {
 
@@ -99,8 +94,7 @@ inline uintptr_t address(void* p) {
 }
 
 // Owner of what a Python object holds of the library. The last reference to a device waits for its queue,
-// where a host's own callbacks and events may need the GIL to get on; so nothing of the library is let go
-// with the GIL held.
+// where a host's callbacks and events may need the GIL: nothing is let go with the GIL held.
 template <class T>
 struct DeletedWithoutGil {
     void operator()(T* object) const {
@@ -156,8 +150,7 @@ struct Argument {
     C get() { return value; }
     C value;
 };
-// Numbers in memory, and the elements of arrays, are addresses; single structures are the objects that hold
-// them, or None.
+// Numbers in memory, and elements of arrays, are addresses; single structures are their objects, or None.
 template <class T>
 struct Argument<T*> {
     static constexpr bool address =

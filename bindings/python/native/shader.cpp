@@ -6,8 +6,7 @@
 
 namespace pel::python {
 
-// A shader, and a lock that lets calls from other threads wait, and later ones for a call that Ctrl-C left
-// behind.
+// A shader, and a lock by which calls wait for those of other threads, or one that Ctrl-C left behind.
 struct Shader {
     std::unique_ptr<std::recursive_mutex> busy = std::make_unique<std::recursive_mutex>();
     pellucid::Shader handle;
@@ -109,8 +108,7 @@ void bindShader(py::module_& module) {
         uint32_t built = 0;
         call([&] {
             std::vector<PelShader> handles;
-            // In one order for all threads, whatever the order of their lists: two would wait for each other
-            // otherwise.
+            // In one order for all threads, whatever that of their lists: none waits for another for ever.
             std::map<std::recursive_mutex*, std::unique_lock<std::recursive_mutex>, std::less<>> locks;
             for (const Shader* s : shaders) {
                 handles.push_back(s->get());

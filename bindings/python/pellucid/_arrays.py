@@ -12,8 +12,7 @@ from ._struct import to_enum
 from ._types import Format
 from .device import Buffer, Device
 
-# Formats by type and number of components. One-component integers are ids in the material slot and fractions
-# elsewhere.
+# By type and number of components. One-component integers are ids in the material slot, else fractions.
 _FORMATS = {
     ("float32", 1): Format.R32F, ("float32", 2): Format.RG32F, ("float32", 3): Format.RGB32F,
     ("float32", 4): Format.RGBA32F,

@@ -5,8 +5,7 @@ from . import _native
 
 
 class PellucidError(RuntimeError):
-    """A call that the library refused or could not finish. The text says what was wrong, where, and what
-    would be right.
+    """A call that the library refused or could not finish: what was wrong, where, and what would be right.
 
     Attributes
     ----------

@@ -129,12 +129,20 @@ class Struct(metaclass=_PublicNames):
 
         return {name: plain(getattr(self, name)) for name in self.field_names()}
 
+    @classmethod
+    def _with(cls: type[S], given: S | None, fields: dict[str, Any]) -> S:
+        """A copy of `given`, None: of the defaults, with other values of some fields."""
+        made = cls()
+        if given is not None:
+            made._data[...] = cls._bytes_of(given)
+            made._profile = given._profile
+        for name, value in fields.items():
+            setattr(made, name, value)
+        return made
+
     def copy(self: S) -> S:
         """An independent copy."""
-        other = type(self)()
-        other._data[...] = self._data
-        other._profile = self._profile
-        return other
+        return self._with(self, {})
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(f'{n}={getattr(self, n)!r}' for n in self.field_names())})"

@@ -35,8 +35,7 @@ def _set(target: Any, function: Any, view_projection: ArrayLike, depth: str, y_u
 
 def camera_from_view_projection(view_projection: ArrayLike, depth: str = "-1..1", y_up: bool = True,
                                 **fields: Any) -> Camera:
-    """The camera of a G-buffer whose depth image is what the depth buffer holds and whose first row is the
-    top one.
+    """The camera of a G-buffer whose depth image is what the depth buffer holds, its first row on top.
 
     The position is where the projection puts it: on the line through the middle of the picture for a
     parallel one.
@@ -48,8 +47,7 @@ def camera_from_view_projection(view_projection: ArrayLike, depth: str = "-1..1"
 
 def light_from_view_projection(view_projection: ArrayLike, depth: str = "-1..1", y_up: bool = True,
                                first_row: str = "top", **fields: Any) -> Light:
-    """A light whose shadow map was drawn with this matrix: directional for a parallel projection, a spot for
-    a perspective one.
+    """A light whose shadow map was drawn with this matrix: directional if it is parallel, else a spot.
 
     `fields` are others of Light, such as `color`. For a spot, `spot_cos_inner` and `spot_cos_outer` are left
     to the caller.

@@ -36,15 +36,13 @@ def devices() -> list[DeviceInfo]:
 
 
 def set_error_callback(callback: Optional[Callable[[int, str], object]]) -> None:
-    """Calls `callback(code, message)` with every error as it is raised, on the failing thread. None removes
-    it."""
+    """Calls `callback(code, message)` with every error, on the failing thread. None removes it."""
     _native.set_error_callback(callback)
 
 
 def set_log_callback(callback: Optional[Callable[[LogLevel, str, str], object]]) -> None:
-    """Calls `callback(level, name, text)` with every error as it is raised and every warning of a commit, on
-    the thread of the call. `name` is that of the first object of the call that has one (`set_name`). None
-    removes it."""
+    """Calls `callback(level, name, text)` with every error and every warning of a commit, on the thread of
+    the call. `name`: of the first object of the call that has one (`set_name`). None removes it."""
     _native.set_log_callback(callback and (lambda level, name, text: callback(LogLevel(level), name, text)))
 
 
@@ -58,8 +56,7 @@ class Device(OfThisProcess):
         environment variable PELLUCID_DEVICE, and without it the best GPU, else the best CPU.
 
     profiling : bool, optional
-        Whether kernels are timed. None: as the environment variable PELLUCID_PROFILING says, 0 or 1; without
-        it they are.
+        Whether kernels are timed; None: unless the environment variable PELLUCID_PROFILING is 0.
 
     Raises
     ------

@@ -97,8 +97,7 @@ def _profile(of_files: Any) -> Profile:
 
 
 def load_profile(path: Any) -> Profile:
-    """Reads a profile file (TOML), as docs/guide/profiles.md describes it; lengths become mm. Also a name of
-    the library.
+    """Reads a profile file (TOML; docs/guide/profiles.md), or one of the library by name; lengths become mm.
 
     Raises
     ------
@@ -119,8 +118,7 @@ def reference(mesh: Any, scene: Any, gbuffer: Any, *, walk: bool = False, sample
               reflectance: Optional[Sequence[float]] = None, boundary: str = "index-matched",
               profile: Any = None,
               subdivide: int = 0, parts: Sequence[str] = ()) -> dict[str, NDArray[np.float32]]:
-    """What a picture should be, by the command `pellucid reference` (docs/guide/reference.md). Ctrl-C
-    cancels it.
+    """What a picture should be, by `pellucid reference` (docs/guide/reference.md). Ctrl-C cancels it.
 
     Parameters
     ----------

@@ -24,8 +24,7 @@ class GltfCamera:
 
 @dataclass
 class Gltf:
-    """A glTF scene; made by `load_gltf`. Materials are numbered from 1 on, in the file's order; lengths are
-    mm.
+    """A glTF scene; made by `load_gltf`. Materials are numbered from 1, in the file's order; lengths in mm.
 
     `materials` go to `Shader.set_material` as they are, `lights` to `set_lights` and `ambient` to
     `set_ambient`; curvature comes from `MeshTopology.curvature` of the mesh, and `mesh.ids` are the

@@ -81,8 +81,7 @@ class Lut(OfThisProcess):
                profile: Profile | str | None = None,
                preset: Optional[str] = None, wait: bool = True, waits: Iterable[Event] = (),
                **fields: Any) -> Lut:
-        """Integrates a shadow table: texel (x, y) is the light transmitted per channel, row 0 the widest
-        penumbra.
+        """Integrates a shadow table: transmitted light per channel, row 0 of the widest penumbra.
 
         The parameters are as for `curvature`, with ShadowLutDesc.
         """
@@ -115,11 +114,10 @@ class Lut(OfThisProcess):
             raise ValueError(f"preset is {preset!r}; it must be one of material, faceworks")
         if preset is not None and desc is not None:
             raise ValueError("preset and desc exclude one another: a preset is where a description begins")
-        settings = kind() if desc is None else desc.copy()
         if preset == "faceworks":
-            settings._data = np.frombuffer(bytearray(_native.faceworks_defaults(kind._c_name)), kind._dtype)
-        for name, value in fields.items():
-            setattr(settings, name, value)
+            desc = kind()
+            desc._data = np.frombuffer(bytearray(_native.faceworks_defaults(kind._c_name)), kind._dtype)
+        settings = kind._with(desc, fields)
         if profile is not None:
             settings.profile = profile
         return cls._made(device, *create(device._handle, settings._data, _handles(waits)))._waited(wait)
@@ -146,15 +144,13 @@ class Lut(OfThisProcess):
     def info(self) -> LutInfo:
         """What the table holds."""
         info = _filled(LutInfo, self._handle.info())
-        # The library's copy points to the table's profile, which this structure would outlive; its name
-        # stays.
+        # The library's copy points to the table's profile, which this structure would outlive.
         for part in ("curvature", "shadow", "eye"):
             info._data[part]["profile"] = 0
         return info
 
     def clipped_texels(self) -> int:
-        """Texels of a curvature table that "faceworks8" clips: D - max(N.L, 0) lies beyond +-1/4 in some
-        channel.
+        """Texels of a curvature table that "faceworks8" clips: |D - max(N.L, 0)| is above 1/4 in a channel.
 
         0 for other kinds. Waits for the table.
         """

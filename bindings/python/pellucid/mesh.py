@@ -283,11 +283,7 @@ def _shape(vertices: int, params: CurvatureParams) -> tuple[int, ...]:
 
 
 def _settings(params: Optional[CurvatureParams], **given: Any) -> CurvatureParams:
-    settings = CurvatureParams() if params is None else params.copy()
-    for name, value in given.items():
-        if value is not None:
-            setattr(settings, name, value)
-    return settings
+    return CurvatureParams._with(params, {name: v for name, v in given.items() if v is not None})
 
 
 class LiveMesh(OfThisProcess):
@@ -364,8 +360,7 @@ class LiveMesh(OfThisProcess):
 def screen_curvature(device: Device, normals: Any, positions: Any = None, *, depth: Any = None,
                      ids: Any = None, out: Optional[NDArray[np.float32]] = None,
                      params: Optional[ScreenCurvatureParams] = None) -> NDArray[np.float32]:
-    """Curvature per pixel of a G-buffer, |fwidth N| / |fwidth P|, in 1/length, finite; see
-    pelScreenCurvature.
+    """Curvature per pixel of a G-buffer, |fwidth N| / |fwidth P|, 1/length, finite; see pelScreenCurvature.
 
     Parameters
     ----------

@@ -21,13 +21,6 @@ def _triple(value: ArrayLike, what: str) -> NDArray[np.float32]:
     return np.ascontiguousarray(np.broadcast_to(numbers, 3), np.float32)
 
 
-def _skin(skin: Optional[Skin], fields: dict[str, Any]) -> Skin:
-    made = skin.copy() if skin is not None else Skin()
-    for key, value in fields.items():
-        setattr(made, key, value)
-    return made
-
-
 class Profile(OfThisProcess):
     """How much of the light that enters at one point leaves at a distance, per RGB channel.
 
@@ -83,7 +76,7 @@ class Profile(OfThisProcess):
     @classmethod
     def skin_layers(cls, skin: Optional[Skin] = None, name: str = "", **fields: Any) -> Profile:
         """Skin computed from what it is made of, in mm: Skin(melanin=0.05, blood=0.02, ...)."""
-        return cls._named(name, _native.Profile.skin_layers, _skin(skin, fields)._data.data)
+        return cls._named(name, _native.Profile.skin_layers, Skin._with(skin, fields)._data.data)
 
     @classmethod
     def named(cls, material: str) -> Profile:
@@ -104,8 +97,7 @@ class Profile(OfThisProcess):
     @classmethod
     def dipole(cls, absorption: ArrayLike, reduced_scattering: ArrayLike, eta: float = 1.3,
                name: str = "") -> Profile:
-        """The classical dipole from coefficients in 1/length (> 0) and a relative index > 1 [Jensen et al.
-        2001]."""
+        """The classical dipole from coefficients > 0 in 1/length and an index > 1 [Jensen et al. 2001]."""
         return cls._named(name, _native.Profile.dipole, _triple(absorption, "absorption"),
                           _triple(reduced_scattering, "reduced_scattering"), eta)
 
@@ -143,8 +135,7 @@ class Profile(OfThisProcess):
         return f"<pellucid.Profile {info.name or 'unnamed'}: {kind}, radius {info.radius:.4g}>"
 
     def plot(self, ax: Optional[Any] = None) -> Any:
-        """Shows how much light leaves at each distance, 2 pi r R(r), per channel; returns matplotlib's axes
-        (new ones without `ax`)."""
+        """Shows the light per distance, 2 pi r R(r), by channel; returns matplotlib's axes (`ax`, or new)."""
         ax = _show.axes(ax)
         distances = np.linspace(1e-3, 0.6, 300) * self.info.reach
         radial, _ = self.evaluate(distances)

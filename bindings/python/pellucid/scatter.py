@@ -26,8 +26,7 @@ from .profile import Profile, as_profile
 
 
 class Scatter(OfThisProcess):
-    """Takes the irradiance of a picture and returns it scattered under the surface; see pelScatterExecute.
-    Keeps memory between frames."""
+    """Scatters a picture's irradiance under the surface (pelScatterExecute); keeps memory between frames."""
 
     _instead = "make one there"
 
@@ -43,12 +42,8 @@ class Scatter(OfThisProcess):
         self._handle.set_material(id, None if known is None else known._handle, scale)
 
     def set_controls(self, id: int, controls: Optional[ScatterControls] = None, **fields: Any) -> None:
-        """How pixels of `id`, whose material is set, scatter: the controls, or the defaults with some
-        `fields` of them changed."""
-        settings = ScatterControls() if controls is None else controls.copy()
-        for name, value in fields.items():
-            setattr(settings, name, value)
-        self._handle.set_controls(id, settings._data)
+        """How pixels of `id`, whose material is set, scatter: `controls` or the defaults, with `fields`."""
+        self._handle.set_controls(id, ScatterControls._with(controls, fields)._data)
 
     def set_image(self, slot: ImageSlot | str, image: Any) -> None:
         """An image that executions read beside those they are given: "scatter_weight", "irradiance_back",
@@ -159,8 +154,7 @@ class TextureScatter(OfThisProcess):
 
     def draw(self, values: Any, out: Optional[NDArray[np.float32]] = None, *,
              unit: bool = False) -> NDArray[np.float32]:
-        """Values per vertex, (n, 3) float32, drawn into the texture, (height, width, 3); `unit`: they are
-        normals."""
+        """Values per vertex, (n, 3) float32, drawn into the texture, (height, width, 3); `unit`: normals."""
         result = np.empty((self.height, self.width, 3), np.float32) if out is None else out
         self.submit_draw(values, result, unit=unit).wait()
         return result

@@ -64,8 +64,7 @@ class Shader(OfThisProcess):
         return self
 
     def set_light_image(self, light: int, slot: LightSlot | str, image: Any) -> Shader:
-        """Sets the "wide_shadow" (the size of the G-buffer) or the "shadow_map" (any size) of a light, or
-        clears it.
+        """Sets or clears the "wide_shadow" (of the G-buffer's size) or "shadow_map" (of any size) of a light.
 
         "cascade_1" to "cascade_3" are further maps of a light with `shadow_cascades`. A cube map has six
         faces below one another, (6 n, n); maps of moments have two components, (height, width, 2).
@@ -87,8 +86,7 @@ class Shader(OfThisProcess):
 
     def set_material(self, id: int, material: Optional[Material], curvature_lut: Optional[Lut] = None,
                      shadow_lut: Optional[Lut] = None) -> Shader:
-        """Sets material `id`, 1 to 255; None removes it. Without a table: no direct scattering, a plain
-        shadow."""
+        """Sets material `id`, 1 to 255; None removes it. No table: no direct scattering, a plain shadow."""
         self._handle.set_material(id, None if material is None else Material._bytes_of(material),
                                   None if curvature_lut is None else curvature_lut._handle,
                                   None if shadow_lut is None else shadow_lut._handle)
@@ -145,8 +143,7 @@ class Shader(OfThisProcess):
         return self
 
     def set_eye(self, id: int, eye: Optional[Eye], caustics: Optional[Lut] = None) -> Shader:
-        """Makes material `id`, which must be set, an eye around the material, which is its sclera; None: no
-        eye any longer.
+        """Makes material `id`, which must be set and is the sclera, an eye; None: no eye any longer.
 
         Parameters
         ----------
@@ -244,12 +241,7 @@ class Shader(OfThisProcess):
 
     def set_options(self, options: Optional[ShaderOptions] = None, **fields: Any) -> Shader:
         """Sets the options, or the defaults with some `fields` of them changed."""
-        settings = ShaderOptions()
-        if options is not None:
-            settings._data[...] = ShaderOptions._bytes_of(options)
-        for name, value in fields.items():
-            setattr(settings, name, value)
-        self._handle.set_options(settings._data)
+        self._handle.set_options(ShaderOptions._with(options, fields)._data)
         return self
 
     def commit(self) -> Shader:
@@ -323,12 +315,10 @@ class Shader(OfThisProcess):
 
 def warm_up_programs(device: Device, groups: ProgramGroup | int = 0, shaders: Sequence[Shader] = (),
                      threads: int = 0) -> int:
-    """Builds OpenCL programs before they are needed, so that no first commit or execution waits for a
-    compiler.
+    """Builds OpenCL programs before they are needed, so that no commit or execution waits for a compiler.
 
-    The driver's own cache on disk, where it has one, keeps the result for later processes. A progress
-    callback of the device (Device.set_progress) is called on the way; cancelled by it, what was built so
-    far stays.
+    The driver's own cache on disk, where it has one, keeps the result. A progress callback of the device
+    (Device.set_progress) is called on the way; where it cancels, what was built so far stays.
 
     Parameters
     ----------

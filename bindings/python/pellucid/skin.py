@@ -9,12 +9,11 @@ from numpy.typing import ArrayLike, NDArray
 from . import _native
 from ._types import Skin, SkinInfo
 from .device import _filled
-from .profile import _skin
 
 
 def skin_info(skin: Optional[Skin] = None, **fields: Any) -> SkinInfo:
     """Albedo, mean free path, mean distance and more of skin: skin_info(melanin=0.05, blood=0.02)."""
-    return _filled(SkinInfo, _native.skin_info(_skin(skin, fields)._data))
+    return _filled(SkinInfo, _native.skin_info(Skin._with(skin, fields)._data))
 
 
 def skin_reflectance(nanometres: ArrayLike, skin: Optional[Skin] = None,
@@ -22,7 +21,7 @@ def skin_reflectance(nanometres: ArrayLike, skin: Optional[Skin] = None,
     """Share of diffuse light that skin sends back at wavelengths from 380 to 720 nm."""
     at = np.ascontiguousarray(nanometres, np.float32)
     out = np.empty_like(at)
-    _native.skin_reflectance(_skin(skin, fields)._data, at.ctypes.data, at.size, out.ctypes.data)
+    _native.skin_reflectance(Skin._with(skin, fields)._data, at.ctypes.data, at.size, out.ctypes.data)
     return out
 
 
@@ -32,7 +31,8 @@ def skin_albedo(melanin: ArrayLike, blood: ArrayLike, skin: Optional[Skin] = Non
     `skin` (...), for the second component of a scatter weight."""
     m, b = (np.ascontiguousarray(a, np.float32) for a in np.broadcast_arrays(melanin, blood))
     albedo, radius = np.empty((*m.shape, 3), np.float32), np.empty(m.shape, np.float32)
-    _native.skin_albedo(_skin(skin, fields)._data, m.ctypes.data, b.ctypes.data, m.size, albedo.ctypes.data,
+    made = Skin._with(skin, fields)
+    _native.skin_albedo(made._data, m.ctypes.data, b.ctypes.data, m.size, albedo.ctypes.data,
                         radius.ctypes.data)
     return albedo, radius
 
@@ -44,7 +44,7 @@ def skin_from_albedo(albedo: ArrayLike, skin: Optional[Skin] = None, **fields: A
     if a.ndim < 1 or a.shape[-1] != 3:
         raise ValueError(f"albedo has the shape {a.shape}; (..., 3) is needed")
     maps = np.empty((3, a.size // 3), np.float32)
-    _native.skin_from_albedo(_skin(skin, fields)._data, a.ctypes.data, a.size // 3,
+    _native.skin_from_albedo(Skin._with(skin, fields)._data, a.ctypes.data, a.size // 3,
                              *(m.ctypes.data for m in maps))
     melanin, blood, difference = maps.reshape(3, *a.shape[:-1])
     return melanin, blood, difference

@@ -1,5 +1,4 @@
-"""What the tests share: a device, a mesh and a G-buffer whose answers are known, and the project's table of
-tolerances."""
+"""What the tests share: a device, a mesh and a G-buffer of known answers, and the table of tolerances."""
 import re
 from pathlib import Path
 

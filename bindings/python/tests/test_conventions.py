@@ -1,5 +1,4 @@
-"""Matrices of each convention reach the functions of pellucid_conventions.h, which tests/core holds to the
-interfaces' own definitions."""
+"""Matrices of each convention reach the functions of pellucid_conventions.h, which tests/core checks."""
 import numpy as np
 import pytest
 

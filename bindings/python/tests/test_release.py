@@ -1,5 +1,4 @@
-"""Letting go of objects whose device still has work: others must get on meanwhile, for that work may wait
-for them."""
+"""Letting go of objects whose device has work: others must get on, for that work may wait for them."""
 import subprocess
 import sys
 import textwrap

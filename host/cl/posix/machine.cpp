@@ -11,7 +11,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <new>
 
 #include "cl/error.h"
 #include "cl/machine.h"

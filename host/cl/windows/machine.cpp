@@ -44,17 +44,14 @@ void freeAligned(void* at) {
 // lists are not read: a folder elsewhere does not count as private.
 
 namespace fs = std::filesystem;
-namespace {
 
 constexpr const char* profiles[] = {"LOCALAPPDATA", "USERPROFILE"};
 
-bool below(const fs::path& folder, const fs::path& top) {
+static bool below(const fs::path& folder, const fs::path& top) {
     std::error_code error;
     const fs::path real = fs::weakly_canonical(folder, error), base = fs::weakly_canonical(top, error);
     return !error && std::mismatch(base.begin(), base.end(), real.begin(), real.end()).first == base.end();
 }
-
-}  // namespace
 
 std::vector<fs::path> cacheHomes() {
     std::vector<fs::path> all;

@@ -9,8 +9,7 @@ namespace {
 
 using Rgb = std::array<double, 3>;
 
-// OKLab to linear sRGB. The matrices are those of B. Ottosson, "A perceptual color space for image
-// processing", 2020.
+// OKLab to linear sRGB [B. Ottosson, "A perceptual color space for image processing", 2020].
 Rgb fromOklab(double L, double a, double b) {
     const double l = std::pow(L + 0.3963377774 * a + 0.2158037573 * b, 3);
     const double m = std::pow(L - 0.1055613458 * a - 0.0638541728 * b, 3);

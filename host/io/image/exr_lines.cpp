@@ -19,8 +19,7 @@ void spread(const uint8_t* from, size_t count, float* to, size_t stride) {
     }
 }
 
-// Copies the values of the wanted channels to their destinations as floats. A chunk is a sequence of rows, a
-// row a sequence of channels.
+// Copies the wanted channels to their destinations as floats. A chunk has rows, and a row has channels.
 exr_result_t unpack(exr_decode_pipeline_t* decode) {
     const auto* at = static_cast<const uint8_t*>(decode->unpacked_buffer);
     for (int32_t row = 0; row < decode->chunk.height; ++row)
@@ -141,8 +140,7 @@ void ExrLines::read(int part, int begin, int end, size_t width, const std::vecto
         }
         if (first) {
             file_->check(exr_decoding_choose_default_routines(file_->context, part, &decode));
-            // OpenEXR's own unpacking fails if some channels are not wanted. Null if values are read directly
-            // to their destinations.
+            // OpenEXR's own fails if some channels are not wanted. Null if values are read directly.
             if (decode.unpack_and_convert_fn) decode.unpack_and_convert_fn = unpack;
         }
         file_->check(exr_decoding_run(file_->context, part, &decode));

@@ -200,8 +200,7 @@ struct Band {
     int part, begin, end;
 };
 
-// Runs worker(next) on every processor. next() hands out the numbers below `count`. An exception stops all
-// workers and is rethrown.
+// Runs worker(next) on every processor; next() hands out numbers below `count`. Throws what a worker throws.
 template <class Worker>
 void onProcessors(size_t count, const Worker& worker) {
     std::atomic<size_t> next{0};

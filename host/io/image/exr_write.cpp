@@ -1,5 +1,4 @@
-// Writes OpenEXR files of one part with scan lines. They are encoded in memory, so that only one place has to
-// handle disk errors.
+// Writes EXR files of one part with scan lines, encoded in memory: one place handles disk errors.
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFloatVectorAttribute.h>

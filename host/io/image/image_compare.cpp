@@ -4,21 +4,18 @@
 #include <stdexcept>
 
 namespace pellucid::io {
-namespace {
 
 // The smallest value that 99 % of the values do not exceed.
-double percentile99(std::vector<float>& values) {
+static double percentile99(std::vector<float>& values) {
     if (values.empty()) return 0;
     const size_t rank = (values.size() * 99 + 99) / 100 - 1;
     std::nth_element(values.begin(), values.begin() + ptrdiff_t(rank), values.end());
     return values[rank];
 }
 
-double dot3(const float* a, const float* b) {
+static double dot3(const float* a, const float* b) {
     return double(a[0]) * b[0] + double(a[1]) * b[1] + double(a[2]) * b[2];
 }
-
-}  // namespace
 
 ImageDifference compareImages(std::span<const float> a, std::span<const float> b,
                               std::span<const uint8_t> mask, size_t* invalid,

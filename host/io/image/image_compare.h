@@ -32,8 +32,7 @@ ImageDifference compareImages(std::span<const float> a, std::span<const float> b
                               std::span<const uint8_t> mask = {}, size_t* invalid = nullptr,
                               std::span<const float> secondHalf = {});
 
-// Sub-sets of a picture of a lit surface; bits that may be combined. Errors of scattering are mostly in those
-// other than the rest.
+// Sub-sets of a picture of a lit surface; bits that may be combined. Scattering errs least in the rest.
 enum Subset : uint8_t {
     SUBSET_UNLIT = 1,
     SUBSET_TERMINATOR = 2,

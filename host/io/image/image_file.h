@@ -33,8 +33,7 @@ struct Image {
     const Channel& channel(const std::string& name) const;
     bool has(const std::string& name) const;  // channel() would find exactly one
 
-    // Those channels interleaved: names.size() * width * height values. Throws std::logic_error for one
-    // whose pixels were not read.
+    // Those channels interleaved. Throws std::logic_error for one whose pixels were not read.
     std::vector<float> interleaved(std::span<const std::string> names) const;
     void interleave(std::span<const std::string> names, float* values) const;
 
@@ -48,13 +47,11 @@ struct Image {
 // Reads all parts and channels of an .exr, .png, .jpg, .tga or .bmp file at full precision (8- and 16-bit
 // integers become 0 to 1, those of 32 bits in EXR keep their values; colours are not multiplied by alpha).
 // Each part is placed by its data window in the display window: pixels outside its data window are 0,
-// pixels outside the display window are dropped. `check` sees size, attributes and channel names before any
-// pixel is read, and throws if the image is not the wanted one. Throws FileError: missing, broken or deep
-// file, another format, parts with different display windows, more than `limit` bytes of pixels as floats.
-Image readImage(const std::string& path, const std::function<void(const Image&)>& check = {},
-                uint64_t limit = inputLimit());
-// The same from the bytes of a file; `path` is for messages and names the format. `names`: as of
-// readChannels.
+// pixels outside the display window are dropped. Throws FileError: missing, broken or deep file, another
+// format, parts with different display windows, more than inputLimit() bytes of pixels as floats.
+Image readImage(const std::string& path);
+// The same from the bytes of a file; `path` names the format. `check` sees size, attributes and channel names
+// before any pixel is read, and throws if the image is not the wanted one. `names`: as of readChannels.
 Image decodeImage(const std::string& path, std::string bytes,
                   const std::function<void(const Image&)>& check = {}, uint64_t limit = inputLimit(),
                   const std::vector<std::string>* names = nullptr);
@@ -73,14 +70,12 @@ using PlaceChannels = std::function<std::vector<Place>(Image&)>;
 // Reads channels straight to where they are wanted. The image that is returned has no pixels.
 Image readChannelsTo(const std::string& path, const PlaceChannels& places);
 
-// Writes a single-part scan-line EXR, each channel in its own type; float32 values keep their bits. ZIP
-// compression makes files small; RLE, which is quick to read, a third larger where much is background, and
-// hardly small elsewhere.
+// Writes a single-part scan-line EXR, each channel in its own type; float32 values keep their bits. ZIP makes
+// files small; RLE is quick to read, and files are a third larger where much is background, or more.
 enum class ExrCompression { Zip, Rle };
 void writeExr(const std::string& path, const Image& image, ExrCompression compression = ExrCompression::Zip);
 
-// Whether writeImage8 writes files of this extension; the second throws FileError where it does not, and
-// returns the extension.
+// Whether writeImage8 writes files of this extension; the second throws FileError, else returns it.
 bool isPicture(const std::string& path);
 std::string requirePicture(const std::string& path);
 

@@ -1,6 +1,7 @@
 #include "io/image/image_format.h"
 
 #include "io/input_file.h"
+#include "io/shortest.h"
 
 namespace pellucid::io {
 namespace {
@@ -72,8 +73,7 @@ std::string jpeg(const std::string& path, std::string_view file, uint64_t limit)
     }
 }
 
-// The header of 18 bytes [Truevision TGA 2.0]. The footer, which leads to thumbnails and the like, is cut
-// off.
+// The header of 18 bytes [Truevision TGA 2.0]. The footer, which leads to thumbnails, is cut off.
 std::string tga(const std::string& path, std::string_view file, uint64_t limit) {
     constexpr size_t header = 18, footer = 26;
     if (file.size() < header) cutOff(path);
@@ -125,10 +125,9 @@ constexpr Known formats[] = {{"exr", "OpenEXR", "openexr", "\x76\x2f\x31\x01"sv}
 }  // namespace
 
 void checkImageSize(const std::string& path, double width, double height, double channels, uint64_t limit) {
-    char size[96];
-    std::snprintf(size, sizeof size, "%.0f x %.0f pixels", width, height);
+    const std::string size = printed("%.0f x %.0f pixels", width, height);
     if (!(width >= 1 && height >= 1 && width <= 1 << 30 && height <= 1 << 30 && channels >= 1))
-        throw FileError(path, std::string("is damaged: it announces ") + size);
+        throw FileError(path, "is damaged: it announces " + size);
     const double bytes = width * height * channels * sizeof(float);
     if (bytes > double(limit))
         throw FileError(path, concat(size, " of ", int(channels), " channels take ", tooLarge(bytes, limit)));

@@ -21,8 +21,7 @@ ImageFormat imageFormat(const std::string& path, std::string bytes, uint64_t lim
 // Throws FileError if so many pixels and channels take more than `limit` bytes as floats.
 void checkImageSize(const std::string& path, double width, double height, double channels, uint64_t limit);
 
-// The header of an OpenEXR file, checked before a library allocates memory for what it announces [OpenEXR
-// File Layout].
+// The header of an EXR file, checked before a library allocates what it announces [OpenEXR File Layout].
 
 // Reads attributes one after another. Everything is checked against the end of the file.
 class ExrAttributes {
@@ -45,8 +44,7 @@ class ExrAttributes {
 };
 
 // Throws FileError unless all parts have channels, windows and tiles that a file of this length can hold, and
-// whose pixels take at most `limit` bytes as floats, in the display window or the data window, whichever is
-// larger.
+// the pixels of their display or data windows take at most `limit` bytes as floats.
 void checkExrHeader(const std::string& path, std::string_view file, uint64_t limit);
 
 }  // namespace pellucid::io

@@ -16,8 +16,8 @@ Image decodeImage(const std::string& path, std::string bytes, const std::functio
     return image;
 }
 
-Image readImage(const std::string& path, const std::function<void(const Image&)>& check, uint64_t limit) {
-    return decodeImage(path, readWholeFile(path, limit), check, limit);
+Image readImage(const std::string& path) {
+    return decodeImage(path, readWholeFile(path));
 }
 
 Image readChannels(const std::string& path, const std::vector<std::string>& names) {

@@ -2,26 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "io/image/picture_library.h"
+#include "io/shortest.h"
 
 namespace pellucid::io {
-namespace {
 
 constexpr Srgb8 paper = {28, 28, 30}, ink = {225, 225, 225};
 
-constexpr int fontSize(int scale) {
+static constexpr int fontSize(int scale) {
     return 8 * scale;
 }
-
-std::string shownNumber(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
-}
-
-}  // namespace
 
 Picture::Picture(int w, int h, Srgb8 background) : width(w), height(h) {
     rgb.reserve(static_cast<size_t>(w) * static_cast<size_t>(h) * 3);
@@ -127,8 +118,8 @@ Picture colorBar(int width, double low, double high, std::string_view unit, int 
             scaleColor(static_cast<float>(value), static_cast<float>(low), static_cast<float>(high));
         for (int y = 0; y < barHeight; ++y) bar.paint(x, y, color);
     }
-    const std::string middle = shownNumber((low + high) / 2), right = shownNumber(high);
-    bar.write(0, textTop, shownNumber(low), ink, textScale);
+    const std::string middle = printed("%.3g", (low + high) / 2), right = printed("%.3g", high);
+    bar.write(0, textTop, printed("%.3g", low), ink, textScale);
     bar.write((width - textWidth(middle, textScale)) / 2, textTop, middle, ink, textScale);
     bar.write(width - textWidth(right, textScale), textTop, right, ink, textScale);
     bar.write((width - textWidth(unit, textScale)) / 2, textTop + textHeight(textScale), unit, ink,

@@ -41,12 +41,10 @@ struct Tile {
     Picture picture;
 };
 
-// Tiles row by row, each with its label below, on dark grey. Columns are as wide, rows as high as their
-// largest tile.
+// Tiles row by row with labels below, on dark grey. Columns and rows are as large as their largest tile.
 Picture contactSheet(std::span<const Tile> tiles, int columns, int textScale = 2);
 
-// A horizontal bar of scaleColor from `low` to `high`, numbers at both ends and the middle, and the
-// unit.
+// A horizontal bar of scaleColor from `low` to `high`, with numbers and the unit.
 Picture colorBar(int width, double low, double high, std::string_view unit, int textScale = 2);
 
 // The picture with a bar as wide as itself below.

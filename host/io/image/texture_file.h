@@ -1,5 +1,4 @@
-// Containers that graphics engines load as they are: DDS and KTX2, one image of RGBA float16 texels or of
-// BC6H blocks.
+// Containers that graphics engines load: DDS and KTX2, one image of RGBA float16 texels or BC6H blocks.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -23,8 +22,7 @@ struct Texture {
 // Both: complete or not at all; throw FileError when the file cannot be written. DDS: the DX10 header,
 // DXGI_FORMAT_R16G16B16A16_FLOAT or _BC6H_UF16 [Microsoft, Programming Guide for DDS].
 void writeDds(const std::string& path, const Texture& texture);
-// KTX2: VK_FORMAT_R16G16B16A16_SFLOAT or _BC6H_UFLOAT_BLOCK, linear, with key/value data [Khronos, KTX File
-// Format 2.0].
+// KTX2: VK_FORMAT_R16G16B16A16_SFLOAT or _BC6H_UFLOAT_BLOCK, linear [Khronos, KTX File Format 2.0].
 void writeKtx2(const std::string& path, const Texture& texture,
                const std::map<std::string, std::string>& keyValues);
 

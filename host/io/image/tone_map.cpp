@@ -38,8 +38,7 @@ float stops(float x) {
     return float(0.5 + std::copysign(u / std::pow(1 + std::pow(u / scale, power), 1 / power), from));
 }
 
-// The amount of grey that is mixed into a colour before the curve, and the factor of saturation after it,
-// chosen by eye.
+// Grey that is mixed into a colour before the curve, and saturation after it, chosen by eye.
 constexpr float inset = 0.1f, punch = 1.4f;
 
 }  // namespace

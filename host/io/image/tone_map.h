@@ -23,12 +23,10 @@ struct ToneMap {
 };
 
 // The displayed value, still linear, of one channel by `soft`: x = exposure * radiance up to the shoulder s,
-// then s + (1 - s) t / (1 + t) with t = (x - s) / (1 - s): continuous with its slope. NaN and negative values
-// give 0.
+// then s + (1 - s) t / (1 + t) with t = (x - s) / (1 - s), which is smooth. 0 for NaN and below 0.
 float toneMapped(float radiance, const ToneMap& map);
 
-// RGB float (interleaved) to sRGB bytes, rounded to nearest. NaN and negative values count as 0, Inf as the
-// largest float.
+// RGB float to sRGB bytes, rounded to nearest. NaN and below 0 count as 0, Inf as the largest float.
 std::vector<uint8_t> toSrgb8(std::span<const float> rgb, const ToneMap& map = {});
 
 }  // namespace pellucid::io

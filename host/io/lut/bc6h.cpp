@@ -11,16 +11,13 @@
 #include "io/lut/bc6h_block.h"
 
 namespace pellucid::io {
-namespace {
 
 constexpr uint16_t largest = 0x7BFF, infinity = 0x7C00;
 
-uint16_t storable(uint16_t half) {
+static uint16_t storable(uint16_t half) {
     if (half & 0x8000 || half > infinity) return 0;
     return std::min(half, largest);
 }
-
-}  // namespace
 
 std::vector<uint8_t> encodeBc6h(uint32_t width, uint32_t height, std::span<const uint16_t> texels,
                                 const std::function<bool()>& stop) {

@@ -15,8 +15,7 @@ namespace pellucid::io {
 std::string encodeLutExr(const PelLutInfo& info, PelLutEncoding encoding, std::string_view texels,
                          const std::string& key, uint32_t stack = 1);
 
-// Whether these are the bytes that were encoded for that key: not truncated, not changed, not another
-// request.
+// Whether these are the bytes that were encoded for that key, whole and unchanged.
 bool verifyLutExr(std::string_view file, std::string_view key);
 
 }  // namespace pellucid::io

@@ -3,7 +3,6 @@
 #pragma once
 #include <optional>
 #include <pellucid/pellucid.hpp>
-#include <string>
 
 #include "io/lut/bc6h.h"
 
@@ -16,12 +15,10 @@ namespace pellucid::io {
 // written, std::invalid_argument when container and encoding do not go together.
 void writeLut(const std::string& path, const Lut& lut, std::optional<PelLutEncoding> encoding = {});
 
-// What writeLut would choose. Throws as writeLut does, also if the file cannot be written. For checks before
-// long work.
+// What writeLut would choose, before long work. Throws as writeLut does, also if the file cannot be written.
 PelLutEncoding checkLutPath(const std::string& path, std::optional<PelLutEncoding> encoding);
 
-// The same as BC6H in .dds or .ktx2, an eighth of the bytes of half texels with alpha. Returns the error of
-// the encoding.
+// The same as BC6H in .dds or .ktx2, an eighth of the bytes of half texels. Returns the encoding's error.
 TexelError writeLutBc6h(const std::string& path, const Lut& lut);
 void checkLutPathBc6h(const std::string& path);
 
@@ -34,8 +31,7 @@ struct LutTexels {
 // more than a quarter of inputLimit() as floats.
 LutTexels decodeLut(const std::string& path, std::string bytes);
 
-// Reads what writeLut wrote as .exr. Throws FileError: no such file, no or incomplete description, wrong
-// size.
+// Reads an .exr of writeLut. Throws FileError: no such file, incomplete description, wrong size.
 Lut readLut(const Device& device, const std::string& path);
 
 // Checks a table that was read from `path` against the request: its kind, and the keys of a scene file that

@@ -1,7 +1,5 @@
 #include "io/lut/profile_file.h"
 
-#include <algorithm>
-
 #include "io/choice_keys.h"
 #include "io/input_file.h"
 #include "io/toml_reader.h"

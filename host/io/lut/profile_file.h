@@ -1,9 +1,6 @@
-// Diffusion profiles as TOML files, and the materials of the library by name. Keys and units:
-// docs/guide/profiles.md.
+// Diffusion profiles as TOML files (docs/guide/profiles.md), and the materials of the library by name.
 #pragma once
-#include <optional>
 #include <pellucid/pellucid.hpp>
-#include <string>
 
 #include "fields/captured_frame.h"
 
@@ -22,8 +19,7 @@ ProfileFile parseProfile(const std::string& file, const std::string& text);
 // The text of a profile file that is read back as the same profile.
 std::string profileText(const pel::ProfileRecipe& recipe);
 
-// A material of the library by name, or a file whose name ends in .toml. Throws FileError; for an unknown
-// name it lists the library.
+// A material of the library by name, or a .toml file. Throws FileError, which lists the library.
 ProfileFile findProfile(const std::string& nameOrPath);
 
 }  // namespace pellucid::io

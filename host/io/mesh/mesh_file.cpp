@@ -1,7 +1,6 @@
 #include "io/mesh/mesh_file.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <map>
 #include <pellucid/pellucid.hpp>
@@ -40,8 +39,7 @@ void checkCorners(const std::string& path, const RawMesh& raw) {
     }
 }
 
-// Corner UVs become vertex UVs; a vertex whose corners differ is copied, or (no splitting) the UVs are left
-// out.
+// Corner UVs become vertex UVs. Where corners differ, the vertex is copied, or all UVs are left out.
 void assignCornerUvs(MeshData& mesh, std::vector<uint32_t>& corners, std::span<const float> cornerUvs,
                      bool split) {
     const size_t fileVertices = mesh.vertexCount();

@@ -44,14 +44,12 @@ MeshData decodeMesh(const std::string& path, const std::string& text, const Mesh
 // is copied, as by MeshLoadOptions.splitUvSeams.
 void splitAtSeams(MeshData& mesh, std::span<const float> cornerUvs);
 
-// Unit normals: face normals weighted with the corner's angle, summed over all vertices at the same
-// position, so that seams do not show; where they face opposite ways they cancel out. Vertices of no
-// triangle get (0, 0, 1).
+// Unit normals: face normals weighted with the corner's angle, summed over all vertices at one position, so
+// that seams do not show; opposite ones cancel out. Vertices of no triangle get (0, 0, 1).
 void computeNormals(MeshData& mesh);
 
-// `levels` times four triangles from one, with OpenMesh's Loop scheme; UVs are interpolated linearly, normals
-// are dropped. Vertices of the mesh keep their indices. Throws FileError when the mesh is not manifold,
-// naming the triangle.
+// `levels` times four triangles from one, by OpenMesh's Loop scheme; UVs are interpolated linearly, normals
+// dropped, indices of vertices kept. Throws FileError, naming the triangle, if it is not manifold.
 void loopSubdivide(MeshData& mesh, int levels);
 
 // Scales and moves so that the largest extent along `axis` (0 x, 1 y, 2 z) is `height` and the bounding box

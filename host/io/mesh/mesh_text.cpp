@@ -24,8 +24,7 @@ std::string outOfRange(long long index, long long first, size_t count, std::stri
                   static_cast<long long>(count) - 1 + first, " would be right");
 }
 
-// Ends a face that consists of the corners since the last face. Drops it and returns false if a vertex occurs
-// twice.
+// Ends a face of the corners since the last one. Drops it and returns false if a vertex occurs twice.
 bool endFace(RawMesh& mesh) {
     const auto first = mesh.corners.begin() + mesh.faceStart.back();
     std::vector<int64_t> sorted(first, mesh.corners.end());

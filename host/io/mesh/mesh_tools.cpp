@@ -14,20 +14,7 @@
 namespace pellucid::io {
 namespace {
 
-using Vec = std::array<double, 3>;
-
-Vec subtract(const float* a, const float* b) {
-    return {double(a[0]) - b[0], double(a[1]) - b[1], double(a[2]) - b[2]};
-}
-double dot(const Vec& a, const Vec& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec cross(const Vec& a, const Vec& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double length(const Vec& a) {
-    return std::sqrt(dot(a, a));
-}
+using OpenMesh::Vec3d;
 
 // For each vertex, the first vertex with exactly its position.
 std::vector<uint32_t> firstAtPosition(const std::vector<float>& positions) {
@@ -50,26 +37,25 @@ std::vector<uint32_t> firstAtPosition(const std::vector<float>& positions) {
 
 void computeNormals(MeshData& mesh) {
     const std::vector<uint32_t> first = firstAtPosition(mesh.positions);
-    std::vector<Vec> sums(mesh.vertexCount(), Vec{0, 0, 0});
+    std::vector<Vec3d> sums(mesh.vertexCount(), Vec3d(0));
     for (size_t t = 0; t < mesh.triangles.size(); t += 3) {
         const uint32_t* corner = &mesh.triangles[t];
-        const auto edge = [&](int from, int to) {
-            return subtract(&mesh.positions[3 * corner[to]], &mesh.positions[3 * corner[from]]);
+        const auto at = [&](int i) {
+            const float* p = &mesh.positions[3 * corner[i % 3]];
+            return Vec3d(p[0], p[1], p[2]);
         };
-        const Vec normal = cross(edge(0, 1), edge(0, 2));
-        const double size = length(normal);
+        const Vec3d normal = (at(1) - at(0)) % (at(2) - at(0));  // % is the cross product, | the inner one
+        const double size = normal.norm();
         if (!(size > 0)) continue;
         for (int c = 0; c < 3; ++c) {
-            const Vec a = edge(c, (c + 1) % 3), b = edge(c, (c + 2) % 3);
-            const double angle = std::atan2(length(cross(a, b)), dot(a, b));
-            Vec& sum = sums[first[corner[c]]];
-            for (size_t k = 0; k < 3; ++k) sum[k] += normal[k] / size * angle;
+            const Vec3d a = at(c + 1) - at(c), b = at(c + 2) - at(c);
+            sums[first[corner[c]]] += normal / size * std::atan2((a % b).norm(), a | b);
         }
     }
     mesh.normals.resize(mesh.positions.size());
     for (size_t v = 0; v < sums.size(); ++v) {
-        const Vec& sum = sums[first[v]];
-        const double size = length(sum);
+        const Vec3d& sum = sums[first[v]];
+        const double size = sum.norm();
         const bool usable = size > 1e-12;  // else unreferenced, or two faces back to back
         for (size_t k = 0; k < 3; ++k)
             mesh.normals[3 * v + k] = usable ? static_cast<float>(sum[k] / size) : (k == 2 ? 1.0f : 0.0f);

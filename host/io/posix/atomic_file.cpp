@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -39,49 +38,10 @@ const std::string& machineTag() {
 
 namespace {
 
-// Seconds since the last write after which a temporary file counts as abandoned: for writers whose locks this
-// program can see, and for others.
-constexpr double lockedAge = 60, foreignAge = 86400;
-
-// 64 random bits that nobody can predict.
-std::string randomDigits() {
-    uint64_t bits = 0;
-    if (::getentropy(&bits, sizeof bits) != 0)
-        throw FileError("/dev/urandom", std::string("no random numbers: ") + std::strerror(errno));
-    return hexDigits(bits);
-}
-
-// .STEM.MACHINE-RANDOM.tmp.EXTENSION, shorter than any file system's limit.
-std::string temporaryName(const std::string& name) {
-    const fs::path path(name);
-    std::string temporary =
-        "." + path.stem().string().substr(0, 120) + "." + machineTag() + "-" + randomDigits() + ".tmp";
-    return temporary += path.extension().string().substr(0, 40);
-}
-
-// The machine that a temporary file's name contains; "" for other names.
-std::string machineOf(const std::string& name) {
-    constexpr size_t tag = 8, random = 16, all = 1 + tag + 1 + random;
-    const size_t end = name.rfind(".tmp");
-    if (name.empty() || name[0] != '.' || end == std::string::npos || end < all) return "";
-    if (name.size() > end + 4 && name[end + 4] != '.') return "";
-    const std::string part = name.substr(end - all, all);
-    const auto hex = [&](size_t from, size_t count) {
-        return part.find_first_not_of("0123456789abcdef", from) >= from + count;
-    };
-    return part[0] == '.' && hex(1, tag) && part[1 + tag] == '-' && hex(2 + tag, random) ? part.substr(1, tag)
-                                                                                         : "";
-}
-
 // A folder, to name files in it and to flush it. Files can be written to it even if it cannot be listed.
 int openFolder(const std::string& path) {
     const int fd = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     return fd >= 0 || errno != EACCES ? fd : ::open(path.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
-}
-
-std::string folderOf(const std::string& path) {
-    const std::string parent = fs::path(path).parent_path().string();
-    return parent.empty() ? "." : parent;
 }
 
 // Flushes the names in this folder to the disk. Some file systems cannot flush folders, and report that.
@@ -90,11 +50,6 @@ bool flushed(int fd) {
     if (::fcntl(fd, F_FULLFSYNC) == 0) return true;  // fsync of macOS leaves bytes in the disk's own memory
 #endif
     return ::fsync(fd) == 0 || errno == EINVAL || errno == EBADF || errno == ENOTSUP;
-}
-
-void refuseOtherThanFile(const std::string& path) {
-    const std::string other = otherThanFile(path);
-    if (!other.empty()) throw FileError(path, "is " + other + "; the output must be the name of a file");
 }
 
 }  // namespace
@@ -156,12 +111,6 @@ void AtomicFile::commit(bool folderToo) {
     if (folderToo && !flushed(folder_)) fail("is written, but its name may not outlive a power cut: ");
 }
 
-void writeWholeFile(const std::string& path, std::string_view bytes) {
-    AtomicFile file(path);
-    file.write(bytes.data(), bytes.size());
-    file.commit();
-}
-
 void flushFolder(const std::string& path) {
     const int folder = openFolder(path);
     const bool done = folder >= 0 && flushed(folder);
@@ -175,29 +124,19 @@ size_t removeAbandonedFiles(const std::string& path) {
     const int folder = openFolder(path);
     if (folder < 0) return 0;
     size_t removed = 0;
-    std::error_code error;
-    for (fs::directory_iterator at(path, error), end; !error && at != end; at.increment(error)) {
-        const std::string name = at->path().filename().string();
-        const std::string machine = machineOf(name);
-        if (machine.empty()) continue;
+    for (const auto& [name, abandonedAfter] : temporaryFiles(path)) {
         const int fd = ::openat(folder, name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
         if (fd < 0) continue;
         struct stat status {};
         if (::fstat(fd, &status) == 0 && S_ISREG(status.st_mode)) {
             const double age = std::difftime(std::time(nullptr), status.st_mtime);
-            if (age > (machine == machineTag() ? lockedAge : foreignAge) &&
-                ::flock(fd, LOCK_EX | LOCK_NB) == 0)
+            if (age > abandonedAfter && ::flock(fd, LOCK_EX | LOCK_NB) == 0)
                 removed += ::unlinkat(folder, name.c_str(), 0) == 0;
         }
         ::close(fd);
     }
     ::close(folder);
     return removed;
-}
-
-void checkWritable(const std::string& path) {
-    const AtomicFile probe(path);  // making a file there is the only sure test; the destructor removes it
-    removeAbandonedFiles(folderOf(path));
 }
 
 }  // namespace pellucid::io

@@ -40,8 +40,7 @@ void readLut(TomlReader& reader, SceneFile& scene, PelLutKind kind, LutPreset pr
     scene.luts.push_back(std::move(lut));
 }
 
-// Normalises a direction. Nearly normalised directions keep their bits, so that a written scene reads back
-// equal.
+// Normalises a direction. Nearly unit ones keep their bits: a written scene reads back equal.
 void makeUnit(TomlReader& reader, const char* key, float (&v)[3]) {
     const double length = std::hypot(double(v[0]), double(v[1]), double(v[2]));
     if (length == 0) reader.fail(key, "is (0, 0, 0); a direction is needed");

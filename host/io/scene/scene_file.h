@@ -1,6 +1,5 @@
 // The scene file of `pellucid shade`: TOML that says what the channels of a G-buffer are, and which lights,
-// materials and tables to use. Every key, with units, is in docs/guide/scene-file.md; the fields are those of
-// pellucid.h.
+// materials and tables to use (docs/guide/scene-file.md); the fields are those of pellucid.h.
 #pragma once
 #include <array>
 #include <string>
@@ -10,8 +9,7 @@
 
 namespace pellucid::io {
 
-// A look-up table by name: read from a file, or integrated from its description. The profile handle in the
-// description is not used.
+// A look-up table by name: read from a file, or integrated; the description's profile handle is not used.
 struct SceneLut {
     std::string name;                                   // materials refer to it
     PelLutInfo info = presetInfo(LutPreset::material);  // kind; and what to integrate if `file` is empty

@@ -6,7 +6,6 @@
 #include "fields/field_ranges.h"
 #include "io/choice_keys.h"
 #include "io/scene/scene_file.h"
-#include "shared/image_slots.h"
 #include "shared/shade_passes.h"
 
 namespace pellucid::io {

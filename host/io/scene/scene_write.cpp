@@ -1,4 +1,3 @@
-#include <algorithm>
 
 #include "io/atomic_file.h"
 #include "io/scene/scene_keys.h"

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <memory>
 
-#include "io/file_error.h"
 #include "io/input_file.h"
 
 namespace pellucid::io {

@@ -1,8 +1,5 @@
-// The module that the library loads for PELLUCID_CAPTURE (host/shading/capture.cpp): a frame's input as a
-// scene folder.
-#include "fields/captured_frame.h"
+// The module for PELLUCID_CAPTURE (host/shading/capture.cpp): a frame's input as a scene folder.
 #include "io/atomic_file.h"
-#include "io/concat.h"
 #include "io/image/image_file.h"
 #include "io/lut/lut_file.h"
 #include "io/lut/profile_file.h"
