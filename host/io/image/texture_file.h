@@ -15,7 +15,7 @@ struct Texture {
                       // from KTX2 (Vulkan), and not from DDS (Direct3D)
     };
     Format format;
-    uint32_t width, height;  // texels
+    uint32_t width, height;          // texels
     std::span<const uint8_t> bytes;  // as many as the format takes for the size
 };
 
