@@ -115,8 +115,10 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
     if (PEL_FORMAT_##slot)     \
         storeColor(PEL_FORMAT_##slot, SPAN(slot), select3(invalid, part, valid& finite3(part)), active);
 
-// PEL_WIDTH pixels from (x, y) on; those of `active` are wanted.
-static inline void shadePixels(const Scene* scene, uint x, uint y, uintw id, maskw active, Counts* counts) {
+// PEL_WIDTH pixels from (x, y) on; those of `active` are wanted. Always inlined: a call would put Scene into
+// private memory, which GPUs place in global memory.
+static inline __attribute__((always_inline)) void shadePixels(const Scene* scene, uint x, uint y, uintw id,
+                                                              maskw active, Counts* counts) {
     __global const PelShadeFrame* frame = scene->frame;
     Pixels p = loadPixels(scene, x, y);
     Vec3w result = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), specular = result;
