@@ -7,18 +7,24 @@
 namespace gl {
 namespace {
 
+// `made`, or its log as an exception. The calls are those of shaders or of programs.
+GLuint checked(GLuint made, GLenum status, decltype(&glGetShaderiv) get,
+               decltype(&glGetShaderInfoLog) getLog) {
+    GLint good = 0;
+    get(made, status, &good);
+    if (good) return made;
+    char message[2048] = "";
+    getLog(made, sizeof message, nullptr, message);
+    throw std::runtime_error(message);
+}
+
 GLuint compiled(GLenum kind, const std::string& body) {
     const std::string source = "#version 450 core\n" + body;
     const char* text = source.c_str();
     const GLuint shader = glCreateShader(kind);
     glShaderSource(shader, 1, &text, nullptr);
     glCompileShader(shader);
-    GLint good = 0;
-    glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
-    if (good) return shader;
-    char message[2048] = "";
-    glGetShaderInfoLog(shader, sizeof message, nullptr, message);
-    throw std::runtime_error(message);
+    return checked(shader, GL_COMPILE_STATUS, glGetShaderiv, glGetShaderInfoLog);
 }
 
 }  // namespace
@@ -81,12 +87,7 @@ GLuint program(const std::string& vertex, const std::string& fragment) {
     glAttachShader(made, compiled(GL_VERTEX_SHADER, vertex));
     glAttachShader(made, compiled(GL_FRAGMENT_SHADER, fragment));
     glLinkProgram(made);
-    GLint good = 0;
-    glGetProgramiv(made, GL_LINK_STATUS, &good);
-    if (good) return made;
-    char message[2048] = "";
-    glGetProgramInfoLog(made, sizeof message, nullptr, message);
-    throw std::runtime_error(message);
+    return checked(made, GL_LINK_STATUS, glGetProgramiv, glGetProgramInfoLog);
 }
 
 void drawOver(GLuint program, const std::vector<Texture>& inputs) {

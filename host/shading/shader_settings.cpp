@@ -6,6 +6,12 @@
 
 namespace pel {
 
+// Of an image that is made into something else once: no other call gets it.
+static uint64_t nextNumber() {
+    static std::atomic<uint64_t> last;
+    return ++last;
+}
+
 void Shader::setOptions(const PelShaderOptions& options) {
     checkOptions(options);
     if (options.millimetresPerUnit != state_.options.millimetresPerUnit)
@@ -130,8 +136,7 @@ void Shader::setIrisTexture(uint32_t id, const PelImageDesc* texture) {
     if (!material.eye)
         invalidArgument("material ", id, " is no eye: pelShaderSetEye comes before its iris texture");
     setView(material.eye->iris, texture, "iris texture", checkIrisTexture);
-    static std::atomic<uint64_t> last;
-    material.eye->textureNumber = ++last;
+    material.eye->textureNumber = nextNumber();
 }
 
 void Shader::setLights(const PelLight* lights, uint32_t count) {
@@ -183,8 +188,7 @@ void Shader::setEnvironment(const PelImageDesc* image, const float* axes) {
     checkAxes(set);
     setView(state_.environment, image, "environment", checkEnvironment);
     state_.environmentAxes = set;
-    static std::atomic<uint64_t> last;
-    state_.environmentNumber = ++last;
+    state_.environmentNumber = nextNumber();
 }
 
 const PelMaterial& Shader::material(uint32_t id) const {

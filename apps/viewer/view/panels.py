@@ -144,13 +144,10 @@ class EyesPanel(Panel):
         self.slider("Gaze up, degrees", self.look, "gaze", -30, 30, 1, index=1)
 
         async def dropped(e: events.UploadEventArguments) -> bool:
-            path = self.viewer.keep(e.file.name, await e.file.read())
-            try:
-                await self.viewer.on_thread(lambda: iris_image(path))
-            except Exception as error:  # the previous iris stays
-                fail(f"{e.file.name}: {error}")
+            path = await self.keep_file(e, iris_image)
+            if not path:  # the previous iris stays
                 return False
-            self.look.iris_texture, self.look.iris_color = str(path), (1.0, 1.0, 1.0)
+            self.look.iris_texture, self.look.iris_color = path, (1.0, 1.0, 1.0)
             self.rebuild()
             return True
 
@@ -195,13 +192,10 @@ class LightsPanel(Panel):
         self.viewer.changed()
 
     async def surround(self, e: events.UploadEventArguments) -> bool:
-        path = self.viewer.keep(e.file.name, await e.file.read())
-        try:
-            await self.viewer.on_thread(lambda: read(path))
-        except Exception as error:  # the surroundings before stay
-            fail(f"{e.file.name}: {error}")
+        path = await self.keep_file(e, read)
+        if not path:  # the surroundings before stay
             return False
-        self.look.surroundings = str(path)
+        self.look.surroundings = path
         self.rebuild()
         return True
 

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import files
-from .._show import linear
 from .._types import Eye, Light, Material, MaterialValues, Skin
 from ..device import Device
 from ..mesh import MeshTopology
@@ -87,15 +86,10 @@ def iris_image(path: Any) -> NDArray[np.float32]:
     ValueError
         An image without colours.
     """
-    channels = files.read_image(path)
-    if not set("RGB") <= set(channels):
-        raise ValueError(f"{path} has the channels {', '.join(channels)}; R, G and B are needed for an iris")
-    image = np.stack([channels[c] for c in "RGB"], 2)
+    image = surroundings.read_linear(path, "an iris")
     n = min(image.shape[:2])
     top, left = (image.shape[0] - n) // 2, (image.shape[1] - n) // 2
-    image = np.ascontiguousarray(image[top:top + n, left:left + n], np.float32)
-    # Files of light; others are of sRGB.
-    return image if str(path).lower().endswith((".exr", ".hdr")) else linear(image)
+    return np.ascontiguousarray(image[top:top + n, left:left + n], np.float32)
 
 
 # The first elements of a sequence that fills a square evenly, by which pictures are shifted [Halton 1964].

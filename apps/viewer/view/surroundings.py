@@ -39,18 +39,25 @@ def studio(height: int = 128) -> NDArray[np.float32]:
     return image.astype(np.float32)
 
 
+def read_linear(path: Any, what: str) -> NDArray[np.float32]:
+    """The linear colours of a file, (h, w, 3); all but EXR and HDR files are of sRGB. Raises FileError, and
+    ValueError without colours, which `what` needs."""
+    channels = files.read_image(path)
+    if not set("RGB") <= set(channels):
+        raise ValueError(f"{path} has the channels {', '.join(channels)}; R, G and B are needed for {what}")
+    image = np.stack([channels[c] for c in "RGB"], 2)
+    return image if str(path).lower().endswith((".exr", ".hdr")) else linear(image)
+
+
 def read(path: Any) -> NDArray[np.float32]:
     """The studio, or the linear image of a file, (n, 2 n, 3). Raises FileError and ValueError."""
     if path == STUDIO:
         return studio()
-    channels = files.read_image(path)
-    if not set("RGB") <= set(channels):
-        raise ValueError(f"{path} has the channels {', '.join(channels)}; R, G and B are needed")
-    image = np.stack([channels[c] for c in "RGB"], 2)
+    image = read_linear(path, "surroundings")
     height, width, _ = image.shape
     if width != 2 * height:
         raise ValueError(f"{path} is {width} x {height}; surroundings are twice as wide as high")
-    return image if str(path).lower().endswith((".exr", ".hdr")) else linear(image)
+    return image
 
 
 def axes(up: Any, front: Any, turn: float) -> NDArray[np.float32]:

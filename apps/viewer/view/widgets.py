@@ -71,6 +71,17 @@ class Panel:
                 fail(error)
         self.viewer.changed()
 
+    async def keep_file(self, e: events.UploadEventArguments, read: Callable[[Any], Any]) -> str:
+        """Keeps a file that was given to the page, and returns its path; if `read` raises, says why and
+        returns ""."""
+        path = self.viewer.keep(e.file.name, await e.file.read())
+        try:
+            await self.viewer.on_thread(lambda: read(path))
+        except Exception as error:
+            fail(f"{e.file.name}: {error}")
+            return ""
+        return str(path)
+
     def slider(self, name: str, owner: Any, attribute: str, low: float, high: float, step: float,
                marker: str = "", index: Optional[int] = None,
                then: Callable[[], None] = lambda: None) -> None:
