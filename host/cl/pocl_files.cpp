@@ -60,14 +60,17 @@ bool whole(const fs::path& path, uint64_t size) {
 // PoCL's folders: two letters, then the rest of a program's hash; in it program.bc, and a .so per kernel.
 unsigned removeDamagedPrograms(const fs::path& folder) {
     // Skips files that were complete at the last check and have not been written since, and files that
-    // another process may be writing. A large cache takes long to walk: programs that nobody used for a day
-    // before the last check are skipped whole, since PoCL touches last_accessed before it writes into a
-    // program's folder.
+    // another process may be writing. A large cache takes long to walk: programs that nobody used in the ten
+    // minutes before the last check are skipped whole, since PoCL touches last_accessed when it loads a
+    // program, and kernels follow when they are first launched. After the machine started again all files are
+    // read, since it may have lost power.
     const fs::path stamp = folder / "checked";
     const auto now = fs::file_time_type::clock::now();
     std::error_code error;
     const fs::file_time_type before = fs::last_write_time(stamp, error);
-    const bool first = bool(error);
+    double uptime = 0;  // seconds
+    std::ifstream("/proc/uptime") >> uptime;
+    const bool first = error || now - before > std::chrono::duration<double>(uptime);
     unsigned removed = 0;
     for (auto letters = fs::directory_iterator(folder, error); !error && letters != fs::directory_iterator();
          letters.increment(error)) {
@@ -84,7 +87,7 @@ unsigned removeDamagedPrograms(const fs::path& folder) {
             bool damaged = false;
             std::error_code gone;  // by another process
             const auto used = fs::last_write_time(program->path() / "last_accessed", gone);
-            if (!gone && !first && used < before - std::chrono::hours(24)) continue;
+            if (!gone && !first && used < before - std::chrono::minutes(10)) continue;
             gone.clear();
             for (auto at = fs::recursive_directory_iterator(*program, gone);
                  !damaged && !gone && at != fs::recursive_directory_iterator(); at.increment(gone)) {

@@ -46,6 +46,21 @@ class Device final : public Object {
     // Device memory: a copy of `initial`, else zeros if asked for.
     cl::Memory allocate(size_t bytes, const void* initial = nullptr, bool zeros = false);
     cl::Memory allocateZeros(size_t bytes) { return allocate(bytes, nullptr, true); }
+    // Constants that depend on `key` alone. The first call makes them; a few are kept if they are small.
+    template <class Make>
+    cl::Memory constants(const std::string& key, const Make& make) {
+        {
+            const std::lock_guard lock(mutex_);
+            if (const auto found = constants_.find(key); found != constants_.end()) return found->second;
+        }
+        const auto values = make();
+        const size_t bytes = values.size() * sizeof values[0];
+        const cl::Memory memory = allocate(bytes, values.data());
+        if (bytes > 1 << 16) return memory;
+        const std::lock_guard lock(mutex_);
+        if (constants_.size() == 32) constants_.clear();
+        return constants_.insert_or_assign(key, memory).first->second;
+    }
     void countTransfer(size_t toDevice, size_t toHost);
     // `destination` and `source` are not NULL. Blocking calls return when the bytes are copied.
     void read(cl_mem memory, size_t offset, size_t bytes, void* destination, bool blocking,
@@ -93,6 +108,7 @@ class Device final : public Object {
     void* allocateUser_ = nullptr;
 
     std::mutex mutex_;  // guards the rest
+    std::map<std::string, cl::Memory> constants_;
     std::vector<cl::Event> pending_;
     PelDeviceStats stats_;
     PelProgressCallback progress_ = nullptr;

@@ -58,9 +58,11 @@ Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& de
                                  {"PEL_GROUP", group},
                                  {"PEL_NODES", curvatureNodes},
                                  {"PEL_COLUMNS", columnsPerItem}});
-    const std::vector<LutColumn> columnWeights = curvatureColumns(desc.width, desc.axis, curvatureNodes);
-    const cl::Memory gaussians = upload(*device, terms), nodes = upload(*device, meshOfNodes(curvatureNodes)),
-                     columns = upload(*device, columnWeights);
+    const cl::Memory gaussians = upload(*device, terms),
+                     nodes = device->constants("nodes", [] { return meshOfNodes(curvatureNodes); }),
+                     columns = device->constants(text("columns ", desc.width, " ", int(desc.axis)), [&] {
+                         return curvatureColumns(desc.width, desc.axis, curvatureNodes);
+                     });
     const size_t record = PEL_CURVATURE_RECORD(curvatureNodes);
     const cl::Memory rows = device->allocate(record * desc.height * sizeof(cl_float4));
     const CurvatureLutParams params = paramsOf(desc, curvatureMin, curvatureMax, terms.size());
@@ -70,7 +72,7 @@ Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& de
 
     cl::Launch texelLaunch(program, "curvature_texels", desc.width, desc.height, rows, columns,
                            lut->texels());
-    const size_t items = (columnWeights.size() + columnsPerItem - 1) / columnsPerItem;
+    const size_t items = ((desc.width + 1) / 2 + columnsPerItem - 1) / columnsPerItem;
     device->launch(texelLaunch, {{items, desc.height + 1, 1}, {group, 1, 1}});
     return lut;
 }

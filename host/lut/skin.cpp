@@ -100,10 +100,11 @@ double variance(int i) {
 double fittedFrequency(int j) {
     return 0.02 * std::pow(150 / 0.02, j / (fitted - 1.0));
 }
+using FittedSpectrum = std::array<float, fitted>;
 
 struct Computed {
-    Rgb albedo{}, freePath{}, scattered{};  // the latter two: means over the light that leaves
-    std::array<Rgb, fitted> spectrum{};     // of the profile, at fittedFrequency
+    Rgb albedo{}, freePath{}, scattered{};     // the latter two: means over the light that leaves
+    std::array<FittedSpectrum, 3> spectrum{};  // of the profile, at fittedFrequency
     std::array<double, skinWavelengths> reflectance{};
 };
 
@@ -135,6 +136,7 @@ Computed compute(const PelSkin& skin, bool radial) {
         std::array<float, frequencies + 1> nodes;  // without that of 0, and the first and the last twice
         std::copy(&values[1], values.end(), &nodes[1]);
         nodes.front() = values[1], nodes.back() = values.back();
+        FittedSpectrum light;
         for (int j = 0; j < fitted; ++j) {
             // Cubic [Catmull-Rom] in the logarithm of the frequency; below the first node quadratic in the
             // frequency, beyond the last a power of it.
@@ -149,8 +151,11 @@ Computed compute(const PelSkin& skin, bool radial) {
             } else {
                 value = values[0] + (values[1] - values[0]) * std::exp(2 * at / float(perLog));
             }
-            const double light = std::exp(value);
-            for (int n = 0; n < 3; ++n) out.spectrum[j][n] += std::max(0.0, weight[n]) * light;
+            light[j] = std::exp(value);
+        }
+        for (int n = 0; n < 3; ++n) {
+            const float share = float(std::max(0.0, weight[n]));
+            for (int j = 0; j < fitted; ++j) out.spectrum[n][j] += share * light[j];
         }
     }
     for (int n = 0; n < 3; ++n) {
@@ -158,7 +163,7 @@ Computed compute(const PelSkin& skin, bool radial) {
         out.scattered[n] /= total[n];
         // What is out of the gamut of sRGB counts as nothing.
         out.albedo[n] = std::clamp(out.albedo[n], 1e-4, 1.0);
-        for (Rgb& value : out.spectrum) value[n] /= total[n];
+        for (float& value : out.spectrum[n]) value /= float(total[n]);
     }
     return out;
 }
@@ -170,12 +175,16 @@ struct Fit {
 
 // exp(-k^2 v / 2) of each Gaussian at each frequency, and the products of two Gaussians over all.
 struct Basis {
+    std::array<double, terms> variances, distances;  // mm^2; the mean distance of each, mm
     std::array<std::array<double, fitted>, terms> at;
     std::array<std::array<double, terms>, terms> products{};
     Basis() {
-        for (int i = 0; i < terms; ++i)
+        for (int i = 0; i < terms; ++i) {
+            variances[i] = variance(i);
+            distances[i] = std::sqrt(pi * variance(i) / 2);
             for (int j = 0; j < fitted; ++j)
                 at[i][j] = std::exp(-std::pow(fittedFrequency(j), 2) * variance(i) / 2);
+        }
         for (int i = 0; i < terms; ++i)
             for (int n = 0; n < terms; ++n)
                 for (int j = 0; j < fitted; ++j) products[i][n] += at[i][j] * at[n][j];
@@ -238,23 +247,23 @@ std::array<double, terms> weightsOf(const Basis& basis, const std::array<double,
 Fit fit(const Computed& computed) {
     static const Basis basis;
     Fit out;
-    for (int i = 0; i < terms; ++i) out.gaussians.push_back({variance(i), {}});
+    for (int i = 0; i < terms; ++i) out.gaussians.push_back({basis.variances[i], {}});
     for (int c = 0; c < 3; ++c) {
         std::array<double, terms> wanted{};
         for (int i = 0; i < terms; ++i)
-            for (int j = 0; j < fitted; ++j) wanted[i] += basis.at[i][j] * computed.spectrum[j][c];
+            for (int j = 0; j < fitted; ++j) wanted[i] += basis.at[i][j] * computed.spectrum[c][j];
         const std::array<double, terms> weights = weightsOf(basis, wanted);
         double sum = 0;
         for (double w : weights) sum += w;
         for (int i = 0; i < terms; ++i) {
             const double w = weights[i] / sum;
             out.gaussians[i].weight[c] = w;
-            out.meanDistance[c] += w * std::sqrt(pi * variance(i) / 2);
+            out.meanDistance[c] += w * basis.distances[i];
         }
         for (int j = 0; j < fitted; ++j) {
             double value = 0;
             for (int i = 0; i < terms; ++i) value += out.gaussians[i].weight[c] * basis.at[i][j];
-            out.error[c] = std::max(out.error[c], std::abs(value - computed.spectrum[j][c]));
+            out.error[c] = std::max(out.error[c], std::abs(value - computed.spectrum[c][j]));
         }
     }
     std::erase_if(out.gaussians, [](const GaussianTerm& term) { return term.weight == Rgb{}; });

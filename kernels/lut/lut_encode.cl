@@ -3,6 +3,7 @@
 //
 // Inputs: the texels. Output: rows without the copies. One work-item: one texel; one row in count_clipped.
 // Variants: PEL_GROUP, work-items in a group.
+#include "lib/image/half.clh"
 #include "lib/lut/lut_lookup.clh"
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_float(
@@ -13,10 +14,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_floa
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_half(
-    const LutLayout lut, __global const float4* restrict texels, __global half* restrict packed) {
+    const LutLayout lut, __global const float4* restrict texels, __global ushort* restrict packed) {
     const uint x = get_global_id(0), y = get_global_id(1);
     if (x >= lut.width) return;
-    vstore_half3_rte(texels[(size_t)y * lut.rowTexels + x].xyz, (size_t)y * lut.width + x, packed);
+    const float4 texel = clamp(texels[(size_t)y * lut.rowTexels + x], -65504.0f, 65504.0f);
+    vstore3(convert_ushort4(float4ToHalves(texel)).xyz, (size_t)y * lut.width + x, packed);
 }
 
 // sat(2 (D - max0(u)) + 1/2): the change by scattering, doubled, around middle grey. Linear.

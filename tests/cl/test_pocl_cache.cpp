@@ -164,18 +164,25 @@ TEST_F(PoclCache, DamagedFilesAreCompiledAgain) {
 TEST_F(PoclCache, ProgramsThatNobodyUsesAreNotRead) {
     ASSERT_EQ(table([] {}), 0);
     pel::cl::removeDamagedPrograms(ours());
-    const auto used = kernels(ours(), "");
-    std::vector<fs::path> touched;
-    for (const fs::path& file : used)
-        if (file.filename() == "last_accessed") touched.push_back(file);
-    ASSERT_GE(touched.size(), 1u);
-    for (const fs::path& file : kernels(ours(), ".so")) fs::resize_file(file, 0);
     const auto now = fs::file_time_type::clock::now();
-    for (const fs::path& file : touched) fs::last_write_time(file, now - std::chrono::hours(25));
+    const auto damage = [&](std::chrono::minutes lastUse) {
+        size_t programs = 0;
+        for (const fs::path& file : kernels(ours(), ".so")) fs::resize_file(file, 0);
+        for (const fs::path& file : kernels(ours(), ""))
+            if (file.filename() == "last_accessed") fs::last_write_time(file, now - lastUse), ++programs;
+        return programs;
+    };
+    const size_t programs = damage(std::chrono::minutes(11));
+    ASSERT_GE(programs, 1u);
     EXPECT_EQ(pel::cl::removeDamagedPrograms(ours()), 0u);
-    for (const fs::path& file : touched) fs::last_write_time(file, now - std::chrono::hours(23));
-    for (const fs::path& file : kernels(ours(), ".so")) fs::last_write_time(file, now);
-    EXPECT_EQ(pel::cl::removeDamagedPrograms(ours()), touched.size());
+    damage(std::chrono::minutes(9));
+    EXPECT_EQ(pel::cl::removeDamagedPrograms(ours()), programs);
+
+    // A machine that started since may have lost power before all was on its disk.
+    ASSERT_EQ(table([] {}), 0);
+    damage(std::chrono::minutes(11));
+    fs::last_write_time(ours() / "checked", now - std::chrono::years(10));
+    EXPECT_EQ(pel::cl::removeDamagedPrograms(ours()), programs);
 }
 
 // PoCL's own temporary files in the folder, and folders of this library for a single process.
