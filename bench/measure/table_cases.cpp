@@ -99,6 +99,58 @@ Case lookUpCase(const Device& device, PelCurvatureForm form, reference::Form tru
     return c;
 }
 
+// What pipelines make by the thousand: a profile of each skin, its two tables, halves on the host.
+Case pairCase(const Device& device, uint32_t count) {
+    constexpr uint32_t side = 32, ahead = 16;  // pairs on the queue before the host waits
+    struct Pair {
+        Lut curvature, shadow;
+    };
+    using Texels = std::vector<uint16_t>;
+    const auto pairOf = [=](uint32_t i) {
+        PelSkin skin = pelSkinDefaults();
+        skin.melanin = 0.005f + 0.3f * float(i) / float(count);
+        const Profile profile = Profile::skinLayers(skin);
+        PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
+        PelShadowLutDesc shadow = pelShadowLutDescDefaults();
+        curvature.width = curvature.height = shadow.width = shadow.height = side;
+        curvature.profile = shadow.profile = profile.get();
+        const PelSubmit submit{nullptr, 0, nullptr};
+        return Pair{Lut(device, curvature, &submit), Lut(device, shadow, &submit)};
+    };
+    const auto texels = std::make_shared<std::vector<Texels>>();
+    Case c;
+    c.what = std::to_string(count) + " skins, two tables of 32x32 each, as halves";
+    c.items = count;
+    c.unit = "pairs";
+    c.bytes = 2 * 6.0 * side * side * count;
+    c.run = [=] {
+        texels->clear();
+        std::vector<Pair> pairs;
+        for (uint32_t i = 0; i < count; ++i) {
+            pairs.push_back(pairOf(i));
+            if (pairs.size() < ahead && i + 1 < count) continue;
+            for (const Pair& pair : pairs)
+                for (const Lut* lut : {&pair.curvature, &pair.shadow})
+                    texels->push_back(lut->read<uint16_t>(PEL_LUT_HALF));
+            pairs.clear();
+        }
+    };
+    c.error = [=] {
+        ErrorSum sum;
+        for (uint32_t i = 0; i < count; i += 16) {
+            const Pair alone = pairOf(i);
+            const std::vector<float> truth[] = {alone.curvature.read<float>(PEL_LUT_FLOAT),
+                                                alone.shadow.read<float>(PEL_LUT_FLOAT)};
+            for (size_t k = 0; k < 2; ++k)
+                for (size_t t = 0; t < truth[k].size(); ++t)
+                    sum.add(fromHalf((*texels)[2 * i + k][t]) - truth[k][t]);
+        }
+        return sum.result();
+    };
+    c.truth = "the same tables made alone, as floats; absolute";
+    return c;
+}
+
 constexpr float burleyMeanFreePath[3] = {1.0f, 0.4f, 0.2f}, burleyAlbedo[3] = {0.8f, 0.6f, 0.5f};
 
 }  // namespace
@@ -155,7 +207,8 @@ std::vector<Factory> tableCases(const Device& device, bool quick) {
         {"table-sphere", "tables", curvature(PEL_FORM_SPHERE, reference::Form::sphere, false)},
         {"table-sphere-burley", "tables", curvature(PEL_FORM_SPHERE, reference::Form::sphere, true)},
         {"table-shadow", "tables", shadow},
-        {"table-specular", "tables", specular}};
+        {"table-specular", "tables", specular},
+        {"table-pairs", "tables", [=] { return pairCase(device, quick ? 128 : 512); }}};
     constexpr std::tuple<const char*, PelCurvatureForm, reference::Form> forms[] = {
         {"arc", PEL_FORM_ARC, reference::Form::arc},
         {"ring", PEL_FORM_RING, reference::Form::ring},
