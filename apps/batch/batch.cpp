@@ -137,7 +137,9 @@ class Batch {
             printJson(report(anyTable ? nlohmann::ordered_json(index) : nlohmann::ordered_json()));
         else
             std::printf("%zu %s: %zu made (%zu of them anew), %zu were there, %zu failed\n", entries,
-                        tables() > entries ? io::concat("files of ", tables(), " tables").c_str() : "tables",
+                        tables() > entries
+                            ? io::concat(entries == 1 ? "file" : "files", " of ", tables(), " tables").c_str()
+                            : "tables",
                         count(made), count(redone), count(kept) - count(made), faults_.size());
         std::fflush(stdout);
         if (fatal_) std::rethrow_exception(fatal_);

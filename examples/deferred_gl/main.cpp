@@ -1,7 +1,5 @@
 // A deferred renderer in OpenGL whose skin is Pellucid's: a head turns before a wall under three lights with
-// shadow maps, and each frame becomes a PNG file.
-//
-//     deferred_gl HEAD.obj FOLDER [--frames N] [--size WxH] [--method NAME] [--copy] [--stages]
+// shadow maps, and each frame becomes a PNG file (`usage` below).
 //
 // Needs OpenGL 4.5 through EGL, without a window: a GPU's driver, or Mesa without one. Textures are shared
 // where a driver has cl_khr_gl_sharing, and copied where none has, or with --copy. --stages writes what
@@ -43,6 +41,10 @@ void writePng(const std::string& path, const Renderer& renderer, const gl::Textu
         throw std::runtime_error(path + ": " + image.message);
 }
 
+constexpr const char* usage =
+    "usage: deferred_gl HEAD.obj FOLDER [--frames N] [--size WxH] [--method auto|none|light|screen] [--copy] "
+    "[--stages]";
+
 struct Options {
     std::string head, folder;
     int frames = 60, width = 640, height = 640;
@@ -79,12 +81,9 @@ Options parsed(int argc, char** argv) {
             good = word[0] != '-' && o.folder.empty();
             (o.head.empty() ? o.head : o.folder) = word;
         }
-        if (!good) throw std::runtime_error("cannot use " + word + " " + value);
+        if (!good) throw std::runtime_error("cannot use " + word + " " + value + "\n" + usage);
     }
-    if (o.folder.empty())
-        throw std::runtime_error(
-            "usage: deferred_gl HEAD.obj FOLDER [--frames N] [--size WxH] [--method auto|none|light|screen] "
-            "[--copy] [--stages]");
+    if (o.folder.empty()) throw std::runtime_error(usage);
     return o;
 }
 

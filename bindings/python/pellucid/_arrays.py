@@ -55,6 +55,8 @@ class Span:
     """
 
     def __init__(self, device: Device, array: NDArray[Any], what: str, output: bool) -> None:
+        if array.size == 0:
+            raise ValueError(f"{what} is empty: its shape is {array.shape}")
         least = min((s for n, s in zip(array.shape, array.strides) if n > 1), default=1)
         if least <= 0:
             problem = "has a negative stride" if least < 0 else "is broadcast (a stride of 0)"

@@ -46,6 +46,7 @@ def read_only(array):
     ("normal_shading", np.zeros((4, 4, 5), np.float32), "normal_shading has 5 components of float32"),
     ("normal_shading", np.zeros((4, 4, 3), np.float32)[::-1], "normal_shading has a negative stride"),
     ("albedo", np.broadcast_to(np.float32(1), (4, 4, 3)), "albedo is broadcast"),
+    ("albedo", np.zeros((0, 4, 3), np.float32), "albedo is empty"),
     ("albedo", np.zeros((3, 4, 4), np.float16).transpose(1, 2, 0), "components that lie apart"),
     ("albedo", np.zeros((5, 4, 3), np.float32).transpose(1, 0, 2), "rowStride"),
     ("albdo", np.zeros((4, 4, 3), np.float32), "slot is 'albdo'; did you mean 'albedo'"),
