@@ -70,6 +70,12 @@ TEST(HeldMemory, OfAShaderByMethod) {
             sum += after[i].held;
         }
         EXPECT_EQ(sum, shader.stats().scratchBytes);
+        // In C, the first structure says how long all of them are.
+        PelPassMemory plain[24] = {pelPassMemoryDefaults()};
+        uint32_t count = 24;
+        ASSERT_EQ(pelShaderGetMemory(shader.get(), plain, &count), PEL_SUCCESS) << pelGetErrorMessage();
+        ASSERT_EQ(count, after.size());
+        EXPECT_STREQ(plain[count - 1].name, after[count - 1].name);
         const uint64_t said = shader.stats().scratchBytes, held = freed([&] { shader = Shader(); });
         if (scattering != PEL_SCATTERING_PREINTEGRATED) {
             expectSaid(said, held, "method " + std::to_string(scattering));
