@@ -33,11 +33,12 @@ void checkParams(const PelTextureScatterParams& params, const Profile& profile, 
     if (!(params.scale > 0) || !std::isfinite(params.scale))
         invalidArgument("PelTextureScatterParams.scale is ", params.scale,
                         "; a length above 0 is needed, in units of positions per unit of the profile");
-    const Rgb width = profile.shape().width();
-    for (double w : width)
-        if (!(w * params.scale * w * params.scale > 1e-30 && w * params.scale * w * params.scale < 1e30))
+    for (double width : profile.shape().width()) {
+        width *= params.scale;
+        if (!(width > 1e-15 && width < 1e15))
             invalidArgument("PelTextureScatterParams.scale is ", params.scale, ", and makes the profile ",
-                            w * params.scale, " wide; 1e-15 to 1e15 would do");
+                            width, " wide; 1e-15 to 1e15 would do");
+    }
     if (!(params.albedoBefore >= 0 && params.albedoBefore <= 1))
         invalidArgument("PelTextureScatterParams.albedoBefore is ", params.albedoBefore,
                         "; it must be between 0 and 1");

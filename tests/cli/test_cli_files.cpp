@@ -2,7 +2,9 @@
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/mount.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "cli_run.h"
 #include "io/atomic_file.h"
@@ -152,6 +154,20 @@ TEST_F(Files, StandardOutputThatIsFullOrClosed) {
     EXPECT_EQ(cli("lut shadow --size 8x8 -o @o.npy >&- 2>/dev/null").exitCode, 3);
     EXPECT_EQ(std::filesystem::file_size(path("o.npy")), 128 + 8 * 8 * 3 * 4u);
     done("profile list <&- >/dev/null 2>&-");
+}
+
+TEST_F(Files, ClosedStreamsThatNothingCanStandInFor) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const rlimit one{1, 1};  // open files
+        for (int fd = 0; fd < 3; ++fd) ::close(fd);
+        ::setrlimit(RLIMIT_NOFILE, &one);
+        ::execl(PELLUCID_COMMAND, "pellucid", "--version", nullptr);
+        ::_exit(0);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_EQ(WEXITSTATUS(status), 2);
 }
 
 TEST_F(Files, PipesAndDevicesAreNoFiles) {

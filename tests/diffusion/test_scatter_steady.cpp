@@ -118,3 +118,26 @@ TEST(ScatterSteady, TilesFadeIn) {
         EXPECT_LT(least, most);
     }
 }
+
+// The contrast of a wave grows by steps of 4 %: it is left as it is, then scattered to a part, then wholly.
+TEST(ScatterSteady, TilesFadeInWithTheirContrast) {
+    scatter_scene::Scatter scatter(scatter_scene::device());
+    std::vector<double> shares;  // of what scattering changes
+    for (double contrast = 0.01; contrast < 1; contrast *= 1.04) {
+        scatter_scene::Picture p = scatter_scene::plane(64, 64, 0.3, [&](double x, double) {
+            const double e = 0.5 * (1 + contrast * std::cos(x));
+            return reference::Vec3{e, e, e};
+        });
+        p.params.targetError = 0.03f;
+        const auto changed = [&] {
+            const auto light = scatter_scene::run(scatter, p, {{1, Profile::skin()}}).scattered;
+            return scatter_scene::difference(p, light, p.irradiance).most;
+        };
+        const double chosen = changed();
+        p.params.everywhere = 1;
+        shares.push_back(chosen / changed());
+    }
+    EXPECT_EQ(shares.front(), 0);
+    EXPECT_GT(shares.back(), 0.9);
+    for (size_t k = 1; k < shares.size(); ++k) EXPECT_LT(shares[k] - shares[k - 1], 0.2) << k;
+}

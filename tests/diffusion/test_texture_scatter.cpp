@@ -237,7 +237,8 @@ TEST(TextureScatter, BadInput) {
     EXPECT_THROW(t.scatter.execute(defaults, rgb(e), nullptr, rgb(out, 8)), pellucid::Error);
     for (auto change : {+[](PelTextureScatterParams& p) { p.scale = 0; },
                         +[](PelTextureScatterParams& p) { p.scale = NAN; },
-                        +[](PelTextureScatterParams& p) { p.scale = 1e30f; },
+                        +[](PelTextureScatterParams& p) { p.scale = 1e16f; },
+                        +[](PelTextureScatterParams& p) { p.scale = 1e-16f; },
                         +[](PelTextureScatterParams& p) { p.albedoBefore = 2; },
                         +[](PelTextureScatterParams& p) { p.albedoAfter = 1; },
                         +[](PelTextureScatterParams& p) { p.gaussians = 1; },

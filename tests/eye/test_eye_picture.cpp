@@ -59,6 +59,27 @@ TEST(EyePicture, SmallEyesShowTheMeanOfTheirTexture) {
     }
 }
 
+// Without refraction, and in front of the limbus, the whole hemisphere lights each point of an iris.
+TEST(EyePicture, AnIrisInTheOpenShowsItsColour) {
+    EyeScene scene;
+    scene.eye.irisRadius = 3, scene.eye.chamberDepth = 1.45f;
+    scene.eye.corneaIndex = scene.eye.aqueousIndex = 1;
+    scene.eye.pupilRadius = scene.eye.texturePupil = scene.eye.limbusDarkening = 0;
+    scene.textureSize = 2;
+    scene.texture.assign(2 * 2 * 3, 0.5f);
+    std::fill_n(scene.ambient.constant, 3, 1.0f);
+    const EyePicture picture(scene);
+    const std::vector<float> is = picture.shade();
+    size_t count = 0;
+    for (size_t k = 0; k < picture.pixels.size(); ++k) {
+        const auto& hit = picture.pixels[k].hit;
+        if (hit.share < 1 || hit.radius > 2.5) continue;
+        ASSERT_NEAR(is[3 * k], 0.5, 1e-3) << k;
+        ++count;
+    }
+    EXPECT_GT(count, 100u);
+}
+
 // Without a texture fibres are drawn: round a circle they differ, and each seed has its own.
 TEST(EyePicture, DrawnFibresDifferRoundTheIris) {
     EyeScene scene;

@@ -53,6 +53,22 @@ TEST(ProfileFile, UnitsBecomeMillimetres) {
     EXPECT_GT(table.profile.radial({2.9})[0], 0);
 }
 
+TEST(ProfileFile, TextOfARecipeIsReadAsTheSameProfile) {
+    pel::ProfileRecipe recipe;
+    recipe.kind = PEL_PROFILE_DIPOLE;
+    recipe.name = "d";
+    std::copy_n(std::array{0.03f, 0.1f, 0.5f}.begin(), 3, recipe.first);
+    std::copy_n(std::array{0.9f, 1.5f, 2.0f}.begin(), 3, recipe.second);
+    recipe.eta = 1.3f;
+    const Profile read = io::parseProfile("p", io::profileText(recipe)).profile;
+    EXPECT_EQ(read.radial({0.1, 1, 3}),
+              Profile::dipole(recipe.first, recipe.second, recipe.eta).radial({0.1, 1, 3}));
+    recipe.kind = PEL_PROFILE_BURLEY;
+    recipe.byDistance = true;
+    const Profile byDistance = io::parseProfile("p", io::profileText(recipe)).profile;
+    EXPECT_EQ(byDistance.radial({1}), Profile::burleyDistance(recipe.first).radial({1}));
+}
+
 TEST(ProfileFile, MistakesHaveTheirLine) {
     const struct {
         std::string text;

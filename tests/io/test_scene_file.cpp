@@ -2,6 +2,7 @@
 #include "fields/field_ranges.h"
 #include "io/image/image_file.h"
 #include "io/scene/scene_file.h"
+#include "io/toml_reader.h"
 #include "io_files.h"
 
 using namespace pellucid::io;
@@ -308,4 +309,16 @@ TEST(MipChain, MeansOfWhatATexelCovers) {
     EXPECT_EQ(red(1, 0), (0 + 1 + 5 + 6) / 4.0f);
     EXPECT_EQ(red(1, 1), (2 + 3 + 4 + 7 + 8 + 9) / 6.0f) << "an odd side's last texel covers three";
     EXPECT_EQ(chain.texels.size(), 3u * (20 + 4 + 1));
+}
+
+TEST(TomlReader, OneTextIsAListOfOne) {
+    const auto file = parseToml("t.toml", "one = \"a\"\nsome = [\"a\", \"b\"]\n");
+    TomlReader reader("t.toml", *file, "the file");
+    std::vector<std::string> one, some{"c"}, other{"c"};
+    reader.list("one", one);
+    reader.list("some", some);
+    reader.list("other", other);
+    EXPECT_EQ(one, (std::vector<std::string>{"a"}));
+    EXPECT_EQ(some, (std::vector<std::string>{"a", "b"}));
+    EXPECT_EQ(other, (std::vector<std::string>{"c"}));
 }

@@ -1,4 +1,8 @@
 // Normals made on the device; a topology saved and loaded; meshes in any order.
+#define XXH_INLINE_ALL
+#define XXH_NO_INLINE_HINTS 1  // tests are compiled with -Og
+#include <xxhash.h>
+
 #include "mesh_fixture.h"
 #include "reference_meshes.h"
 
@@ -125,4 +129,30 @@ TEST(MeshTopologyFile, DamageIsRefused) {
     char small[10];
     const MeshTopology topology(device(), topologyDesc(mesh));
     EXPECT_EQ(pelMeshTopologySave(topology.get(), small, &room), PEL_ERROR_INVALID_ARGUMENT);
+}
+
+// Bytes that somebody made: the checksum is right, and a number of one of the arrays is not.
+TEST(MeshTopologyFile, NumbersThatKernelsCannotFollowAreRefused) {
+    const std::vector<char> sound = MeshTopology(device(), weldedDesc(soupOf(torus(8, 6)))).save();
+    constexpr size_t countsAt = 12, checksumAt = 36, begin = 40 + sizeof(PelMeshReport);
+    uint32_t counts[6];
+    std::memcpy(counts, &sound[countsAt], sizeof counts);
+    size_t at = begin;
+    for (const uint32_t count : counts) {
+        ASSERT_GT(count, 0u);
+        for (const uint32_t i : {0u, count / 2, count - 1}) {
+            std::vector<char> bytes = sound;
+            std::fill_n(&bytes[at + i * sizeof i], sizeof i, char(0x7f));
+            const uint32_t checksum = XXH32(&bytes[begin], bytes.size() - begin, 0);
+            std::memcpy(&bytes[checksumAt], &checksum, sizeof checksum);
+            PelMeshTopology topology = nullptr;
+            ASSERT_EQ(pelMeshTopologyLoad(device().get(), bytes.data(), bytes.size(), &topology, nullptr),
+                      PEL_ERROR_INVALID_ARGUMENT)
+                << "word " << i << " of " << count;
+            const std::string said = pelGetErrorMessage();
+            EXPECT_EQ(said.find("checksum"), std::string::npos) << said;
+        }
+        at += count * sizeof count;
+    }
+    EXPECT_EQ(at, sound.size());
 }

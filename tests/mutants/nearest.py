@@ -1,5 +1,5 @@
-"""Which tests could notice a fault: those that share most words with its file, and those that launch its
-kernels."""
+"""Which tests could notice a fault: those that share most words with its file, and whose kernels are mostly
+those that it is in."""
 import collections
 import json
 import math
@@ -11,9 +11,14 @@ from workplace import PASSED, TREE, WORK, say
 SAME_SUBJECT = 2  # factor for each word that the paths of a test and of a file share
 
 
-def words_of(text):
+def words_of(text, shortest=3):
     """The words of names; camelCase is split."""
-    return [w.lower() for w in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", text) if len(w) > 2]
+    return [w.lower() for w in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", text) if len(w) >= shortest]
+
+
+def subjects_of(path):
+    """The words of a path without its extension, such as those of the folder "cl"."""
+    return {*words_of(str(path.with_suffix("")), 2)}
 
 
 class Tests:
@@ -26,7 +31,7 @@ class Tests:
                         for p in TREE.glob(f"{folder}/tests/test_*.py")}
         self.words = {name: {*words_of(f"{p.stem} {p.parent.name} {p.read_text()}")}
                       for name, p in {**self.programs, **self.scripts}.items()}
-        self.subjects = {name: {*words_of(str(p.with_suffix("").relative_to(TREE)))}
+        self.subjects = {name: subjects_of(p.relative_to(TREE))
                          for name, p in {**self.programs, **self.scripts}.items()}
         known = collections.Counter(word for words in self.words.values() for word in words)
         self.rarity = {word: math.log(len(self.words) / count) for word, count in known.items()}
@@ -57,7 +62,7 @@ class Tests:
         Those that were never measured are, for about four times as many."""
         kernels = kernels_with(fault.path) if fault.path.startswith("kernels") else None
         names, unmeasured = [], 4 * seconds
-        for name in self.by_words(fault):
+        for name in self.nearest_first(fault, kernels):
             if seconds <= 0:
                 break
             if name not in self.measured:
@@ -70,17 +75,21 @@ class Tests:
                 seconds -= test["seconds"]
         return names
 
-    def by_words(self, fault):
-        """All tests, the nearest first: those that share most rare words with the fault's file."""
+    def nearest_first(self, fault, kernels):
+        """All tests: first those that share most rare words with the fault's file, and launch few kernels
+        but `kernels`."""
         path = Path(fault.path)
-        subjects = {*words_of(str(path.with_suffix("")))}
+        subjects = subjects_of(path)
         own = subjects | {*words_of((TREE / path).read_text())}
 
         def distance(name):
             shared = sum(self.rarity.get(word, 0) for word in own & self.words[name])
             near = shared / sum(self.rarity[word] for word in self.words[name]) ** 0.5
             near *= SAME_SUBJECT ** len(subjects & self.subjects[name])
-            return -near / (1 + self.measured.get(name, {}).get("seconds", 10)) ** 0.5, name
+            measured = self.measured.get(name, {"seconds": 10, "kernels": []})
+            if kernels and measured["kernels"]:
+                near *= len(kernels & set(measured["kernels"])) / len(measured["kernels"])
+            return -near / (1 + measured["seconds"]) ** 0.5, name
 
         return sorted(self.scripts if fault.is_python() else self.programs, key=distance)
 

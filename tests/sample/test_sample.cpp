@@ -31,6 +31,7 @@ sample::GBufferOptions plain() {
 // Checks the map's matrix, depth decoding and texels against the sphere of `radius` at the origin.
 void checkMapOfSphere(const sample::ShadowMap& map, Vec3 lightPosition, bool parallel) {
     const sample::Matrix4 back = map.worldToUvz.inverse();
+    EXPECT_NEAR(map.right.z, 0, 1e-12) << "rows lie across the z axis";
     int hit = 0;
     for (int y = 0; y < map.size; y += 7)
         for (int x = 0; x < map.size; x += 7) {
