@@ -18,7 +18,7 @@ constexpr size_t mapped = 32 << 20;
 // The same for memory that must be zero, as the system's pages are.
 constexpr size_t mappedZeros = 2 << 20;
 // Freed blocks of these sizes are kept for a while, up to the larger one; the allocator keeps smaller ones.
-constexpr size_t leastSpared = 4 << 10, mostSpared = 16 << 20;
+constexpr size_t leastSpared = 128 << 10, mostSpared = 16 << 20;
 // May be allocated before the free memory is measured again, which takes 100 us.
 constexpr size_t unasked = 16 << 20;
 

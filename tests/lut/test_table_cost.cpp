@@ -33,8 +33,8 @@ std::vector<Kind> kinds() {
     PelEyeLutDesc eye = pelEyeLutDescDefaults();
     eye.width = 128, eye.height = 64, eye.depth = 32;
     static const Profile skin = Profile::skin();
-    return {{"arc", of(curvature, skin), 5, 2, tableBytes * 3 / 2},
-            {"sphere", of(curvature, skin, PEL_FORM_SPHERE), 5, 2, tableBytes * 3 / 2},
+    return {{"arc", of(curvature, skin), 3, 2, tableBytes * 3 / 2},
+            {"sphere", of(curvature, skin, PEL_FORM_SPHERE), 3, 2, tableBytes * 3 / 2},
             {"shadow", of(shadow, skin), 2, 1, tableBytes + 4096},
             {"specular", [=](const Device& d, const PelSubmit* s) { return Lut(d, specular, s); }, 1, 1,
              tableBytes},
