@@ -23,6 +23,8 @@ void freeAligned(void* at);
 // Throws PEL_ERROR_OUT_OF_MEMORY if so many more bytes would use what drivers and others need of the machine,
 // of the control group or the address space (ulimit -v): without that, processes end without an error.
 void requireMemory(uint64_t bytes, const char* what);
+// Seconds since the machine started; 0 where that is not known.
+double uptime();
 
 // Private folders: they hold machine code that this process will run, so nobody else may write there.
 

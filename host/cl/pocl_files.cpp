@@ -3,6 +3,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "cl/machine.h"
 #include "cl/pocl_cache.h"
 
 namespace pel::cl {
@@ -68,9 +69,7 @@ unsigned removeDamagedPrograms(const fs::path& folder) {
     const auto now = fs::file_time_type::clock::now();
     std::error_code error;
     const fs::file_time_type before = fs::last_write_time(stamp, error);
-    double uptime = 0;  // seconds
-    std::ifstream("/proc/uptime") >> uptime;
-    const bool first = error || now - before > std::chrono::duration<double>(uptime);
+    const bool first = error || now - before > std::chrono::duration<double>(uptime());
     unsigned removed = 0;
     for (auto letters = fs::directory_iterator(folder, error); !error && letters != fs::directory_iterator();
          letters.increment(error)) {

@@ -27,9 +27,9 @@ ROOT = HERE.parent.parent
 OPTIONS = "-cl-opt-disable -Dalways_inline= -DPEL_NO_PREFETCH"
 
 
-def plugin(build):
-    """Compiles watch.cpp where it is newer than what was compiled."""
-    target, source = build / "oclgrind" / "watch.so", HERE / "watch.cpp"
+def plugin(build, name="watch"):
+    """Compiles watch.cpp or warps.cpp where it is newer than what was compiled."""
+    target, source = build / "oclgrind" / f"{name}.so", HERE / f"{name}.cpp"
     if target.exists() and target.stat().st_mtime > source.stat().st_mtime:
         return target
     libraries = subprocess.run(["ldd", "/usr/lib/oclgrind/liboclgrind-rt.so"], capture_output=True,

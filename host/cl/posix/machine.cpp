@@ -98,6 +98,12 @@ void requireMemory(uint64_t bytes, const char* what) {
                  left, ", ", rest, " of which are kept for the driver");
 }
 
+double uptime() {
+    double seconds = 0;
+    std::ifstream("/proc/uptime") >> seconds;
+    return seconds;
+}
+
 void* mapZeros(size_t bytes) {
     void* const at = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     return at == MAP_FAILED ? nullptr : at;

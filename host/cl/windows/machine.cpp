@@ -79,6 +79,10 @@ std::string whyNotWritable(const fs::path&) {
     return {};  // lists of rights are not read
 }
 
+double uptime() {
+    return 1e-3 * double(GetTickCount64());
+}
+
 uint64_t roomIn(const fs::path& folder) {
     std::error_code error;
     const fs::space_info space = fs::space(folder, error);
