@@ -134,7 +134,8 @@ Ref<Lut> integrateEyeLut(Ref<Device> device, const PelEyeLutDesc& desc, bool int
     const size_t group = launchPolicy(*device).texels, lanes = device->info().mathWidth;
     const cl::Memory sums =
         device->allocateZeros(size_t(desc.width) * desc.height * desc.depth * sizeof(cl_uint));
-    const cl::Program& program = device->programs().get("eye/eye_lut.cl", {});
+    const cl::Program& program =
+        device->programs().get("eye/eye_lut.cl", {{"PEL_EYE_SCATTERS", weights.has_value()}});
     inSteps(
         *device, desc.depth, double(grid.columns) * grid.rows * desc.depth / cellsPerStep, interruptible,
         [&](uint32_t first, uint32_t count) {

@@ -10,7 +10,7 @@
 // eye_lut: one work-item computes PEL_WIDTH cells of a row.
 // finish_eye_lut: one work-item converts one texel of lut->layout, the copied column and row included.
 // plain_eye_lut, scatter_eye_lut: for an iris that scatters light; see there.
-// Variants: PEL_WIDTH, PEL_GROUP.
+// Variants: PEL_WIDTH, PEL_GROUP; PEL_EYE_SCATTERS: light scatters in the iris by a profile.
 #include "lib/eye/eye_shape.clh"
 #include "shared/lut.h"
 
@@ -140,6 +140,7 @@ static inline float irradianceOf(const PelEyeShape shape, const PelEyeLutGrid gr
     return (float)sums[texel] / (grid.perTexel * sqrt(1.0f + slope2));
 }
 
+#if !PEL_EYE_SCATTERS
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void finish_eye_lut(
     const PelEyeShape shape, const PelEyeLutGrid grid, const LutLayout lut,
     __global const uint* restrict sums, __global float4* restrict texels) {
@@ -150,6 +151,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void finish_eye_
     texels[(size_t)j * lut.rowTexels + i] = (float4)(value, value, value, 0.0f);
 }
 
+#else
 // Texels of all slices as single floats in rows of `stride`, with `border` texels of 0 before each row and at
 // least as many behind it. Light beyond the rim of the iris does not scatter: it is 0 too. One work-item: one
 // float.
@@ -204,3 +206,4 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_eye
         if (column + lane == lut.width - 1) to[lut.width] = to[column + lane];
     }
 }
+#endif
