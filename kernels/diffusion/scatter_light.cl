@@ -10,7 +10,7 @@
 #include "lib/diffusion/windowed.clh"
 #include "lib/shading/material_id.clh"
 
-#define PART 4  // pixels along a side
+#define PART 4                                                           // pixels along a side
 #define PARTS (PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE / (PART * PART))  // of a tile
 // Radii of two windows: of the irradiance of the pixel itself, in points of a texel, and of the camera's
 // samples, in texels. Both are lengths on a surface that faces the light at this cosine or a larger one:
