@@ -124,7 +124,7 @@ TEST(ShadeBadInput, WhatCommitMisses) {
     for (const auto& [slot, word] : {std::pair{PEL_SLOT_RADIANCE, "radiance"},
                                      {PEL_SLOT_NORMAL_SHADING, "shading normal"},
                                      {PEL_SLOT_POSITION, "position"}})
-        missed({word, "needed"}, [&](Ready& r) { r.shader.clear(slot); });
+        missed({word, "needed"}, [slot = slot](Ready& r) { r.shader.clear(slot); });
     missed({"no material"}, noMaterials);
     missed({"material 1"}, [&](Ready& r) {
         noMaterials(r);
