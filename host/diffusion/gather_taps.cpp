@@ -109,7 +109,7 @@ std::vector<PelGatherTap> diskTaps(const ProfileShape& shape, double scale, doub
 std::vector<PelGatherTap> lineTaps(const ProfileShape& shape, double scale, double reach, uint32_t count) {
     const Shares shares = lineShares(shape, reach / scale);
     // Half of the pieces by light, half by length: where there is little light pieces would be long.
-    const auto border = [&](uint32_t i) {  // from the middle of the line
+    const auto border = [&](uint32_t i) {  // from the middle of the line; of 0 and `count` the reach
         const double t = 2.0 * i / count - 1, part = std::abs(t);
         double low = 0, high = reach / scale;
         for (int k = 0; k < 60; ++k) {
@@ -127,7 +127,7 @@ std::vector<PelGatherTap> lineTaps(const ProfileShape& shape, double scale, doub
         return s;
     };
     for (uint32_t i = 0; i < count; ++i) {
-        const double a = i ? border(i) : -reach / scale, b = i + 1 < count ? border(i + 1) : reach / scale;
+        const double a = border(i), b = border(i + 1);
         const Rgb before = lightTo(a), after = lightTo(b);
         PelGatherTap tap{};
         tap.place[0] = float(a * scale), tap.place[1] = float(b * scale);

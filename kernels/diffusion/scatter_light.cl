@@ -10,7 +10,8 @@
 #include "lib/diffusion/windowed.clh"
 #include "lib/shading/material_id.clh"
 
-#define PART 4  // pixels along a side
+#define PART 4                                                           // pixels along a side
+#define PARTS (PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE / (PART * PART))  // of a tile
 // Radii of two windows: of the irradiance of the pixel itself, in points of a texel, and of the camera's
 // samples, in texels. Both are lengths on a surface that faces the light at this cosine or a larger one:
 // points lie closer together along the slope, and the ring of texels that are summed as points ends
@@ -195,7 +196,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_lig
     uint pixels = 0, blocks = 0, texels = 0;
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
         const uint word = parts[tile], part = get_local_id(0);
-        if (!(word >> part & 1)) continue;
+        if (part >= PARTS || !(word >> part & 1)) continue;  // groups may have more work-items than that
         const uint left = tile % frame->tilesX * PEL_DIFFUSION_TILE + part % PART * PART,
                    top = tile / frame->tilesX * PEL_DIFFUSION_TILE + part / PART * PART;
         for (uint y = top; y < min(top + PART, frame->height); ++y)

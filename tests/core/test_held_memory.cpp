@@ -70,6 +70,12 @@ TEST(HeldMemory, OfAShaderByMethod) {
             sum += after[i].held;
         }
         EXPECT_EQ(sum, shader.stats().scratchBytes);
+        EXPECT_EQ(std::ranges::any_of(after,
+                                      [](const PelPassMemory& pass) {
+                                          return pass.held > 0 && !std::strcmp(pass.name, "scatter_light");
+                                      }),
+                  scattering == PEL_SCATTERING_LIGHT)
+            << "the light has a map";
         // In C, the first structure says how long all of them are.
         PelPassMemory plain[24] = {pelPassMemoryDefaults()};
         uint32_t count = 24;

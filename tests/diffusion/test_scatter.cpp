@@ -266,11 +266,16 @@ TEST(Scatter, InPlaceAndInAnyUnit) {
     extra.inPlace = true;
     EXPECT_EQ(run(p, {{1, Profile::skin()}}, extra).scattered, run(p, Profile::skin()).scattered);
     p.params.everywhere = 1;
-    const Result mm = run(p, Profile::skin(), 1);
-    for (float& x : p.positions) x *= 0.001f;
-    const Difference d = difference(p, run(p, Profile::skin(), 0.001f).scattered, mm.scattered);
-    EXPECT_LT(d.rms, tolerance::scatterUnits);
-    EXPECT_LT(d.most, 10 * tolerance::scatterUnits);
+    Picture metres = p;
+    for (float& x : metres.positions) x *= 0.001f;
+    for (const PelScatterControls& controls :
+         {pelScatterControlsDefaults(), controlsOf(PEL_SCATTERING_SEPARABLE, 11)}) {
+        const Result mm = run(p, {{1, Profile::skin(), 1, controls}});
+        const Difference d =
+            difference(p, run(metres, {{1, Profile::skin(), 0.001f, controls}}).scattered, mm.scattered);
+        EXPECT_LT(d.rms, tolerance::scatterUnits) << int(controls.scattering);
+        EXPECT_LT(d.most, 10 * tolerance::scatterUnits) << int(controls.scattering);
+    }
 }
 
 TEST(Scatter, DepthIsAsGoodAsPositions) {

@@ -119,6 +119,24 @@ TEST(ScatterCost, WithoutLightNothingIsDone) {
     EXPECT_EQ(ofScatterKernels(spy::launchesOf), before);
 }
 
+// Pixels that are much finer than the profile, so that blocks alone are summed, and far from the edge none.
+TEST(ScatterCost, OneLaneSumsAsManyBlocksAsSeveral) {
+    Frame f(plane(256, 64, 0.05,
+                  [](double x, double) {
+                      const double e = x < 3 ? 1 : 0.1;
+                      return Vec3{e, e, e};
+                  }),
+            PEL_SCATTERING_SCREEN);
+    f.profile = Profile::gaussians({{1, {1, 1, 1}}});
+    const auto taps = [&](int lanes) {
+        ShownImages shown(lanes::deviceOf(lanes), 1, 1);
+        return f.shade(shown).stats.scatterTaps;
+    };
+    const uint64_t several = taps(8);
+    EXPECT_GT(several, 0u);
+    EXPECT_EQ(taps(1), several);
+}
+
 // What OpenCL is asked for, of skin and an eye under two lights with shadow maps: in a frame like the one
 // before, and in a commit and a frame after the lights have changed.
 TEST(ScatterCost, AFrameAfterAnotherTakesFewCommands) {

@@ -202,17 +202,23 @@ TEST(ScatterSequences, WidthsAgree) {
         for (PelScattering method : {byLight, byAuto}) {
             const Frame f = frameOf({makeBall(form, normalized(Vec3{0.9, 0.2, -0.1}), sized(512u, 64u))},
                                     sized(96u, 24u), method, 0.3f);
-            std::vector<float> before;
+            Shown before;
             for (int lanes : {1, 8, 16}) {
                 ShownImages shown(lanes::deviceOf(lanes), 1, 1);
-                const std::vector<float> now = f.shade(shown).light;
+                const Shown now = f.shade(shown);
                 // By auto, pixels of one vector are left out together.
                 const double most = method == byLight
                                         ? double(tolerance::widthsAgree)
                                         : tolerance::scatterLeftOut * double(f.options.targetError);
-                for (size_t i = 0; i < before.size(); ++i)
-                    ASSERT_NEAR(now[i], before[i], most)
+                for (size_t i = 0; i < before.light.size(); ++i)
+                    ASSERT_NEAR(now.light[i], before.light[i], most)
                         << lanes << " lanes, method " << int(method) << ", value " << i;
+                if (lanes > 1) {
+                    EXPECT_EQ(now.stats.pixelsKept, before.stats.pixelsKept) << lanes;
+                }
+                if (lanes > 1 && method == byLight) {
+                    EXPECT_EQ(now.stats.scatterTaps, before.stats.scatterTaps) << lanes;
+                }
                 before = now;
             }
         }

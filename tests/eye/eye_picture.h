@@ -56,6 +56,8 @@ struct EyePixel {
 
 class EyePicture {
   public:
+    const pellucid::Device device{""};
+
     explicit EyePicture(const EyeScene& scene)
         : s_(scene), truth_(referenceOf(scene.eye)), texture_{scene.textureSize, scene.textureSize, {}} {
         const std::vector<float>& t = scene.texture;
@@ -75,9 +77,8 @@ class EyePicture {
             }
     }
 
-    // `table`: of the caustics; the library's own size without it.
-    std::vector<float> shade(PelShaderStats* stats = nullptr, const PelEyeLutDesc* table = nullptr) const {
-        const pellucid::Device device("");
+    // `caustics`: without them the library's own.
+    std::vector<float> shade(PelShaderStats* stats = nullptr, const pellucid::Lut& caustics = {}) const {
         std::vector<float> position, normal;
         std::vector<uint8_t> id;
         for (const EyePixel& p : pixels) {
@@ -97,7 +98,7 @@ class EyePicture {
             .set(camera)
             .set(s_.ambient)
             .setMaterial(1, s_.sclera)
-            .setEye(1, s_.eye, table ? pellucid::Lut(device, *table) : pellucid::Lut())
+            .setEye(1, s_.eye, caustics)
             .set(s_.lights);
         const auto image = [&](const auto& values, PelFormat format, int size) {
             return imageDesc(pellucid::Buffer(device, values), format, uint32_t(size), uint32_t(size));

@@ -136,6 +136,35 @@ TEST(EyePicture, CausticsAsTheTracer) {
     EXPECT_LT(errorOf(scene, "under a lid").rms, tolerance::eyeCausticRms);
 }
 
+// Light from between the angles of two slices of its table, of which the others are dark.
+TEST(EyePicture, CausticsAreInterpolatedBetweenSlices) {
+    EyeScene scene;
+    scene.size = 48;
+    scene.eye.gaze[0] = scene.eye.gaze[1] = 0;
+    const auto picture = [&](std::array<float, 4> slices, double at) {
+        PelEyeLutDesc desc = pelEyeLutDescOf(&scene.eye);
+        desc.width = desc.height = 8, desc.depth = 4;
+        std::vector<float> texels;
+        for (const float slice : slices) texels.insert(texels.end(), 8 * 8 * 3, slice);
+        const double angle = reference::largestAngle(referenceOf(scene.eye)) * at / 3;
+        scene.lights.clear();
+        scene.addLight({std::sin(angle), 0, std::cos(angle)}, {1, 1, 1});
+        const EyePicture made(scene);
+        return made.shade(nullptr, Lut(made.device, Lut(made.device, desc).info(), texels));
+    };
+    for (const double at : {0.5, 1.25}) {
+        const float second = float(1 - std::abs(at - 1));
+        const std::vector<float> none = picture({0, 0, 0, 0}, at), all = picture({1, 1, 1, 1}, at),
+                                 one = picture({0, 1, 0, 0}, at);
+        size_t lit = 0;
+        for (size_t i = 0; i < all.size(); ++i) {
+            ASSERT_NEAR(one[i] - none[i], second * (all[i] - none[i]), 1e-4) << at;
+            lit += all[i] > none[i] + 0.01f;
+        }
+        EXPECT_GT(lit, 100u);
+    }
+}
+
 TEST(EyePicture, SkippingChangesNothing) {
     EyeScene scene;
     scene.makeTexture(64);

@@ -1,5 +1,6 @@
 // Eyes cost nothing where there are none, and bad input of them and around them is an error by name or a
 // finite picture.
+#include "cl/cl_spy.h"
 #include "eye/eye_frame.h"
 
 using namespace pellucid;
@@ -49,6 +50,22 @@ TEST(EyeTiles, TilesWithoutAnEyeHaveNoCodeForEyes) {
     EXPECT_EQ(frame.shade(withEye, PEL_TILES_PER_VARIANT), eye);
     EXPECT_EQ(frame.shade(withEye, PEL_TILES_NO_LIST), eye);
     EXPECT_EQ(frame.shade([&](Shader& s) { withEye(s), s.clearEye(2); }), plain);
+}
+
+// The table of a small iris takes long; only a caller who waits for a table may cancel it meanwhile.
+TEST(EyeTiles, ACommitDoesNotWaitForATable) {
+    EyeFrame frame;
+    const auto waits = [&](float irisRadius) {
+        const uint64_t before = spy::counts().waits;
+        frame.shade([&](Shader& s) {
+            PelEye eye = pelEyeDefaults();
+            eye.irisRadius = irisRadius, eye.pupilRadius = 0.5f;
+            s.setEye(2, eye);
+        });
+        return spy::counts().waits - before;
+    };
+    const uint64_t usual = waits(6);
+    EXPECT_EQ(waits(1.5f), usual);
 }
 
 TEST(EyeTiles, OutputsAddUp) {

@@ -9,6 +9,7 @@ from pathlib import Path
 from workplace import PASSED, TREE, WORK, say
 
 SAME_SUBJECT = 2  # factor for each word that the paths of a test and of a file share
+COMPILED = 1  # processor seconds for each kernel that a fault is in
 
 
 def words_of(text, shortest=3):
@@ -87,9 +88,12 @@ class Tests:
             near = shared / sum(self.rarity[word] for word in self.words[name]) ** 0.5
             near *= SAME_SUBJECT ** len(subjects & self.subjects[name])
             measured = self.measured.get(name, {"seconds": 10, "kernels": []})
+            seconds = measured["seconds"]
             if kernels and measured["kernels"]:
-                near *= len(kernels & set(measured["kernels"])) / len(measured["kernels"])
-            return -near / (1 + measured["seconds"]) ** 0.5, name
+                inside = len(kernels & set(measured["kernels"]))
+                near *= inside / len(measured["kernels"])
+                seconds += COMPILED * inside
+            return -near / (1 + seconds) ** 0.5, name
 
         return sorted(self.scripts if fault.is_python() else self.programs, key=distance)
 

@@ -52,7 +52,7 @@ def judge(place, tests, fault, seconds):
         if not (place.python() if python else place.build("pellucid")):
             return "does not compile", ""
         for tried, name in enumerate(names):
-            if seconds <= 0:  # kernels with a fault are compiled anew
+            if seconds <= 0:
                 del names[tried:]
                 break
             if not python and not place.build(name):
@@ -63,7 +63,8 @@ def judge(place, tests, fault, seconds):
                 if kernel and "did not build with" in log.read_text(errors="replace"):
                     return "does not compile", ""
                 return "killed", name if isinstance(status, int) else f"{name}, which {status}"
-            seconds -= spent
+            if kernel:  # its programs are compiled anew, which `names` does not count
+                seconds -= spent
         return "survived", f"the nearest: {', '.join(names)}"
     finally:
         place.restore(fault.path, original)

@@ -124,7 +124,7 @@ TEST(ShadeBadInput, WhatCommitMisses) {
     for (const auto& [slot, word] : {std::pair{PEL_SLOT_RADIANCE, "radiance"},
                                      {PEL_SLOT_NORMAL_SHADING, "shading normal"},
                                      {PEL_SLOT_POSITION, "position"}})
-        missed({word, "needed"}, [&](Ready& r) { r.shader.clear(slot); });
+        missed({word, "needed"}, [slot = slot](Ready& r) { r.shader.clear(slot); });
     missed({"no material"}, noMaterials);
     missed({"material 1"}, [&](Ready& r) {
         noMaterials(r);
@@ -155,6 +155,15 @@ TEST(ShadeBadInput, WhatCommitMisses) {
     Ready r;
     wideShadows(r, std::vector<Buffer>(20, each[0]), PEL_FORMAT_R32F);
     EXPECT_NO_THROW(r.shader.commit().execute());
+    // No positions where no term reads them.
+    Shader plain(device());
+    PelMaterial matt = pelMaterialDefaults();
+    matt.specular = 0;
+    matt.scattering = PEL_SCATTERING_NONE;
+    plain.setMaterial(1, matt).set(std::vector{pelLightDefaults()});
+    plain.set(PEL_SLOT_RADIANCE, imageDesc(r.target, PEL_FORMAT_RGB32F, 32, 16));
+    plain.set(PEL_SLOT_NORMAL_SHADING, imageDesc(Buffer(device(), 32 * 16 * 12), PEL_FORMAT_RGB32F, 32, 16));
+    EXPECT_NO_THROW(plain.commit().execute());
 }
 
 TEST(ShadeBadInput, Values) {

@@ -7,12 +7,11 @@ import pytest
 
 pytest.importorskip("moderngl", reason="moderngl is not installed")
 files = pytest.importorskip("pellucid.files", reason="this build reads no files")
-from view_session import renders_again, reset  # noqa: E402
+from view_session import reset  # noqa: E402
 
 from pellucid import Device  # noqa: E402
 from pellucid.view.camera import Orbit, direction  # noqa: E402
-from pellucid.view.export import export  # noqa: E402
-from pellucid.view.look import EYES, MODES, PRESETS, SKIN, Lamp, Look  # noqa: E402
+from pellucid.view.look import EYES, MODES, PRESETS, SKIN, Look  # noqa: E402
 from pellucid.view.pictures import TILE_COLORS, chosen_method, tiles  # noqa: E402
 from pellucid.view.server import Pace, Viewer  # noqa: E402
 from pellucid.view.session import Session, iris_image  # noqa: E402

@@ -1,5 +1,6 @@
 """The viewer's controls without a browser: what the guide lists is there, and sets the look."""
 import asyncio
+import json
 import re
 import tempfile
 from dataclasses import fields
@@ -134,6 +135,21 @@ def test_a_preset_sets_the_material_and_keeps_the_light(fresh):
         marked(elements, ui.select)["preset"].set_value("Jade")
         assert fresh.look.profile == "jade" and fresh.look.specular == 0.6
         assert (fresh.look.ambient, fresh.look.exposure) == (0.7, 2.0)
+
+    opened(fresh, act)
+
+
+def test_presets_of_ones_own_are_saved_and_deleted(fresh):
+    def act(elements, viewer):
+        client = elements[0].client
+        for button, there in (("own-save", True), ("own-delete", False)):
+            shown = list(client.elements.values())
+            marked(shown, ui.input)["own-name"].set_value("Mine")
+            for listener in list(marked(shown, ui.button)[button]._event_listeners.values()):
+                listener.handler(None)
+            offered = marked(client.elements.values(), ui.select)["preset"].options
+            kept = json.loads(viewer.memory.path.read_text())["presets"]
+            assert ("Mine" in offered, "Mine" in kept) == (there, there)
 
     opened(fresh, act)
 

@@ -33,7 +33,8 @@ class Lut(OfThisProcess):
     ----------
     device : Device
     ready : Event or None
-        When a submitted table is integrated; reading and shading on the same device wait by themselves.
+        When a submitted table is integrated; reading and shading on the same device wait by themselves. None:
+        it is.
     """
 
     _instead = "pass its info and texels, Lut.read, to Lut.from_texels there"
