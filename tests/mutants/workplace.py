@@ -63,7 +63,9 @@ class Workplace:
         self.applied.unlink(missing_ok=True)
 
     def copy(self):
-        """Makes the copy as the tree is; what did not change keeps its time."""
+        """Makes the copy as the tree is; what did not change keeps its time. Nothing where it is the tree."""
+        if TREE == ROOT:
+            return
         listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "-z"], cwd=ROOT,
                                 capture_output=True, check=True)
         wanted = {name for name in listed.stdout.decode().split("\0") if name and (ROOT / name).is_file()}
