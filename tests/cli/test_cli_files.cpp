@@ -209,7 +209,6 @@ TEST_F(Files, WhatStandsInATextIsNeitherAKeyNorABracket) {
                             "\n[[gaussian]] # " + text + "\nvariance = 1\nweight = [1, 1, 1]\n");
         EXPECT_TRUE(contains(reportOf("profile show @t.toml")["source"].get<std::string>(), text)) << source;
     }
-    EXPECT_TRUE(contains(done("profile show @t.toml").out, "d mm  R per mm^2"));
 }
 
 TEST_F(Files, KeysWithoutEndAndBracketsWithoutEnd) {

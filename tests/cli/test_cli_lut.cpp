@@ -141,6 +141,7 @@ TEST_F(CliLut, ProfilesAreListedShownDrawnAndFitted) {
     EXPECT_GE(reportOf("profile list")["profiles"].size(), 9u);
     for (const auto& [name, singular] : {std::pair{"skin", false}, {"skin-burley", true}, {"marble", false}})
         EXPECT_EQ(reportOf(std::string("profile show ") + name)["singular"], singular) << name;
+    EXPECT_TRUE(contains(done("profile show marble").out, "d mm  R per mm^2"));
     const auto shown = reportOf("profile show marble");
     EXPECT_EQ(shown["kind"], "dipole");
     ASSERT_EQ(shown["values"].size(), 7u);
