@@ -23,7 +23,8 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-# Unoptimised and not inlined: version 21.10 lacks some intrinsics of optimised code.
+# Unoptimised and not inlined: version 21.10 lacks some intrinsics of optimised code. Integer operations,
+# mostly for addresses, are more than a compiler leaves.
 OPTIONS = "-cl-opt-disable -Dalways_inline= -DPEL_NO_PREFETCH"
 
 
