@@ -9,8 +9,8 @@
 namespace pellucid::io {
 namespace {
 
-Lut submitted(const Device& device, const PelLutInfo& info) {
-    const PelSubmit queued{nullptr, 0, nullptr};
+Lut tableOf(const Device& device, const PelLutInfo& info) {
+    const PelSubmit queued{nullptr, 0, nullptr};  // reading waits
     if (info.kind == PEL_LUT_CURVATURE) return Lut(device, info.curvature, &queued);
     if (info.kind == PEL_LUT_SHADOW) return Lut(device, info.shadow, &queued);
     return Lut(device, info.specular, &queued);
@@ -78,31 +78,23 @@ PelLutInfo BatchTable::filled() const {
 }
 
 std::string makeEntryFile(const Device& device, const BatchEntry& entry) {
-    constexpr size_t ahead = 16;  // tables on the queue before the thread waits: of more, queues grow slow
-    const size_t count = entry.tables.size();
-    PelLutInfo first{};
+    std::vector<PelLutInfo> tables;
+    for (const BatchTable& table : entry.tables) tables.push_back(table.filled());
+    PelLutInfo first = tables[0];
     std::string texels;
-    std::vector<Lut> luts;
-    for (size_t i = 0; i < count; ++i) {
-        luts.push_back(submitted(device, entry.tables[i].filled()));
-        if (luts.size() < ahead && i + 1 < count) continue;
+    if (tables.size() == 1) {
+        const Lut lut = tableOf(device, first);
+        first = lut.info();
         size_t bytes = 0;
-        check(pelLutGetSize(luts[0].get(), entry.encoding, &bytes));
-        if (texels.empty()) first = luts[0].info(), texels.resize(bytes * count);
-        Event last;  // the queue is in order
-        PelError failed = PEL_SUCCESS;
-        for (size_t k = 0; k < luts.size() && !failed; ++k) {
-            PelEvent done = nullptr;
-            const PelSubmit reading{nullptr, 0, &done};
-            failed = pelLutRead(luts[k].get(), entry.encoding, &texels[bytes * (i + 1 - luts.size() + k)],
-                                bytes, &reading);
-            if (!failed) last = Event(done);
-        }
-        if (last) last.wait();  // also where one failed, for the others write to the texels
-        check(failed);
-        luts.clear();
+        check(pelLutGetSize(lut.get(), entry.encoding, &bytes));
+        texels.resize(bytes);
+        check(pelLutRead(lut.get(), entry.encoding, texels.data(), bytes, nullptr));
+    } else {
+        const auto [width, height] = lutSize(first);
+        texels.resize(tables.size() * width * height * (entry.encoding == PEL_LUT_HALF ? 6 : 12));
+        Lut::readStack(device, tables, entry.encoding, texels.data(), texels.size());
     }
-    return encodeLutExr(first, entry.encoding, texels, entry.key, uint32_t(count));
+    return encodeLutExr(first, entry.encoding, texels, entry.key, uint32_t(tables.size()));
 }
 
 std::string batchIndexName(const std::string& manifestPath) {

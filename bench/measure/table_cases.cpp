@@ -101,49 +101,55 @@ Case lookUpCase(const Device& device, PelCurvatureForm form, reference::Form tru
 
 // What pipelines make by the thousand: a profile of each skin, its two tables, halves on the host.
 Case pairCase(const Device& device, uint32_t count) {
-    constexpr uint32_t side = 32, ahead = 16;  // pairs on the queue before the host waits
-    struct Pair {
-        Lut curvature, shadow;
+    constexpr uint32_t side = 32, texels = 3 * side * side;
+    // The tables of one kind of the first skins, of which every `step`th; the profiles live as long.
+    const auto tablesOf = [=](PelLutKind kind, uint32_t step, std::vector<Profile>& profiles) {
+        std::vector<PelLutInfo> tables;
+        for (uint32_t i = 0; i < count; i += step) {
+            if (tables.size() == profiles.size()) {
+                PelSkin skin = pelSkinDefaults();
+                skin.melanin = 0.005f + 0.3f * float(i) / float(count);
+                profiles.push_back(Profile::skinLayers(skin));
+            }
+            PelLutInfo info = pelLutInfoDefaults();
+            info.kind = kind;
+            info.curvature = pelCurvatureLutDescDefaults();
+            info.shadow = pelShadowLutDescDefaults();
+            info.curvature.width = info.curvature.height = info.shadow.width = info.shadow.height = side;
+            info.curvature.profile = info.shadow.profile = profiles[tables.size()].get();
+            tables.push_back(info);
+        }
+        return tables;
     };
-    using Texels = std::vector<uint16_t>;
-    const auto pairOf = [=](uint32_t i) {
-        PelSkin skin = pelSkinDefaults();
-        skin.melanin = 0.005f + 0.3f * float(i) / float(count);
-        const Profile profile = Profile::skinLayers(skin);
-        PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
-        PelShadowLutDesc shadow = pelShadowLutDescDefaults();
-        curvature.width = curvature.height = shadow.width = shadow.height = side;
-        curvature.profile = shadow.profile = profile.get();
-        const PelSubmit submit{nullptr, 0, nullptr};
-        return Pair{Lut(device, curvature, &submit), Lut(device, shadow, &submit)};
-    };
-    const auto texels = std::make_shared<std::vector<Texels>>();
+    using Halves = std::vector<uint16_t>;
+    const auto made = std::make_shared<std::array<Halves, 2>>();
+    constexpr PelLutKind kinds[] = {PEL_LUT_CURVATURE, PEL_LUT_SHADOW};
     Case c;
     c.what = std::to_string(count) + " skins, two tables of 32x32 each, as halves";
     c.items = count;
     c.unit = "pairs";
-    c.bytes = 2 * 6.0 * side * side * count;
+    c.bytes = 2 * 2.0 * texels * count;
     c.run = [=] {
-        texels->clear();
-        std::vector<Pair> pairs;
-        for (uint32_t i = 0; i < count; ++i) {
-            pairs.push_back(pairOf(i));
-            if (pairs.size() < ahead && i + 1 < count) continue;
-            for (const Pair& pair : pairs)
-                for (const Lut* lut : {&pair.curvature, &pair.shadow})
-                    texels->push_back(lut->read<uint16_t>(PEL_LUT_HALF));
-            pairs.clear();
+        std::vector<Profile> profiles;
+        for (size_t k = 0; k < 2; ++k) {
+            Halves& halves = (*made)[k];
+            halves.resize(size_t(texels) * count);
+            Lut::readStack(device, tablesOf(kinds[k], 1, profiles), PEL_LUT_HALF, halves.data(),
+                           2 * halves.size());
         }
     };
     c.error = [=] {
+        constexpr uint32_t step = 16;
         ErrorSum sum;
-        for (uint32_t i = 0; i < count; i += 16) {
-            const Pair alone = pairOf(i);
-            const std::vector<float> truth[] = {alone.curvature.read<float>(PEL_LUT_FLOAT),
-                                                alone.shadow.read<float>(PEL_LUT_FLOAT)};
-            for (size_t k = 0; k < 2; ++k)
-                for (size_t t = 0; t < truth[k].size(); ++t)
-                    sum.add(fromHalf((*texels)[2 * i + k][t]) - truth[k][t]);
+        std::vector<Profile> profiles;
+        for (size_t k = 0; k < 2; ++k) {
+            const std::vector<PelLutInfo> some = tablesOf(kinds[k], step, profiles);
+            for (size_t i = 0; i < some.size(); ++i) {
+                const Lut alone = k ? Lut(device, some[i].shadow) : Lut(device, some[i].curvature);
+                const std::vector<float> truth = alone.read<float>(PEL_LUT_FLOAT);
+                for (size_t t = 0; t < texels; ++t)
+                    sum.add(fromHalf((*made)[k][step * i * texels + t]) - truth[t]);
+            }
         }
         return sum.result();
     };

@@ -91,6 +91,23 @@ PelError pelLutGetSize(PelLut lut, PelLutEncoding encoding, size_t* bytes) {
     });
 }
 
+PelError pelLutReadStack(PelDevice device, const PelLutInfo* tables, uint32_t count, PelLutEncoding encoding,
+                         void* destination, size_t bytes) {
+    return entry([&] {
+        const Ref<Device> d = fromHandle<Device>(device);
+        output(static_cast<char*>(destination), "destination");
+        std::vector<PelLutInfo> all;
+        const auto* next = reinterpret_cast<const char*>(tables);
+        for (uint32_t i = 0; i < count; ++i) {
+            const auto* given = reinterpret_cast<const PelLutInfo*>(next);
+            all.push_back(readStruct(given, pelLutInfoDefaults(), "PelLutInfo"));
+            checkInfo(all.back());
+            next += given->structSize;
+        }
+        submitted(*d, nullptr, [&](bool) { readLutStack(d, all, encoding, destination, bytes); });
+    });
+}
+
 PelError pelLutCountClipped(PelLut lut, uint64_t* clipped) {
     return entry([&] {
         const Ref<Lut> l = fromHandle<Lut>(lut);

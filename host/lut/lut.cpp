@@ -76,15 +76,16 @@ Ref<Profile> profileOf(const PelLutInfo& info) {
 
 }  // namespace
 
-Lut::Lut(Ref<Device> device, const PelLutInfo& info)
+Lut::Lut(Ref<Device> device, const PelLutInfo& info, bool ofStack)
     : Object(kind),
       device_(std::move(device)),
       profile_(profileOf(info)),
       info_(resolved(info, *profile_)),
       ownRadius_(info.kind == PEL_LUT_SHADOW ? info.shadow.diffusionRadius == 0
                                              : info.curvature.diffusionRadius == 0),
-      layout_(layoutOf(info_)),
-      texels_(device_->allocate(size_t(layout_.rowTexels) * (layout_.height + 1) * sizeof(cl_float4))) {}
+      layout_(layoutOf(info_)) {
+    if (!ofStack) texels_ = device_->allocate(texelBytes());
+}
 
 namespace {
 

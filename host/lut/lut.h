@@ -10,9 +10,10 @@ class Lut final : public Object {
   public:
     static constexpr Kind kind = Kind::lut;
 
-    // Allocates the texels, uninitialised. `info` must be valid (see below). Its profile is retained, and
-    // its defaults (no profile, radius 0) are filled in.
-    Lut(Ref<Device> device, const PelLutInfo& info);
+    // Allocates the texels, uninitialised, but for a table of a stack, whose texels lie elsewhere. `info`
+    // must be valid (see below). Its profile is retained, and its defaults (no profile, radius 0) are filled
+    // in.
+    Lut(Ref<Device> device, const PelLutInfo& info, bool ofStack = false);
 
     Device& device() const { return *device_; }
     const PelLutInfo& info() const { return info_; }
@@ -22,6 +23,7 @@ class Lut final : public Object {
     const LutLayout& layout() const { return layout_; }
     // float4 texels, arranged as shared/lut.h says.
     const cl::Memory& texels() const { return texels_; }
+    size_t texelBytes() const { return size_t(layout_.rowTexels) * (layout_.height + 1) * sizeof(cl_float4); }
     uint32_t width() const { return layout_.width; }
     uint32_t height() const { return layout_.height; }
     float diffusionRadius() const { return layout_.radius; }

@@ -6,10 +6,6 @@
 
 namespace pel {
 
-double rowLimit(double length, double diffusionRadius) {
-    return std::clamp(diffusionRadius / length, 1e-9, 1e9);
-}
-
 // A Gaussian narrower than 1e-8 of the profile and of the table's smallest radius changes no texel by more
 // than that. It is widened to that, since its density has no value at 0. Terms without weight in any channel
 // are left out.
@@ -67,6 +63,18 @@ RowAxis rowAxis(PelLutAxis axis, uint32_t height, double least, double most) {
     if (rows == 0) return {first, last - first, scale};
     const double step = (last - first) / rows;
     return {root ? first - 0.5 * step : first, step, scale};
+}
+
+RowRange rowRange(const Lut& lut) {
+    const auto limit = [&](double length) { return std::clamp(lut.diffusionRadius() / length, 1e-9, 1e9); };
+    const PelLutInfo& info = lut.info();
+    if (info.kind == PEL_LUT_SHADOW) return {limit(info.shadow.widthMax), limit(info.shadow.widthMin)};
+    return {limit(info.curvature.radiusMax), limit(info.curvature.radiusMin)};
+}
+
+RowAxis rowsOf(const Lut& lut) {
+    const RowRange range = rowRange(lut);
+    return rowAxis(PelLutAxis(lut.layout().axis), lut.height(), range.least, range.most);
 }
 
 }  // namespace pel

@@ -5,10 +5,6 @@
 
 namespace pel {
 
-// 1/length times the diffusion radius, limited to what float arithmetic on squares can hold. Tables are at
-// their limits beyond.
-double rowLimit(double length, double diffusionRadius);
-
 // FaceWorks ends its integrals at 10 mm for a profile of radius 2.7 mm.
 constexpr double profileCut = 10 / 2.7;  // diffusion radii
 
@@ -33,6 +29,15 @@ struct RowAxis {
     double min, step, scale;
 };
 RowAxis rowAxis(PelLutAxis axis, uint32_t height, double least, double most);
+
+// 1/length of the first and the last row of a curvature or shadow table, 1/diffusion radii, limited to what
+// float arithmetic on squares can hold. Tables are at their limits beyond.
+struct RowRange {
+    double least, most;
+};
+RowRange rowRange(const Lut& lut);
+// The rows in that range.
+RowAxis rowsOf(const Lut& lut);
 
 template <class T>
 cl::Memory upload(Device& device, const std::vector<T>& values) {

@@ -1,6 +1,7 @@
 #include "lut/luts.h"
 
 #include <cmath>
+#include <cstring>
 
 #include "core/launch_policy.h"
 #include "lut/lut_terms.h"
@@ -15,18 +16,102 @@ constexpr int curvatureNodes = 64;
 // What the kernel calls the forms.
 #define FORM_NUMBER(name, number, key) {"PEL_FORM_" #name, #number},
 
-CurvatureLutParams paramsOf(const PelCurvatureLutDesc& desc, double curvatureMin, double curvatureMax,
-                            size_t terms) {
-    CurvatureLutParams params{};
-    params.width = desc.width;
-    params.height = desc.height;
-    params.gaussians = uint32_t(terms);
-    params.axis = uint32_t(desc.axis);
-    const RowAxis axis = rowAxis(desc.axis, desc.height, curvatureMin, curvatureMax);
-    params.rowMin = float(axis.min);
-    params.rowStep = float(axis.step);
-    params.cut = float(profileCut);
-    return params;
+// Tables of sums of Gaussians that one launch makes: they differ in their profiles and ranges of rows alone.
+struct Stack {
+    std::vector<StackedLut> tables;
+    std::vector<LutGaussian> gaussians;
+
+    StackedLut& add(const Lut& lut, const std::vector<LutGaussian>& terms) {
+        const RowAxis rows = rowsOf(lut);
+        StackedLut table{};
+        table.first = uint32_t(gaussians.size());
+        table.gaussians = uint32_t(terms.size());
+        table.rowMin = float(rows.min);
+        table.rowStep = float(rows.step);
+        gaussians.insert(gaussians.end(), terms.begin(), terms.end());
+        tables.push_back(table);
+        return tables.back();
+    }
+    // The tables, and their Gaussians behind them.
+    cl::Memory upload(Device& device) const {
+        static_assert(sizeof(StackedLut) % sizeof(LutGaussian) == 0);
+        const size_t head = tables.size() * sizeof(StackedLut), tail = gaussians.size() * sizeof(LutGaussian);
+        std::vector<unsigned char> bytes(head + tail);
+        std::memcpy(bytes.data(), tables.data(), head);
+        std::memcpy(bytes.data() + head, gaussians.data(), tail);
+        return pel::upload(device, bytes);
+    }
+};
+
+using Luts = std::span<const Ref<Lut>>;
+
+bool isTabulated(const Lut& lut) {
+    return lut.profile()->terms().empty();
+}
+
+// `luts` have one description but for profiles and lengths, and no tabulated profile.
+void integrateCurvature(Luts luts, const cl::Memory& texels) {
+    Device& device = luts[0]->device();
+    const PelCurvatureLutDesc& all = luts[0]->info().curvature;
+    Stack stack;
+    for (const Ref<Lut>& lut : luts) {
+        const double most = rowRange(*lut).most;
+        std::vector<LutGaussian> terms = deviceTerms(*lut->profile(), most);
+        // 1/d has no finite integral along a ring. The limit of the ratio is a point.
+        if (lut->profile()->shape().singular() &&
+            (all.form == PEL_FORM_RING || all.form == PEL_FORM_HALF_RING))
+            terms = {{float(1e-8 / std::max(1.0, most)), 1, 1, 1}};
+        stack.add(*lut, terms);
+    }
+
+    const uint32_t lanes = device.info().mathWidth;
+    const size_t group = launchPolicy(device).group, columnsPerItem = launchPolicy(device).columns;
+    const cl::Program program = device.programs().get(
+        "lut/curvature_lut.cl", {PEL_EACH_CURVATURE_FORM(FORM_NUMBER){"PEL_FORM", int(all.form)},
+                                 {"PEL_GROUP", group},
+                                 {"PEL_NODES", curvatureNodes},
+                                 {"PEL_COLUMNS", columnsPerItem}});
+    const cl::Memory tables = stack.upload(device),
+                     nodes = device.constants("nodes", [] { return meshOfNodes(curvatureNodes); }),
+                     columns = device.constants(text("columns ", all.width, " ", int(all.axis)), [&] {
+                         return curvatureColumns(all.width, all.axis, curvatureNodes);
+                     });
+    const size_t record = PEL_CURVATURE_RECORD(curvatureNodes);
+    const cl::Memory rows = device.allocate(record * all.height * luts.size() * sizeof(cl_float4));
+    const StackParams params{all.width, all.height, uint32_t(all.axis), 0, float(profileCut)};
+    cl::Launch rowLaunch(program, "curvature_rows", params, tables, nodes, rows);
+    device.launch(rowLaunch, {{(all.height + lanes - 1) / lanes, 1, luts.size()}, {group, 1, 1}});
+
+    cl::Launch texelLaunch(program, "curvature_texels", all.width, all.height, rows, columns, texels);
+    const size_t items = ((all.width + 1) / 2 + columnsPerItem - 1) / columnsPerItem;
+    device.launch(texelLaunch, {{items, all.height + 1, luts.size()}, {group, 1, 1}});
+}
+
+void integrateShadow(Luts luts, const cl::Memory& texels) {
+    Device& device = luts[0]->device();
+    const PelShadowLutDesc& all = luts[0]->info().shadow;
+    Stack stack;
+    for (const Ref<Lut>& lut : luts) {
+        const Profile& profile = *lut->profile();
+        StackedLut& table = stack.add(*lut, deviceTerms(profile, rowRange(*lut).most));
+        table.sharpening = lut->info().shadow.sharpening;
+        for (int channel = 0; channel < 3; ++channel) {
+            double total = 0;
+            for (const GaussianTerm& term : profile.terms())
+                total += term.weight[channel] *
+                         std::erf(profileCut * profile.radius() / std::sqrt(2 * term.variance));
+            table.total[channel] = float(total);
+        }
+    }
+
+    const size_t group = launchPolicy(device).group, columnsPerItem = launchPolicy(device).columns;
+    const cl::Program program =
+        device.programs().get("lut/shadow_lut.cl", {{"PEL_GROUP", group}, {"PEL_COLUMNS", columnsPerItem}});
+    const StackParams params{all.width, all.height, uint32_t(all.axis), all.closedEnds, float(profileCut)};
+    const cl::Memory tables = stack.upload(device);
+    cl::Launch launch(program, "shadow_texels", params, tables, texels);
+    const size_t lit = all.width - all.width / 2, items = (lit + columnsPerItem - 1) / columnsPerItem;
+    device.launch(launch, {{items, all.height + 1, luts.size()}, {group, 1, 1}});
 }
 
 }  // namespace
@@ -37,43 +122,10 @@ Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& de
     info.kind = PEL_LUT_CURVATURE;
     info.curvature = desc;
     Ref<Lut> lut = make<Lut>(device, info);
-
-    const double radius = lut->diffusionRadius();
-    const double curvatureMin = rowLimit(lut->info().curvature.radiusMax, radius),
-                 curvatureMax = rowLimit(lut->info().curvature.radiusMin, radius);
-    const Profile& profile = *lut->profile();
-    if (profile.terms().empty()) {
-        integrateTabulatedCurvature(*lut, curvatureMin, curvatureMax);
-        return lut;
-    }
-    std::vector<LutGaussian> terms = deviceTerms(profile, curvatureMax);
-    // 1/d has no finite integral along a ring. The limit of the ratio is a point.
-    if (profile.shape().singular() && (desc.form == PEL_FORM_RING || desc.form == PEL_FORM_HALF_RING))
-        terms = {{float(1e-8 / std::max(1.0, curvatureMax)), 1, 1, 1}};
-
-    const uint32_t lanes = device->info().mathWidth;
-    const size_t group = launchPolicy(*device).group, columnsPerItem = launchPolicy(*device).columns;
-    const cl::Program program = device->programs().get(
-        "lut/curvature_lut.cl", {PEL_EACH_CURVATURE_FORM(FORM_NUMBER){"PEL_FORM", int(desc.form)},
-                                 {"PEL_GROUP", group},
-                                 {"PEL_NODES", curvatureNodes},
-                                 {"PEL_COLUMNS", columnsPerItem}});
-    const cl::Memory gaussians = upload(*device, terms),
-                     nodes = device->constants("nodes", [] { return meshOfNodes(curvatureNodes); }),
-                     columns = device->constants(text("columns ", desc.width, " ", int(desc.axis)), [&] {
-                         return curvatureColumns(desc.width, desc.axis, curvatureNodes);
-                     });
-    const size_t record = PEL_CURVATURE_RECORD(curvatureNodes);
-    const cl::Memory rows = device->allocate(record * desc.height * sizeof(cl_float4));
-    const CurvatureLutParams params = paramsOf(desc, curvatureMin, curvatureMax, terms.size());
-
-    cl::Launch rowLaunch(program, "curvature_rows", params, gaussians, nodes, rows);
-    device->launch(rowLaunch, {{(desc.height + lanes - 1) / lanes, 1, 1}, {group, 1, 1}});
-
-    cl::Launch texelLaunch(program, "curvature_texels", desc.width, desc.height, rows, columns,
-                           lut->texels());
-    const size_t items = ((desc.width + 1) / 2 + columnsPerItem - 1) / columnsPerItem;
-    device->launch(texelLaunch, {{items, desc.height + 1, 1}, {group, 1, 1}});
+    if (isTabulated(*lut))
+        integrateTabulatedCurvature(*lut);
+    else
+        integrateCurvature({&lut, 1}, lut->texels());
     return lut;
 }
 
@@ -83,35 +135,10 @@ Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
     info.kind = PEL_LUT_SHADOW;
     info.shadow = desc;
     Ref<Lut> lut = make<Lut>(device, info);
-
-    const Profile& profile = *lut->profile();
-    const double radius = lut->diffusionRadius();
-    const double reciprocalMin = rowLimit(lut->info().shadow.widthMax, radius),
-                 reciprocalMax = rowLimit(lut->info().shadow.widthMin, radius);
-    if (profile.terms().empty()) {
-        integrateTabulatedShadow(*lut, reciprocalMin, reciprocalMax);
-        return lut;
-    }
-    const std::vector<LutGaussian> terms = deviceTerms(profile, reciprocalMax);
-    const RowAxis axis = rowAxis(desc.axis, desc.height, reciprocalMin, reciprocalMax);
-    ShadowLutParams params{desc.width,          desc.height,     uint32_t(terms.size()), float(axis.min),
-                           float(axis.step),    desc.sharpening, float(profileCut),      {},
-                           uint32_t(desc.axis), desc.closedEnds};
-    for (int channel = 0; channel < 3; ++channel) {
-        double total = 0;
-        for (const GaussianTerm& term : profile.terms())
-            total +=
-                term.weight[channel] * std::erf(profileCut * profile.radius() / std::sqrt(2 * term.variance));
-        params.total[channel] = float(total);
-    }
-
-    const size_t group = launchPolicy(*device).group, columnsPerItem = launchPolicy(*device).columns;
-    const cl::Program program =
-        device->programs().get("lut/shadow_lut.cl", {{"PEL_GROUP", group}, {"PEL_COLUMNS", columnsPerItem}});
-    const cl::Memory gaussians = upload(*device, terms);
-    cl::Launch launch(program, "shadow_texels", params, gaussians, lut->texels());
-    const size_t lit = desc.width - desc.width / 2, items = (lit + columnsPerItem - 1) / columnsPerItem;
-    device->launch(launch, {{items, desc.height + 1, 1}, {group, 1, 1}});
+    if (isTabulated(*lut))
+        integrateTabulatedShadow(*lut);
+    else
+        integrateShadow({&lut, 1}, lut->texels());
     return lut;
 }
 
@@ -198,17 +225,92 @@ size_t packedBytes(const Lut& lut, PelLutEncoding encoding) {
     return size_t(lut.width()) * lut.height() * encodingOf(lut, encoding).texelBytes;
 }
 
-void readLut(const Lut& lut, PelLutEncoding encoding, void* destination, bool blocking) {
+namespace {
+
+// Of `tables` tables as `lut` whose texels follow one another.
+void encodeAndRead(const Lut& lut, const cl::Memory& texels, size_t tables, PelLutEncoding encoding,
+                   void* destination, bool blocking) {
     Device& device = lut.device();
-    const Encoding how = encodingOf(lut, encoding);
-    const size_t bytes = packedBytes(lut, encoding);
-    if (encoding == PEL_LUT_FLOAT && blocking) return readFloats(lut, static_cast<float*>(destination));
+    const size_t bytes = tables * packedBytes(lut, encoding);
     const cl::Memory packed = device.allocate(bytes);
     constexpr size_t group = 64;
-    cl::Launch launch(device.programs().get("lut/lut_encode.cl", {{"PEL_GROUP", group}}), how.kernel,
-                      lut.layout(), lut.texels(), packed);
-    device.launch(launch, {{lut.width(), lut.height(), 1}, {group, 1, 1}});
+    cl::Launch launch(device.programs().get("lut/lut_encode.cl", {{"PEL_GROUP", group}}),
+                      encodingOf(lut, encoding).kernel, lut.layout(), texels, packed);
+    device.launch(launch, {{lut.width(), lut.height(), tables}, {group, 1, 1}});
     device.read(packed.get(), 0, bytes, destination, blocking);
+}
+
+}  // namespace
+
+void readLut(const Lut& lut, PelLutEncoding encoding, void* destination, bool blocking) {
+    if (encoding == PEL_LUT_FLOAT && blocking) return readFloats(lut, static_cast<float*>(destination));
+    encodeAndRead(lut, lut.texels(), 1, encoding, destination, blocking);
+}
+
+namespace {
+
+void checkAlike(std::span<const PelLutInfo> tables) {
+    const auto different = [&](size_t i, const char* field) {
+        invalidArgument("table ", i, " of the stack has another ", field,
+                        " than the first; a stack for each of them is needed");
+    };
+    const bool curvature = tables[0].kind == PEL_LUT_CURVATURE;
+    if (!curvature && tables[0].kind != PEL_LUT_SHADOW)
+        invalidArgument("a stack is of PEL_LUT_CURVATURE (0) or PEL_LUT_SHADOW (1), not of kind ",
+                        int(tables[0].kind));
+    const auto check = [&](size_t i, const auto& first, const auto& other) {
+        if (other.width != first.width) different(i, "width");
+        if (other.height != first.height) different(i, "height");
+        if (other.axis != first.axis) different(i, "axis");
+    };
+    for (size_t i = 1; i < tables.size(); ++i) {
+        const PelLutInfo &first = tables[0], &other = tables[i];
+        if (other.kind != first.kind) different(i, "kind");
+        if (curvature) {
+            check(i, first.curvature, other.curvature);
+            if (other.curvature.form != first.curvature.form) different(i, "form");
+        } else {
+            check(i, first.shadow, other.shadow);
+            if (other.shadow.closedEnds != first.shadow.closedEnds) different(i, "closedEnds");
+        }
+    }
+}
+
+}  // namespace
+
+void readLutStack(const Ref<Device>& device, std::span<const PelLutInfo> tables, PelLutEncoding encoding,
+                  void* destination, size_t bytes) {
+    if (tables.empty()) return;
+    checkAlike(tables);
+    const bool curvature = tables[0].kind == PEL_LUT_CURVATURE;
+    const Ref<Lut> like = make<Lut>(device, tables[0], true);
+    const size_t each = packedBytes(*like, encoding);
+    if (bytes / tables.size() < each)
+        invalidArgument("the stack takes ", tables.size(), " x ", each,
+                        " bytes in this encoding; destination has ", bytes);
+    // Of the texels of one launch: so they and the records of rows stay in a processor's cache.
+    constexpr size_t bytesTogether = 1 << 19;
+    const size_t most = std::max<size_t>(1, bytesTogether / like->texelBytes());
+    std::vector<Ref<Lut>> luts;
+    auto* to = static_cast<char*>(destination);
+    for (size_t i = 0; i < tables.size(); i += luts.size()) {
+        luts.clear();
+        for (size_t k = i; k < tables.size() && luts.size() < most; ++k) {
+            Ref<Lut> lut = make<Lut>(device, tables[k], true);
+            if (isTabulated(*lut)) break;
+            luts.push_back(std::move(lut));
+        }
+        if (luts.empty()) {  // a tabulated profile
+            luts.push_back(curvature ? integrateCurvatureLut(device, tables[i].curvature)
+                                     : integrateShadowLut(device, tables[i].shadow));
+            readLut(*luts[0], encoding, to, true);
+        } else {
+            const cl::Memory texels = device->allocate(luts.size() * like->texelBytes());
+            (curvature ? integrateCurvature : integrateShadow)(luts, texels);
+            encodeAndRead(*like, texels, luts.size(), encoding, to, true);
+        }
+        to += luts.size() * each;
+    }
 }
 
 uint64_t countClipped(const Lut& lut) {

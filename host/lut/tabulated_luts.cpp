@@ -55,12 +55,12 @@ SpherePoints spherePoints(const Profile& profile, const PelCurvatureLutDesc& des
 
 }  // namespace
 
-void integrateTabulatedCurvature(Lut& lut, double curvatureMin, double curvatureMax) {
+void integrateTabulatedCurvature(Lut& lut) {
     Device& device = lut.device();
     const Profile& profile = *lut.profile();
     const PelCurvatureLutDesc& desc = lut.info().curvature;
     const bool ring = desc.form == PEL_FORM_RING || desc.form == PEL_FORM_HALF_RING;
-    const RowAxis axis = rowAxis(desc.axis, desc.height, curvatureMin, curvatureMax);
+    const RowAxis axis = rowsOf(lut);
 
     const bool sphere = desc.form == PEL_FORM_SPHERE, chord = desc.form != PEL_FORM_ARC;
     const int intervals = sphere ? sphereNodes : sweptNodes;
@@ -104,11 +104,11 @@ void integrateTabulatedCurvature(Lut& lut, double curvatureMin, double curvature
     device.launch(texelLaunch, {{items, desc.height + size_t(1), 1}, {group, 1, 1}});
 }
 
-void integrateTabulatedShadow(Lut& lut, double reciprocalMin, double reciprocalMax) {
+void integrateTabulatedShadow(Lut& lut) {
     Device& device = lut.device();
     const PelShadowLutDesc& desc = lut.info().shadow;
     const double end = tableEnd(*lut.profile());
-    const RowAxis axis = rowAxis(desc.axis, desc.height, reciprocalMin, reciprocalMax);
+    const RowAxis axis = rowsOf(lut);
     // Nodes reach to the ends of rows: PEL_RAMP_PARTS to a half width, of which `sharpening` are in half a
     // row.
     const double wanted = std::ceil(PEL_RAMP_PARTS * double(desc.sharpening) * (1 + 1e-6));

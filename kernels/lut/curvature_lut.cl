@@ -23,6 +23,7 @@
 // Variants: PEL_WIDTH; PEL_FORM, one of PEL_FORM_ARC ... (PelCurvatureForm); PEL_GROUP, work-items in a
 // group; PEL_NODES, N; PEL_COLUMNS (curvature_texels.clh).
 #include "lib/lut/normal.clh"
+#include "lib/lut/stack.clh"
 #include "lut/curvature_texels.clh"
 
 // Gauss points of a mesh interval.
@@ -131,14 +132,17 @@ static inline Rgb kernelAt(__global const LutGaussian* gaussians, const uint fir
     return sum;
 }
 
-// One work-item: PEL_WIDTH rows, one per lane.
+// One work-item: PEL_WIDTH rows, one per lane, of one table of the stack.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_rows(
-    const CurvatureLutParams params, __global const LutGaussian* restrict gaussians,
-    __constant LutNode* restrict nodes, __global float4* restrict rows) {
+    const StackParams params, __global const StackedLut* restrict stack, __constant LutNode* restrict nodes,
+    __global float4* restrict records) {
     const uint firstRow = get_global_id(0) * PEL_WIDTH;
     if (firstRow >= params.height) return;
+    const StackedLut table = stack[get_global_id(2)];
+    __global const LutGaussian* gaussians = gaussiansOf(stack, table);
+    __global float4* rows = records + get_global_id(2) * params.height * ROW_STRIDE;
     const floatw row = convert_floatw((intw)((int)firstRow) + lanesw());
-    const floatw rowValue = fma(row + 0.5f, (floatw)(params.rowStep), (floatw)(params.rowMin));
+    const floatw rowValue = fma(row + 0.5f, (floatw)(table.rowStep), (floatw)(table.rowMin));
     const floatw curvature = params.axis == PEL_LUT_AXIS_ROOT ? rowValue * rowValue : rowValue;
     const floatw radius = 1.0f / curvature;
 #if PEL_FORM == PEL_FORM_ARC
@@ -154,14 +158,14 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
     Rgb E = {0.0f, 0.0f, 0.0f}, F = E, missing = E, back = E, total = E;
     storeRows(rows, firstRow, params.height, 2 * PEL_NODES, E);
     storeRows(rows, firstRow, params.height, 2 * PEL_NODES + 1, F);
-    uint front = params.gaussians, behind = 0;
+    uint front = table.gaussians, behind = 0;
     for (int j = PEL_NODES - 1; j >= 0; --j) {
         const LutNode node = nodes[j];
         const float step = nodes[j + 1].angle - node.angle;
         // Narrow Gaussians come first in the list. Going down in phi, Gaussians join in front and leave
         // behind.
         while (front > 0 && anyw(REACH * gaussians[front - 1].sigma * curvature > node.angle)) --front;
-        while (behind < params.gaussians &&
+        while (behind < table.gaussians &&
                !anyw(REACH * gaussians[behind].sigma * curvature > M_PI_F - nodes[j + 1].angle))
             ++behind;
 
@@ -179,7 +183,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
         const floatw backStart = fmax(M_PI_F - end - node.angle, 0.0f);
         const floatw backHalf = 0.5f * fmax(step - backStart, 0.0f);
         for (int q = 0; q < POINTS; ++q) {
-            if (front < params.gaussians) {
+            if (front < table.gaussians) {
                 const floatw d = fma(frontHalf, (floatw)(gaussAt[q]), frontHalf);
                 const floatw d2 = d * d;
                 const floatw sd = d * (1.0f - d2 * (1.0f / 6.0f) * (1.0f - d2 * (1.0f / 20.0f)));
@@ -188,20 +192,20 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
                 // versine of the sum of two angles
                 const floatw versine = node.versine + node.cosine * vd + node.sine * sd;
                 const floatw t = node.angle + d;
-                const Rgb k = kernelAt(gaussians, front, params.gaussians, radius, t, versine, 0);
+                const Rgb k = kernelAt(gaussians, front, table.gaussians, radius, t, versine, 0);
                 E = rgbFma(k, weight * sd, E);
                 F = rgbFma(k, weight * (1.0f - vd), F);
                 missing = rgbFma(k, weight * versine, missing);
                 total = rgbFma(k, weight, total);
             }
-            if (hasBack && behind < params.gaussians) {
+            if (hasBack && behind < table.gaussians) {
                 const floatw d = backStart + fma(backHalf, (floatw)(gaussAt[q]), backHalf);
                 const floatw d2 = d * d;
                 const floatw sd = d * (1.0f - d2 * (1.0f / 6.0f) * (1.0f - d2 * (1.0f / 20.0f)));
                 const floatw cd = 1.0f - d2 * 0.5f * (1.0f - d2 * (1.0f / 12.0f));
                 const floatw weight = backHalf;
                 const floatw cosine = node.cosine * cd - node.sine * sd;
-                const Rgb k = kernelAt(gaussians, behind, params.gaussians, radius, M_PI_F - node.angle - d,
+                const Rgb k = kernelAt(gaussians, behind, table.gaussians, radius, M_PI_F - node.angle - d,
                                        1.0f + cosine, 1);
                 E = rgbFma(k, weight * sd, E);
                 F = rgbFma(k, weight * cd, F);
@@ -222,7 +226,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
 #if PEL_FORM == PEL_FORM_ARC
     // Integral of K within the cut and the half circle.
     frontTotal = none;
-    for (uint g = 0; g < params.gaussians; ++g) {
+    for (uint g = 0; g < table.gaussians; ++g) {
         const LutGaussian G = gaussians[g];
         const floatw inside =
             1.0f - 2.0f * normalTailOnly(fmin((floatw)(params.cut), M_PI_2_F * radius) / G.sigma);
@@ -232,7 +236,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
     back = rgbFma(back, 2.0f, none);
 #elif PEL_FORM == PEL_FORM_SPHERE
     Rgb all = none, mean = none;
-    for (uint g = 0; g < params.gaussians; ++g) {
+    for (uint g = 0; g < table.gaussians; ++g) {
         const LutGaussian G = gaussians[g];
         const floatw x = clamp(radius / G.sigma, 1e-6f, 1e8f);
         const floatw k = x * x;

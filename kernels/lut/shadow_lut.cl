@@ -18,6 +18,7 @@
 // Variants: PEL_WIDTH; PEL_GROUP, work-items in a group; PEL_COLUMNS, columns per work-item, a multiple of
 // PEL_WIDTH.
 #include "lib/lut/normal.clh"
+#include "lib/lut/stack.clh"
 #include "shared/lut.h"
 #include "shared/lut_integral.h"
 
@@ -174,22 +175,23 @@ static inline void storeTexels(__global float4* line, const uint width, const ui
     }
 }
 
-// One work-item: PEL_COLUMNS columns of the lit half of one row, and their mirror images. A copy of the last
-// row and of the last column follows (shared/lut.h).
+// One work-item: PEL_COLUMNS columns of the lit half of one row, and their mirror images, of one table of the
+// stack. A copy of the last row and of the last column follows (shared/lut.h).
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadow_texels(
-    const ShadowLutParams params, __global const LutGaussian* restrict gaussians,
-    __global float4* restrict texels) {
+    const StackParams params, __global const StackedLut* restrict stack, __global float4* restrict texels) {
+    const StackedLut table = stack[get_global_id(2)];
+    __global const LutGaussian* gaussians = gaussiansOf(stack, table);
     const uint begin = params.width / 2 + get_global_id(0) * PEL_COLUMNS;
     const uint y = get_global_id(1);
     const float row = (float)min(y, params.height - 1);
-    const float rowValue = fma(row + 0.5f, params.reciprocalStep, params.reciprocalMin);
+    const float rowValue = fma(row + 0.5f, table.rowStep, table.rowMin);
     const float q = params.axis == PEL_LUT_AXIS_ROOT ? rowValue * rowValue : rowValue;
-    const float b = 0.5f / (params.sharpening * q);
+    const float b = 0.5f / (table.sharpening * q);
     const uint end = min(begin + PEL_COLUMNS, params.width);
-    const float3 total = (float3)(params.total[0], params.total[1], params.total[2]);
+    const float3 total = (float3)(table.total[0], table.total[1], table.total[2]);
     float3 endU = 0.0f;
     if (params.closedEnds && begin < end) {
-        const Far U = farSideOfAll(gaussians, params.gaussians, (floatw)(0.5f / q), b, params.cut);
+        const Far U = farSideOfAll(gaussians, table.gaussians, (floatw)(0.5f / q), b, params.cut);
         float r[PEL_WIDTH], g[PEL_WIDTH], b_[PEL_WIDTH];
         storew(U.r, 0, r);
         storew(U.g, 0, g);
@@ -204,8 +206,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadow_texe
         if (params.axis == PEL_LUT_AXIS_ROOT)
             z = (column - 0.5f * (float)params.width) / (float)(max(params.width, 2u) - 1);
         z = fmin(z, 0.5f);
-        const Far U = farSideOfAll(gaussians, params.gaussians, z / q, b, params.cut);
-        storeTexels(texels + (size_t)y * (params.width + 1), params.width, x, U.r, U.g, U.b, z, total, endU,
+        const Far U = farSideOfAll(gaussians, table.gaussians, z / q, b, params.cut);
+        const size_t line = get_global_id(2) * (params.height + 1) + y;
+        storeTexels(texels + line * (params.width + 1), params.width, x, U.r, U.g, U.b, z, total, endU,
                     params.closedEnds);
     }
 }

@@ -34,28 +34,28 @@ typedef struct LutColumn {
     int node;
 } LutColumn;
 
-typedef struct CurvatureLutParams {
-    unsigned int width;
-    unsigned int height;
+// One launch makes a stack of tables of one size: what differs between them. The Gaussians of all follow the
+// last of these in the same buffer.
+typedef struct StackedLut {
+    unsigned int first;  // of its Gaussians
     unsigned int gaussians;
-    unsigned int axis;  // LUT_AXIS_...
-    float rowMin;       // curvature, 1/diffusion radii, or its root, at the upper edge of row 0
-    float rowStep;      // per row
-    float cut;          // length at which the kernel of form arc ends, diffusion radii; 10/2.7
-} CurvatureLutParams;
+    // At the upper edge of row 0: curvature or 1/penumbra width in 1/diffusion radii, or its root.
+    float rowMin;
+    float rowStep;     // per row
+    float sharpening;  // of a shadow table
+    float total[3];    // of a shadow table: of the cut profile, per channel
+} StackedLut;
 
-typedef struct ShadowLutParams {
+// What the tables of a stack share.
+typedef struct StackParams {
     unsigned int width;
     unsigned int height;
-    unsigned int gaussians;
-    float reciprocalMin;   // 1/penumbra width at the upper edge of row 0, 1/diffusion radii
-    float reciprocalStep;  // per row
-    float sharpening;
-    float cut;                // half length of the integral, diffusion radii
-    float total[3];           // of the cut profile, per channel
     unsigned int axis;        // LUT_AXIS_...
-    unsigned int closedEnds;  // rows are rescaled to run from 0 to 1
-} ShadowLutParams;
+    unsigned int closedEnds;  // of shadow tables: rows are rescaled to run from 0 to 1
+    // Length at which the kernel of form arc ends, half length of a shadow table's integral: diffusion radii;
+    // 10/2.7
+    float cut;
+} StackParams;
 
 // --- tabulated profiles (kernels/lut/tabulated_*.cl) ---
 

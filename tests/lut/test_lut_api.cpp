@@ -146,3 +146,86 @@ TEST(LutApi, TexelsFromOutsideComeBackBitForBit) {
     wrong.shadow.widthMin = -1;
     EXPECT_THROW(Lut(device(), wrong, texels), Error);
 }
+
+// Each table of a stack is what it is by itself, to the bit: also where launches end between tables, and
+// beside tabulated profiles, which are made one by one.
+TEST(LutApi, TablesOfAStackAreThoseOfTheirOwn) {
+    const Profile tabulated = Profile::table({0, 1, 2, 4}, {9, 8, 7, 4, 3, 2, 1, .5f, .2f, 0, 0, 0}),
+                  narrow = Profile::burleyDistance({0.3f, 0.2f, 0.1f}), skin = Profile::skin();
+    const auto compare = [&](std::vector<PelLutInfo> stack, PelLutEncoding encoding) {
+        std::vector<uint8_t> expected;
+        for (const PelLutInfo& info : stack) {
+            const Lut lut =
+                info.kind == PEL_LUT_CURVATURE ? Lut(device(), info.curvature) : Lut(device(), info.shadow);
+            const auto texels = lut.read<uint8_t>(encoding);
+            expected.insert(expected.end(), texels.begin(), texels.end());
+        }
+        std::vector<uint8_t> texels(expected.size() + 1, 77);
+        Lut::readStack(device(), stack, encoding, texels.data(), expected.size());
+        EXPECT_EQ(texels.back(), 77);
+        texels.pop_back();
+        EXPECT_TRUE(texels == expected) << encoding;
+    };
+    PelLutInfo info = pelLutInfoDefaults();
+    for (const auto [width, height] : {std::pair(1u, 1u), {33, 18}, {90, 70}})
+        for (PelLutAxis axis : {PEL_AXIS_LINEAR, PEL_AXIS_ROOT}) {
+            SCOPED_TRACE(testing::Message() << width << " x " << height << ", axis " << axis);
+            std::vector<PelLutInfo> curvature, shadow;
+            for (int i = 0; i < 12; ++i) {
+                const Profile& profile = i == 5 ? tabulated : i % 3 == 1 ? narrow : skin;
+                info.kind = PEL_LUT_CURVATURE;
+                info.curvature = pelCurvatureLutDescDefaults();
+                info.curvature.width = width, info.curvature.height = height, info.curvature.axis = axis;
+                info.curvature.profile = profile.get();
+                info.curvature.diffusionRadius = i % 4 == 2 ? 0.5f * float(i) : 0;
+                curvature.push_back(info);
+                info.kind = PEL_LUT_SHADOW;
+                info.shadow = pelShadowLutDescDefaults();
+                info.shadow.width = width, info.shadow.height = height, info.shadow.axis = axis;
+                info.shadow.profile = profile.get();
+                info.shadow.sharpening = 1 + float(i);
+                info.shadow.closedEnds = axis == PEL_AXIS_ROOT;
+                shadow.push_back(info);
+            }
+            for (PelLutEncoding encoding : {PEL_LUT_FLOAT, PEL_LUT_HALF, PEL_LUT_FACEWORKS8}) {
+                compare(curvature, encoding);
+                compare(shadow, encoding);
+            }
+            for (PelCurvatureForm form : {PEL_FORM_ARC, PEL_FORM_HALF_RING}) {
+                for (PelLutInfo& one : curvature) one.curvature.form = form;
+                compare(curvature, PEL_LUT_HALF);
+            }
+        }
+}
+
+TEST(LutApi, StacksRefuseWhatMakesNoSense) {
+    PelLutInfo info = pelLutInfoDefaults();
+    info.kind = PEL_LUT_SHADOW;
+    info.curvature.width = info.curvature.height = info.shadow.width = info.shadow.height = 8;
+    std::vector<char> texels(2 * 8 * 8 * 12);
+    const auto refused = [&](const char* field, auto change) {
+        std::vector<PelLutInfo> stack{info, info};
+        size_t bytes = texels.size();
+        change(stack, bytes);
+        expectRefused(field, [&] { Lut::readStack(device(), stack, PEL_LUT_FLOAT, texels.data(), bytes); });
+    };
+    refused("1535", [](auto&, size_t& bytes) { bytes -= 1; });
+    refused("kind", [](auto& stack, size_t&) { stack[1].kind = PEL_LUT_CURVATURE; });
+    refused("width", [](auto& stack, size_t&) { stack[1].shadow.width = 7; });
+    refused("height", [](auto& stack, size_t&) { stack[1].shadow.height = 7; });
+    refused("axis", [](auto& stack, size_t&) { stack[1].shadow.axis = PEL_AXIS_ROOT; });
+    refused("closedEnds", [](auto& stack, size_t&) { stack[1].shadow.closedEnds = 1; });
+    refused("sharpening", [](auto& stack, size_t&) { stack[1].shadow.sharpening = NAN; });
+    refused("structSize", [](auto& stack, size_t&) { stack[1].structSize = 3; });
+    refused("form", [](auto& stack, size_t&) {
+        stack[0].kind = stack[1].kind = PEL_LUT_CURVATURE;
+        stack[1].curvature.form = PEL_FORM_RING;
+    });
+    for (const PelLutKind kind : {PEL_LUT_SPECULAR, PEL_LUT_EYE})
+        refused("kind", [&](auto& stack, size_t&) { stack[0].kind = stack[1].kind = kind; });
+    EXPECT_EQ(pelLutReadStack(device().get(), &info, 1, PEL_LUT_FLOAT, nullptr, 0),
+              PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(pelLutReadStack(device().get(), nullptr, 1, PEL_LUT_FLOAT, texels.data(), texels.size()),
+              PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(pelLutReadStack(device().get(), nullptr, 0, PEL_LUT_FLOAT, texels.data(), 0), PEL_SUCCESS);
+}

@@ -50,7 +50,14 @@ void bindLut(py::module_& module) {
         .def_static("from_texels", maker<Lut>(pelLutCreateFromTexels))
         .def("info", structure<pelLutInfoDefaults>(pelLutGetInfo))
         .def("clipped", value<uint64_t>(pelLutCountClipped))
-        .def("read", function(pelLutRead));
+        .def("read", function(pelLutRead))
+        .def_static("read_stack", [](const Device& d, uintptr_t tables, uint32_t count, uint32_t encoding,
+                                     uintptr_t to, size_t bytes) {
+            call([&] {
+                return pelLutReadStack(d.get(), static_cast<const PelLutInfo*>(pointer(tables)), count,
+                                       PelLutEncoding(encoding), pointer(to), bytes);
+            });
+        });
 }
 
 }  // namespace pel::python

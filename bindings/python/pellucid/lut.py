@@ -1,7 +1,7 @@
 """Look-up tables."""
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, Optional
 
 import numpy as np
@@ -169,6 +169,34 @@ class Lut(OfThisProcess):
         result, event = self._submit_read(encoding, out, ())
         event.wait()
         return result
+
+    @staticmethod
+    def read_stack(device: Device, tables: Sequence[CurvatureLutDesc] | Sequence[ShadowLutDesc],
+                   encoding: LutEncoding | str = LutEncoding.FLOAT) -> NDArray[Any]:
+        """The texels of many tables of one size, axis and form (or closed ends), made together: several times
+        as fast as one by one if they are small. Waits.
+
+        Returns
+        -------
+        (len(tables), height, width, 3 or 4), types as of `read`; each to the same bits.
+        """
+        e = to_enum(LutEncoding, encoding, "encoding")
+        if len(tables) == 0:
+            raise ValueError("tables is empty; a CurvatureLutDesc or ShadowLutDesc for each table is needed")
+        kind = type(tables[0])
+        if kind not in (CurvatureLutDesc, ShadowLutDesc):
+            raise TypeError(f"tables hold {kind.__name__}; CurvatureLutDesc or ShadowLutDesc is needed")
+        first = LutInfo(kind="curvature" if kind is CurvatureLutDesc else "shadow")
+        infos = np.repeat(first._data, len(tables))
+        for info, desc in zip(infos, tables):
+            info[first.kind.name.lower()] = kind._bytes_of(desc)[0]
+        dtype, components = _TEXELS[e]
+        texels = np.empty((len(tables), tables[0].height, tables[0].width, components), dtype)
+        _in_flight.interruptible(
+            lambda: _native.Lut.read_stack(device._handle, infos.ctypes.data, len(infos), int(e),
+                                           texels.ctypes.data, texels.nbytes),
+            infos, texels, tables)
+        return texels
 
     def __repr__(self) -> str:
         info = self.info

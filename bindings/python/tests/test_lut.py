@@ -37,6 +37,11 @@ def test_texels_go_there_and_back(device):
      "encoding is 'png'; it must be one of float, half, faceworks8"),
     (lambda d: pel.Lut.curvature(d, width=4, height=4).read("half", np.empty((4, 4, 3), np.float32)),
      ValueError, "out is"),
+    (lambda d: pel.Lut.read_stack(d, []), ValueError, "empty"),
+    (lambda d: pel.Lut.read_stack(d, [pel.LutInfo()]), TypeError, "ShadowLutDesc is needed"),
+    (lambda d: pel.Lut.read_stack(d, [pel.ShadowLutDesc(), pel.CurvatureLutDesc()]), TypeError, "needed"),
+    (lambda d: pel.Lut.read_stack(d, [pel.ShadowLutDesc(width=w) for w in (3, 4)]), pel.PellucidError,
+     "another width"),
     (lambda d: pel.Lut(), TypeError, "Lut.curvature")])
 def test_bad_use(device, use, error, message):
     with pytest.raises(error, match=message):
@@ -99,3 +104,13 @@ def test_named_profiles():
 def test_bad_profiles(use, error):
     with pytest.raises(error):
         use()
+
+
+@pytest.mark.parametrize("encoding", ["float", "half", "faceworks8"])
+def test_tables_of_a_stack_are_those_of_their_own(device, encoding):
+    profiles = [pel.Profile.skin_layers(pel.Skin(melanin=m)) for m in (0.02, 0.1, 0.3)]
+    for make, kind in ((pel.Lut.curvature, pel.CurvatureLutDesc), (pel.Lut.shadow, pel.ShadowLutDesc)):
+        descs = [kind(profile=profile, width=16, height=8) for profile in profiles]
+        stack = pel.Lut.read_stack(device, descs, encoding)
+        assert np.array_equal(stack, [make(device, desc).read(encoding) for desc in descs])
+        assert not np.array_equal(stack[0], stack[2])

@@ -820,6 +820,12 @@ PEL_API PelError pelLutGetSize(PelLut lut, PelLutEncoding encoding, size_t* byte
 /* The texels, row-major, top row first. `destination` holds `bytes` >= pelLutGetSize. */
 PEL_API PelError pelLutRead(PelLut lut, PelLutEncoding encoding, void* destination, size_t bytes,
                             const PelSubmit* submit);
+/* Makes `count` tables and reads them, one below the other, each to the same bits as pelLutRead's: many small
+ * tables several times as fast as one by one. All are of one kind, PEL_LUT_CURVATURE or PEL_LUT_SHADOW, and
+ * of one size, axis and form or closedEnds. `destination` holds `bytes` >= count times width * height * 12, 6
+ * or 4. Waits. All structures have the structSize of the first. */
+PEL_API PelError pelLutReadStack(PelDevice device, const PelLutInfo* tables, uint32_t count,
+                                 PelLutEncoding encoding, void* destination, size_t bytes);
 /* Texels of a curvature LUT whose residual D - max(u, 0) lies beyond +-1/4 in some channel:
  * PEL_LUT_FACEWORKS8 clips them. 0 for other kinds. Waits for the LUT. */
 PEL_API PelError pelLutCountClipped(PelLut lut, uint64_t* clipped);

@@ -492,6 +492,12 @@ class Lut : public Handle<PelLut, pelLutRetain, pelLutRelease> {
         check(pelLutRead(h_, encoding, texels.data(), bytes, nullptr));
         return texels;
     }
+    // Tables of one kind and size, one below the other, in `bytes` bytes (pelLutReadStack).
+    static void readStack(const Device& device, const std::vector<PelLutInfo>& tables,
+                          PelLutEncoding encoding, void* destination, size_t bytes) {
+        check(pelLutReadStack(device.get(), tables.data(), uint32_t(tables.size()), encoding, destination,
+                              bytes));
+    }
 };
 
 class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
