@@ -188,7 +188,11 @@ class Batch {
     State handle(const io::BatchEntry& entry, size_t device) {
         const std::string path = (std::filesystem::path(a_.folder) / entry.file).string();
         const bool exists = std::filesystem::exists(path);
-        if (exists && io::verifyLutExr(io::readWholeFile(path), entry.key)) return kept;
+        if (exists && io::verifyLutExr(io::readWholeFile(path), entry.key)) {
+            for (const io::BatchTable& table : entry.tables)  // the index will describe them
+                if (table.profile.valid()) table.profile.wait();
+            return kept;
+        }
         const std::string bytes = make(entry, device);
         io::AtomicFile file(path);
         file.write(bytes.data(), bytes.size());
