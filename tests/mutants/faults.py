@@ -52,6 +52,18 @@ class Fault:
         return self.path.startswith("bindings/python") or self.path.endswith(".py")
 
 
+def lanes(text, line):
+    """The number of lanes that this line of a kernel is for alone, or None."""
+    around = []
+    for row in text.split("\n")[:line]:
+        if found := re.match(r"# *(if|elif|else|endif)\w*(.*)", row):
+            word, condition = found.groups()
+            before = around.pop() if word != "if" else ""
+            if word != "endif":
+                around.append("PEL_WIDTH == 1" if word == "else" and "PEL_WIDTH > 1" in before else condition)
+    return next((found[1] for each in around if (found := re.search(r"PEL_WIDTH == (\d+)", each))), None)
+
+
 def closing(text, opening):
     """The index of the bracket that closes the one at `opening`, or -1."""
     depth = 0
