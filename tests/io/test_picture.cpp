@@ -83,6 +83,17 @@ TEST(ToneMap, CurvesHitTheirSourcesPoints) {
     const float grey = 0.18f, white = 90.6f * grey;  // 6.5 stops above
     EXPECT_NEAR(shown({grey, grey, grey}, map)[0], 127.5, 0.6);
     EXPECT_EQ(shown({white, white, white}, map)[0], 255);
+    // The formulas of both, in double precision and by another program.
+    EXPECT_EQ(shown({0.8f, 0.2f, 0.05f}, map), (std::vector<uint8_t>{204, 134, 76}));
+    std::vector<float> stops;
+    for (const int k : {-8, -4, -2, -1, 1, 2, 4, 6})
+        stops.insert(stops.end(), 3, 0.18f * std::exp2(float(k)));
+    const std::vector<uint8_t> codes = shown(stops, map);
+    for (size_t i = 0; i < 8; ++i)
+        EXPECT_EQ(codes[3 * i], (std::vector{8, 41, 74, 98, 157, 183, 223, 250})[i]) << i;
+    map.curve = ToneCurve::filmic;
+    EXPECT_EQ(shown({0.02f, 0.18f, 0.5f, 1, 2, 4}, map), (std::vector<uint8_t>{33, 100, 150, 186, 220, 246}));
+    map.curve = ToneCurve::agxLike;
     // A saturated light turns paler the brighter it is.
     const auto dim = shown({0.2f, 0, 0}, map), bright = shown({20, 0, 0}, map);
     EXPECT_GT(dim[0] - dim[1], bright[0] - bright[1]);

@@ -26,6 +26,7 @@ ARRAY = r"^ *(?!return|case)(?:[\w:<>]+[*&]? )+\w+\[(\d+)\]"  # its length: one 
 # Guards around what changes nothing where no lane takes part: they save time.
 SAVES_TIME = r"(?:!SKIPPING \|\| )?anyw\("
 ENDS_EARLY = r"(?:SKIPPING && )?!anyw\("
+COMMUTATIVE = re.compile(r"\b(?:f?(?:min|max)w?|add3|dot3?|hypot|gcd)$")
 TIME_ALONE = r"\b(?:PEL_PREFETCH|reserve)\("
 # Comments, the texts of literals (not a quote between digits), and preprocessor lines.
 HIDDEN_C = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|(?P<text>"(?:\\.|[^"\\\n])*"'
@@ -183,9 +184,9 @@ def candidates(path, text, m):
                     lambda match: WORD.get(match[0]))
     yield from each(m, "other component", r"(?<=[\w\])]\.)[xyz]\b(?!\()",
                     lambda match: "xyz"["xyz".index(match[0]) - 2])
-    for match in re.finditer(r"(?<![\w.])[\w.:]+\(([\w.\[\]]+), ([\w.\[\]]+)\)", m):
-        if match[1] != match[2]:
-            yield match.start(1), match.end(2), f"{match[2]}, {match[1]}", "swapped arguments"
+    for match in re.finditer(r"(?<![\w.])([\w.:]+)\(([\w.\[\]]+), ([\w.\[\]]+)\)", m):
+        if match[2] != match[3] and not COMMUTATIVE.search(match[1]):
+            yield match.start(2), match.end(3), f"{match[3]}, {match[2]}", "swapped arguments"
     for match in re.finditer(r"\? ([\w.\"]+) : ([\w.\"]+)(?=[;,)\s])", m):
         one, other = text[slice(*match.span(1))], text[slice(*match.span(2))]
         yield match.start(1), match.end(2), f"{other} : {one}", "swapped arguments"
