@@ -281,6 +281,29 @@ TEST(ShadeSkipping, TracesOfLightInFullShadowAreNone) {
     }
 }
 
+// One light's shadow is filtered wide for the material with tables, the other's only sharply for the one that
+// scatters on screen.
+TEST(ShadeSum, LightsAddUp) {
+    static const Profile skin = Profile::skin();
+    Frame f = scatteringFrame(PEL_SCATTERING_SCREEN, 96, 64);
+    for (auto& [id, m] : f.materials) m.profile = skin.get(), m.specular = 0.3f;
+    f.materials.at(1).scattering = PEL_SCATTERING_PREINTEGRATED;
+    f.ambient = pelAmbientDefaults();
+    Light other = f.lights[0];
+    other.params.shadowFilterTexels = 0;
+    other.params.toLight[0] = -0.6f;
+    const std::vector<Light> both{f.lights[0], other};
+    std::vector<float> sum(3 * f.pixels());
+    for (const Light& light : both) {
+        f.lights = {light};
+        const std::vector<float> one = shade(f);
+        for (size_t i = 0; i < sum.size(); ++i) sum[i] += one[i];
+    }
+    f.lights = both;
+    const std::vector<float> all = shade(f);
+    for (size_t i = 0; i < sum.size(); ++i) ASSERT_NEAR(all[i], sum[i], 1e-5f) << i;
+}
+
 // --- bands ---
 
 // Blurred normals, two wide shadows to filter; lit by both lights.
