@@ -24,7 +24,7 @@ TEST_F(Shade, PlainLightIsAlbedoTimesCosine) {
 TEST_F(Shade, PicturesToLookAt) {
     const std::vector<float> radiance =
         shaded("--picture @sheet.png --show final,diffuse,specular --tonemap filmic");
-    expectKept("sheet.png", "shade.png", "0.002");
+    expectKept("sheet.png", "shade.png", "0.0003");
     for (const std::string name : {"p.png", "p.jpg", "p.bmp", "p.tga"}) {
         done("shade @g.exr --scene @s.toml --exposure 0.5 --tonemap none -o @" + name);
         const io::Image picture = io::readImage(path(name));
