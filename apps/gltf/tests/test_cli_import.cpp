@@ -102,6 +102,8 @@ TEST_F(Import, ABallOfWaxBecomesAPicture) {
     EXPECT_GT(color[3], 96 * 96 / 3);
     EXPECT_GT(color[0], 0.15);
     EXPECT_GT(color[0], 1.3 * color[2]);
+    done("shade @out/gbuffer.exr --scene @out/scene.toml -o @wax.png");
+    expectKept("wax.png", "wax.png", "0.0003");
     // The curvature that was measured is that of the ball.
     const io::Image g = io::readImage(out("gbuffer.exr"));
     const float middle = g.channel("Curvature.V").pixels[48 * 96 + 48];
