@@ -73,7 +73,7 @@ class Tests:
                 with launched() as (trace, kernels):
                     status, seconds = self.place.test(name, 900, WORK / "test.log", POCL_TRACING="text",
                                                       POCL_TRACING_OPT=trace)
-                for _ in range(2):  # until its programs are in our cache, and what PoCL makes of them in PoCL's
+                for _ in range(2):  # until its programs are in our cache, and their code in PoCL's
                     if status in PASSED:
                         status, seconds = self.place.test(name, 900, WORK / "test.log")
             self.measured[name] = {"good": status in PASSED, "seconds": seconds, "kernels": sorted(kernels)}
