@@ -39,7 +39,8 @@ TEST_F(System, OutputsAppearWholeOrNotAtAll) {
     for (const auto& [name, message] : {std::pair{folder_.string(), "is a folder"},
                                         {path("no/a.txt"), "there is no folder"},
                                         {std::string(), "needs a file name"}})
-        EXPECT_TRUE(contains(messageOf<io::FileError>([&] { io::AtomicFile file(name); }), message));
+        EXPECT_TRUE(
+            contains(messageOf<io::FileError>([&, name = name] { io::AtomicFile file(name); }), message));
 }
 
 TEST_F(System, AnOpenTargetIsKept) {
