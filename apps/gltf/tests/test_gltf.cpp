@@ -296,60 +296,55 @@ TEST(Gltf, WrongFilesSayWhatAndWhere) {
     expectError(square({}, bad), {"meshes[0].primitives[0]", "index 9", "4 vertices"});
 }
 
-// Each number, or list of `count` of them, from `low` to `high`.
+// Numbers, and lists of `count` of them.
 TEST(Gltf, NumbersOutOfTheirRangesAreRefused) {
     const std::string pbr = "/materials/0/pbrMetallicRoughness/",
                       of = "/materials/0/extensions/KHR_materials_",
                       light = "/extensions/KHR_lights_punctual/lights/0/", node = "/nodes/0/",
-                      camera = "/cameras/0/perspective/";
+                      camera = "/cameras/0/perspective/", gloss = of + "pbrSpecularGlossiness/",
+                      through = of + "diffuse_transmission/diffuseTransmission";
     const struct {
-        std::string where;
-        size_t count;
         double low, high;
-    } rows[] = {{pbr + "baseColorFactor", 4, 0, 1},
-                {pbr + "metallicFactor", 0, 0, 1},
-                {pbr + "roughnessFactor", 0, 0, 1},
-                {of + "ior/ior", 0, 1, 100},
-                {of + "specular/specularFactor", 0, 0, 1},
-                {of + "transmission/transmissionFactor", 0, 0, 1},
-                {of + "diffuse_transmission/diffuseTransmissionFactor", 0, 0, 1},
-                {of + "diffuse_transmission/diffuseTransmissionColorFactor", 3, 0, 1},
-                {of + "volume/thicknessFactor", 0, 0, 1e6},
-                {of + "volume/attenuationDistance", 0, 1e-9, INFINITY},
-                {of + "volume/attenuationColor", 3, 0, 1},
-                {of + "volume_scatter/multiscatterColor", 3, 0, 1},
-                {of + "scatter/multiscatterColorFactor", 3, 0, 1},
-                {of + "volume_scatter/scatterAnisotropy", 0, -1, 1},
-                {of + "pbrSpecularGlossiness/diffuseFactor", 4, 0, 1},
-                {of + "pbrSpecularGlossiness/glossinessFactor", 0, 0, 1},
-                {light + "color", 3, 0, 1e6},
-                {light + "intensity", 0, 0, 1e12},
-                {light + "range", 0, 0, 1e12},
-                {light + "spot/outerConeAngle", 0, 0, M_PI / 2},
-                {camera + "yfov", 0, 1e-3, 3.14},
-                {camera + "aspectRatio", 0, 1e-3, 1e3},
-                {node + "translation", 3, -1e12, 1e12},
-                {node + "rotation", 4, -2, 2},
-                {node + "scale", 3, -1e12, 1e12}};
-    for (const auto& [where, count, low, high] : rows) {
-        const auto with = [&, where = where, count = count](double x) {
-            const json value = count ? json(std::vector<double>(count, x)) : json(x);
-            return square({{"/cameras/0", R"({"type": "perspective", "perspective": {"yfov": 1}})"_json},
-                           {"/nodes/0/camera", 0},
-                           {"/extensions/KHR_lights_punctual/lights/0/type", "spot"},
-                           {"/nodes/0/extensions/KHR_lights_punctual/light", 0},
-                           {"/meshes/0/primitives/0/material", 0},
-                           {"/materials/0/name", "m"},
-                           {where.c_str(), value}});
-        };
-        const std::string key = where.substr(where.rfind('/') + 1);
-        const auto step = [](double end) { return 0.01 * (end == 0 ? 1 : std::abs(end)); };
-        expectError(with(low - step(low)), {key});
-        EXPECT_NO_THROW(decoded(with(low))) << where;
-        if (high == INFINITY) continue;
-        expectError(with(high + step(high)), {key});
-        EXPECT_NO_THROW(decoded(with(high))) << where;
-    }
+        size_t count;
+        std::vector<std::string> where;
+    } rows[] = {{0, 1, 4, {pbr + "baseColorFactor", gloss + "diffuseFactor"}},
+                {0, 1, 3, {through + "ColorFactor", of + "volume/attenuationColor"}},
+                {0, 1, 3, {of + "volume_scatter/multiscatterColor", of + "scatter/multiscatterColorFactor"}},
+                {0, 1, 0, {pbr + "metallicFactor", pbr + "roughnessFactor", of + "specular/specularFactor"}},
+                {0, 1, 0, {of + "transmission/transmissionFactor", through + "Factor"}},
+                {0, 1, 0, {gloss + "glossinessFactor"}},
+                {1, 100, 0, {of + "ior/ior"}},
+                {0, 1e6, 0, {of + "volume/thicknessFactor"}},
+                {1e-9, INFINITY, 0, {of + "volume/attenuationDistance"}},
+                {-1, 1, 0, {of + "volume_scatter/scatterAnisotropy"}},
+                {0, 1e6, 3, {light + "color"}},
+                {0, 1e12, 0, {light + "intensity", light + "range"}},
+                {0, M_PI / 2, 0, {light + "spot/outerConeAngle"}},
+                {1e-3, 3.14, 0, {camera + "yfov"}},
+                {1e-3, 1e3, 0, {camera + "aspectRatio"}},
+                {-1e12, 1e12, 3, {node + "translation", node + "scale"}},
+                {-2, 2, 4, {node + "rotation"}}};
+    for (const auto& row : rows)
+        for (const std::string& where : row.where) {
+            SCOPED_TRACE(where);
+            const auto with = [&](double x) {
+                const json value = row.count ? json(std::vector<double>(row.count, x)) : json(x);
+                return square({{"/cameras/0", R"({"type": "perspective", "perspective": {"yfov": 1}})"_json},
+                               {"/nodes/0/camera", 0},
+                               {"/extensions/KHR_lights_punctual/lights/0/type", "spot"},
+                               {"/nodes/0/extensions/KHR_lights_punctual/light", 0},
+                               {"/meshes/0/primitives/0/material", 0},
+                               {"/materials/0/name", "m"},
+                               {where.c_str(), value}});
+            };
+            for (const double end : {row.low, row.high}) {
+                if (end == INFINITY) continue;
+                EXPECT_NO_THROW(decoded(with(end)));
+                const double step = 0.01 * (end == 0 ? 1 : std::abs(end));
+                expectError(with(end == row.low ? end - step : end + step),
+                            {where.substr(where.rfind('/') + 1)});
+            }
+        }
 }
 
 // Work is bounded by what a file draws: nodes times primitives that draw nothing are not visited.
