@@ -44,6 +44,18 @@ class CommandTest : public FolderTest {
         EXPECT_EQ(filesInFolder(), files) << line;
     }
 
+    // A picture that a command drew is that in tests/cli/pictures, at which somebody looked. After a change
+    // that is meant to be visible, look at the new pictures at full size and keep them:
+    // PELLUCID_KEEP_PICTURES=1.
+    void expectKept(const std::string& made, const std::string& name, const std::string& maxRmse) const {
+        const std::string kept = PELLUCID_SOURCE_DIR "/tests/cli/pictures/" + name;
+        const char* keep = std::getenv("PELLUCID_KEEP_PICTURES");
+        if (keep && *keep)
+            std::filesystem::copy_file(path(made), kept, std::filesystem::copy_options::overwrite_existing);
+        else
+            done("compare @" + made + " '" + kept + "' --max-rmse " + maxRmse);
+    }
+
     // The keys that every report has.
     static void expectReport(const nlohmann::json& report) {
         ASSERT_TRUE(report.is_object());

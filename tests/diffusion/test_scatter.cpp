@@ -1,5 +1,8 @@
 // A PelScatter: blocks of pixels, taps on a disk and the separable filter against the sums that they stand
 // for, and what must hold for any picture.
+#include <numeric>
+#include <set>
+
 #include "diffusion/scatter_scene.h"
 #include "reference/diffusion_taps.h"
 #include "test.h"
@@ -357,4 +360,20 @@ TEST(Scatter, NeitherBrighterThanItsLightNorBlueInADarkGap) {
                 EXPECT_LE(bluer, tolerance::scatterBluer) << size << " mm, " << turn << ", " << elevation;
             }
     EXPECT_GT(dark, 0u);
+}
+
+// Of a ball on a background without ids.
+TEST(ScatterStats, CountWhatIsCovered) {
+    const Picture p = ball(80, 10, 0.6, sideLight());
+    std::set<std::pair<size_t, size_t>> tiles;
+    for (size_t i = 0; i < p.pixels(); ++i)
+        if (p.ids[i]) tiles.insert({i % p.width / 16, i / p.width / 16});
+    for (const auto& [method, taps] : ways) {
+        const PelScatterStats stats = run(p, {{1, narrow(), 1, controlsOf(method, taps)}}).stats;
+        EXPECT_EQ(stats.pixelsTotal, p.pixels());
+        EXPECT_EQ(stats.pixelsCovered, size_t(std::ranges::count(p.ids, 1)));
+        EXPECT_EQ(stats.tilesCovered, tiles.size()) << int(method) << ", " << taps;
+        EXPECT_EQ(std::accumulate(stats.tilesByScattering, std::end(stats.tilesByScattering), uint64_t{0}),
+                  stats.tilesTapped);
+    }
 }

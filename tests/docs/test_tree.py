@@ -51,7 +51,6 @@ LAYERS = {
     "tests": f"host/fields {CL} host/system host/io host/scene host/profile_fit host/sample apps/batch "
              "apps/gltf apps/gltf/tests bench/measure tests/reference",
     "tests/reference": "",
-    "tests/windows": "host/io host/system apps/gltf tests",
 }
 BASES = [ROOT / base for base in "host kernels host/include apps tests bindings bench".split()]
 

@@ -37,15 +37,25 @@ TEST(EyePicture, RefractsAsTheTracer) {
 TEST(EyePicture, SmallEyesShowTheMeanOfTheirTexture) {
     EyeScene fine;
     fine.ambient.constant[0] = fine.ambient.constant[1] = fine.ambient.constant[2] = 1;
-    fine.textureSize = 512;
-    for (int j = 0; j < 512; ++j)
-        for (int i = 0; i < 512; ++i) fine.texture.insert(fine.texture.end(), 3, float((i / 3 + j / 3) % 2));
     fine.eye.pupilRadius = 0;
     fine.eye.texturePupil = 0;
-    EyeScene grey = fine;
-    grey.texture.assign(grey.texture.size(), 0.5f);
-    for (const int size : {12, 20, 40}) {
-        fine.size = grey.size = size;
+    const auto checks = [](int i, int j) { return (i / 3 + j / 3) % 2; };
+    const auto columns = [](int i, int) { return i % 2; };
+    const auto rows = [](int, int j) { return j % 2; };
+    const struct {
+        int (*pattern)(int, int);
+        uint32_t texels;
+        int pixels;
+    } cases[] = {
+        {checks, 512, 12}, {checks, 512, 20}, {checks, 512, 40}, {columns, 100, 12}, {rows, 100, 12}};
+    for (const auto& c : cases) {
+        fine.textureSize = c.texels, fine.size = c.pixels;
+        fine.texture.clear();
+        for (int j = 0; j < int(c.texels); ++j)
+            for (int i = 0; i < int(c.texels); ++i)
+                fine.texture.insert(fine.texture.end(), 3, float(c.pattern(i, j)));
+        EyeScene grey = fine;
+        grey.texture.assign(grey.texture.size(), 0.5f);
         const EyePicture seen(fine), known(grey);
         const std::vector<float> is = seen.shade(), should = known.shade();
         double sum = 0, iris = 0;
@@ -55,7 +65,7 @@ TEST(EyePicture, SmallEyesShowTheMeanOfTheirTexture) {
             iris += should[3 * k] * should[3 * k];
         }
         ASSERT_GT(iris, 0);
-        EXPECT_LT(std::sqrt(sum / iris), tolerance::eyeMinified) << size << " pixels";
+        EXPECT_LT(std::sqrt(sum / iris), tolerance::eyeMinified) << c.pixels << " pixels, " << c.texels;
     }
 }
 

@@ -164,6 +164,11 @@ TEST(Subsets, HollowsAndThinParts) {
     const std::vector<uint8_t> covered{1, 1, 1, 0, 1};
     const auto subsets =
         io::subsetsOf({5, 1, positions, normals, light, {}, covered, 1, curvature, thickness, path});
+    uint32_t bits = 0, sum = 0;
+    for (const auto bit : {io::SUBSET_UNLIT, io::SUBSET_TERMINATOR, io::SUBSET_PENUMBRA, io::SUBSET_REST,
+                           io::SUBSET_HOLLOWS, io::SUBSET_THIN})
+        bits |= bit, sum += bit;
+    EXPECT_EQ(sum, bits) << "each has a bit of its own";
     EXPECT_EQ(subsets, (std::vector<uint8_t>{io::SUBSET_HOLLOWS, io::SUBSET_THIN, io::SUBSET_REST, 0,
                                              io::SUBSET_REST}));
 }

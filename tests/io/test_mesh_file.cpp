@@ -155,7 +155,8 @@ TEST_F(MeshFile, PlyWrittenIsPlyRead) {
     EXPECT_EQ(last, 3.0f);
 }
 
-// Lists of any type of length and value, in vertices and faces, before, between and after what is wanted.
+// Lists of any type of length and value, in vertices and faces, before, between and after what is wanted; and
+// elements that are neither.
 TEST_F(MeshFile, PlyListsOfEitherByteOrder) {
     const std::vector<std::string> types = {"char", "uchar", "short", "ushort",
                                             "int",  "uint",  "float", "double"};
@@ -168,11 +169,13 @@ TEST_F(MeshFile, PlyListsOfEitherByteOrder) {
                                          ".ply";
                 const std::string header =
                     std::string("ply\nformat ") + (big ? "binary_big_endian" : "binary_little_endian") +
-                    " 1.0\nelement vertex 300\n" + list + value +
+                    " 1.0\nelement camera 2\n" + list + value + " marks\nproperty " + value +
+                    " angle\nelement vertex 300\n" + list + value +
                     " extra\nproperty float x\nproperty double y\nproperty " + value +
                     " other\nproperty float z\n" + list + value + " more\nelement face 2\n" + list + value +
                     " before\n" + list + index + " vertex_indices\nproperty short flags\nend_header\n";
                 PlyBytes out(big);
+                for (int i = 0; i < 2; ++i) out.add(length, 2).add(value, 3).add(value, 4).add(value, 5);
                 for (int v = 0; v < 300; ++v) {
                     out.add(length, v % 3);
                     for (int i = 0; i < v % 3; ++i) out.add(value, 100 + i);

@@ -14,10 +14,24 @@ Srgb8 at(const Picture& p, int x, int y) {
     return {c[0], c[1], c[2]};
 }
 
-// CIE L* of an sRGB colour.
-double lightness(Srgb8 c) {
-    return labFromLinear(
-        {decodeSrgb(c[0] / 255.0f), decodeSrgb(c[1] / 255.0f), decodeSrgb(c[2] / 255.0f)})[0];
+// Lightness, hue (degrees) and chroma are those given, up to bytes; less chroma at the border of sRGB alone.
+// OKLab [B. Ottosson, "A perceptual color space for image processing", 2020].
+void expectOklab(Srgb8 color, double lightness, double hue, double chroma) {
+    double x[3];
+    for (size_t c = 0; c < 3; ++c) x[c] = decodeSrgb(color[c] / 255.0f);
+    const double l = std::cbrt(0.4122214708 * x[0] + 0.5363325363 * x[1] + 0.0514459929 * x[2]),
+                 m = std::cbrt(0.2119034982 * x[0] + 0.6806995451 * x[1] + 0.1073969566 * x[2]),
+                 s = std::cbrt(0.0883024619 * x[0] + 0.2817188376 * x[1] + 0.6299787005 * x[2]);
+    EXPECT_NEAR(0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s, lightness, 0.005);
+    const double a = 1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
+                 b = 0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s, angle = hue * M_PI / 180;
+    EXPECT_NEAR(b * std::cos(angle) - a * std::sin(angle), 0, 0.005) << "across the hue";
+    const double found = a * std::cos(angle) + b * std::sin(angle);
+    const bool atBorder = std::ranges::min(color) <= 1 || std::ranges::max(color) >= 254;
+    EXPECT_LT(found, chroma + 0.005);
+    if (!atBorder) {
+        EXPECT_GT(found, chroma - 0.005);
+    }
 }
 std::vector<uint8_t> shown(const std::vector<float>& rgb, const ToneMap& map) {
     return toSrgb8(rgb, map);
@@ -69,6 +83,17 @@ TEST(ToneMap, CurvesHitTheirSourcesPoints) {
     const float grey = 0.18f, white = 90.6f * grey;  // 6.5 stops above
     EXPECT_NEAR(shown({grey, grey, grey}, map)[0], 127.5, 0.6);
     EXPECT_EQ(shown({white, white, white}, map)[0], 255);
+    // The formulas of both, in double precision and by another program.
+    EXPECT_EQ(shown({0.8f, 0.2f, 0.05f}, map), (std::vector<uint8_t>{204, 134, 76}));
+    std::vector<float> stops;
+    for (const int k : {-8, -4, -2, -1, 1, 2, 4, 6})
+        stops.insert(stops.end(), 3, 0.18f * std::exp2(float(k)));
+    const std::vector<uint8_t> codes = shown(stops, map);
+    for (size_t i = 0; i < 8; ++i)
+        EXPECT_EQ(codes[3 * i], (std::vector{8, 41, 74, 98, 157, 183, 223, 250})[i]) << i;
+    map.curve = ToneCurve::filmic;
+    EXPECT_EQ(shown({0.02f, 0.18f, 0.5f, 1, 2, 4}, map), (std::vector<uint8_t>{33, 100, 150, 186, 220, 246}));
+    map.curve = ToneCurve::agxLike;
     // A saturated light turns paler the brighter it is.
     const auto dim = shown({0.2f, 0, 0}, map), bright = shown({20, 0, 0}, map);
     EXPECT_GT(dim[0] - dim[1], bright[0] - bright[1]);
@@ -83,27 +108,17 @@ TEST(ToneMap, BytesAreSrgb) {
     }
 }
 
-TEST(ColorMap, GetsLighterEvenly) {
-    const double low = lightness(sequentialColor(0)), high = lightness(sequentialColor(1));
-    EXPECT_GT(high - low, 50);
-    for (int i = 1; i <= 64; ++i) {
-        EXPECT_GT(lightness(sequentialColor(i / 64.0f)), lightness(sequentialColor((i - 1) / 64.0f))) << i;
+TEST(ColorMap, IsEvenInOklab) {
+    for (int i = 0; i <= 64; ++i) {
+        const float t = float(i) / 64;
+        SCOPED_TRACE(t);
+        expectOklab(sequentialColor(t), 0.28 + 0.57 * t, 264 + 166 * t, 0.19);
+        expectOklab(divergingColor(t), 0.95 - 0.45 * t, 29, 0.19 * t);
+        expectOklab(divergingColor(-t), 0.95 - 0.45 * t, 264, 0.19 * t);
     }
-    const Srgb8 blue = sequentialColor(0), warm = sequentialColor(1);
-    EXPECT_GT(blue[2], blue[0]);
-    EXPECT_GT(warm[0], warm[2]);
-    EXPECT_EQ(sequentialColor(-5), blue);
-    EXPECT_EQ(sequentialColor(INFINITY), warm);
+    EXPECT_EQ(sequentialColor(-5), sequentialColor(0));
+    EXPECT_EQ(sequentialColor(INFINITY), sequentialColor(1));
     EXPECT_EQ(sequentialColor(NAN), (Srgb8{128, 128, 128}));
-}
-
-TEST(ColorMap, DivergesEvenlyFromZero) {
-    for (int i = 1; i <= 32; ++i) {
-        EXPECT_LT(lightness(divergingColor(i / 32.0f)), lightness(divergingColor((i - 1) / 32.0f))) << i;
-        EXPECT_LT(lightness(divergingColor(-i / 32.0f)), lightness(divergingColor((1 - i) / 32.0f))) << i;
-    }
-    EXPECT_GT(divergingColor(-1)[2], divergingColor(-1)[0]);
-    EXPECT_GT(divergingColor(1)[0], divergingColor(1)[2]);
     EXPECT_EQ(scaleColor(-3, -3, 6), divergingColor(-0.5f));
     EXPECT_EQ(scaleColor(0, -3, 6), divergingColor(0));
     EXPECT_EQ(scaleColor(3, 0, 6), sequentialColor(0.5f));

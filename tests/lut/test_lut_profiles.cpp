@@ -83,6 +83,12 @@ TEST(LutProfiles, RefusesWhatMakesNoSense) {
     const auto gaussian = [](const char* word, float variance, float r, float g, float b) {
         expectRefused(word, [&] { Profile::gaussians({{variance, {r, g, b}}}); });
     };
+    for (const double bad : {0.0, -1.0, double(NAN), double(INFINITY)})
+        for (const char* word : {"distance 0 is", "distance 1 is", "distance 2 is"}) {
+            std::vector<double> distances(3, 1.0);
+            distances[size_t(word[9] - '0')] = bad;
+            expectRefused(word, [&] { Profile::skin().radial(distances); });
+        }
     for (float variance : {0.0f, NAN, INFINITY}) gaussian("variance", variance, 1, 1, 1);
     gaussian("green weight", 1, 1, -1, 1);
     gaussian("green weight", 1, most, INFINITY, 1);

@@ -180,7 +180,7 @@ TEST(UvScale, MultipliesWithTheMeshAndSkipsWhatHasNoExtent) {
     more.triangles({v, v + 1, v + 2, v, v, v, v + 1, v + 2, v + 3, 0, v, v + 3});
     EXPECT_EQ(uvScale(more), base);
     std::fill(mesh.uvs.begin(), mesh.uvs.end(), 0.25f);
-    EXPECT_THROW(uvScale(mesh), Error);
+    expectRefused("both an extent and a UV extent", [&] { uvScale(mesh); });
 }
 
 TEST(CurvatureBadInput, FaultsAreCountedAndStayLocal) {

@@ -22,6 +22,12 @@ OPERATOR = {"*": "/", "/": "*", "%": "/", "*=": "/=", "/=": "*=",
 WORD = both_ways("true/false True/False min/max fmin/fmax minw/maxw floor/ceil sin/cos any/all front/back "
                  "any_of/all_of continue/break")
 MESSAGE = r"\b(?:fail|invalidArgument|badFile|warn|note|printf|fprintf|print|throw [\w:]+|raise [\w.]+)\("
+ARRAY = r"^ *(?!return|case)(?:[\w:<>]+[*&]? )+\w+\[(\d+)\]"  # its length: one more changes nothing
+# Guards around what changes nothing where no lane takes part: they save time.
+SAVES_TIME = r"(?:!SKIPPING \|\| )?anyw\("
+ENDS_EARLY = r"(?:SKIPPING && )?!anyw\("
+COMMUTATIVE = re.compile(r"\b(?:f?(?:min|max)w?|add3|dot3?|hypot|gcd)$")
+TIME_ALONE = r"\b(?:PEL_PREFETCH|reserve)\("
 # Comments, the texts of literals (not a quote between digits), and preprocessor lines.
 HIDDEN_C = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|(?P<text>"(?:\\.|[^"\\\n])*"'
                       r"|(?<!\d)'(?:\\.|[^'\\\n])+')|^[ \t]*#(?:\\\n|[^\n])*", re.S | re.M)
@@ -47,6 +53,18 @@ class Fault:
         return self.path.startswith("bindings/python") or self.path.endswith(".py")
 
 
+def lanes(text, line):
+    """The number of lanes that this line of a kernel is for alone, or None."""
+    around = []
+    for row in text.split("\n")[:line]:
+        if found := re.match(r"# *(if|elif|else|endif)\w*(.*)", row):
+            word, condition = found.groups()
+            before = around.pop() if word != "if" else ""
+            if word != "endif":
+                around.append("PEL_WIDTH == 1" if word == "else" and "PEL_WIDTH > 1" in before else condition)
+    return next((found[1] for each in around if (found := re.search(r"PEL_WIDTH == (\d+)", each))), None)
+
+
 def closing(text, opening):
     """The index of the bracket that closes the one at `opening`, or -1."""
     depth = 0
@@ -65,7 +83,7 @@ def masked(path, text):
         return '"' + blank(match[0][1:-1]) + '"' if match["text"] else blank(match[0])
 
     out = (HIDDEN_PYTHON if path.endswith(".py") else HIDDEN_C).sub(keep, text)
-    for match in re.finditer(MESSAGE, out):
+    for match in re.finditer(f"{MESSAGE}|{TIME_ALONE}", out):
         end = closing(out, match.end() - 1)
         if end > 0:
             out = out[:match.end()] + blank(out[match.end():end]) + out[end:]
@@ -138,8 +156,9 @@ def candidates(path, text, m):
     def line(match, end):
         return m[m.rfind("\n", 0, match.start()) + 1:end]
 
+    lengths = {found.start(1) for found in re.finditer(ARRAY, m, re.M)}
     yield from each(m, "constant", r"(?<![\w.'])(?:0[xX][0-9a-fA-F]+|(?:\d+\.\d*|\d+)(?:[eE][-+]?\d+)?|\.\d+)"
-                    r"[fFuUlL]*(?![\w.'])", number)
+                    r"[fFuUlL]*(?![\w.'])", lambda match: None if match.start() in lengths else number(match))
     for match in re.finditer(r" (<=|>=|==|!=|<|>)(?= )", m):
         # A loop ends one too early: one too late would be undefined, and often unseen.
         early = match[1] == "<" and re.search(r"\bfor \([^;]*;[^;]*$", line(match, match.start()))
@@ -165,9 +184,9 @@ def candidates(path, text, m):
                     lambda match: WORD.get(match[0]))
     yield from each(m, "other component", r"(?<=[\w\])]\.)[xyz]\b(?!\()",
                     lambda match: "xyz"["xyz".index(match[0]) - 2])
-    for match in re.finditer(r"(?<![\w.])[\w.:]+\(([\w.\[\]]+), ([\w.\[\]]+)\)", m):
-        if match[1] != match[2]:
-            yield match.start(1), match.end(2), f"{match[2]}, {match[1]}", "swapped arguments"
+    for match in re.finditer(r"(?<![\w.])([\w.:]+)\(([\w.\[\]]+), ([\w.\[\]]+)\)", m):
+        if match[2] != match[3] and not COMMUTATIVE.search(match[1]):
+            yield match.start(2), match.end(3), f"{match[3]}, {match[2]}", "swapped arguments"
     for match in re.finditer(r"\? ([\w.\"]+) : ([\w.\"]+)(?=[;,)\s])", m):
         one, other = text[slice(*match.span(1))], text[slice(*match.span(2))]
         yield match.start(1), match.end(2), f"{other} : {one}", "swapped arguments"
@@ -180,8 +199,10 @@ def candidates(path, text, m):
         return
     yield from each(m, "dropped negation", r"(?<![\w)\]=!<>])!(?=[\w(:])", "")
     for match, end in brackets(m, r"\bif \("):
-        if ";" not in m[match.start():end]:
+        condition = m[match.end():end]
+        if ";" not in condition and not re.match(ENDS_EARLY, condition):
             yield match.end(), end, "false", "removed check"
+        if ";" not in condition and not re.match(SAVES_TIME, condition):
             yield match.end(), end, "true", "forced branch"
     yield from each(m, "dropped statement", r"^ +(?!return|throw|if|for|while|else|case|using|static|const"
                     r"|delete|break|continue|fail|invalidArgument)"
@@ -208,8 +229,7 @@ def meanings(path, text, m):
         if m[end + 1:end + 2] == ";":
             yield match.start(1), end + 2, ";", "dropped clear"
     yield from each(m, "dropped clear", r"\ballocateZeros\(", "allocate(")
-    # An end where no lane takes part saves time alone.
-    for match, end in brackets(m, r"\bif \((?!!anyw\()"):
+    for match, end in brackets(m, rf"\bif \((?!{ENDS_EARLY})"):
         if re.compile(r"\)\s+\{?\s*(?:return|continue|break)\b").match(m, end):
             yield match.end(), end, "false", "dropped early return"
     # A side without brackets of its own, or with one pair.

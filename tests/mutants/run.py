@@ -5,10 +5,10 @@
 
 Takes N lines (50) of kernels, host, command and Python package by SEED (1), puts one fault into each
 (faults.py), one at a time, builds what changed, and runs the tests that are nearest to the file (nearest.py)
-until one fails or they took S processor seconds (60). Prints killed or survived, the diff of each survivor,
-and the rate. Works in a copy of the tree in build/mutants; results stay there, so that a second run
-continues. A test that hangs has noticed; a fault that does not compile does not count, nor does one whose
-name stands in equivalent.txt.
+until one fails or they took S processor seconds (120). Lines of kernels that are for another number of lanes
+alone are tested with that number. Prints killed or survived, the diff of each survivor, and the rate. Works
+in a copy of the tree in build/mutants; results stay there, so that a second run continues. A test that hangs
+has noticed; a fault that does not compile does not count, nor does one whose name stands in equivalent.txt.
 
 --meaning: faults of a larger kind: a dropped clear or early return, a key or condition without one of its
 parts, a neighbour left out. --only: faults in files whose path matches. --again: survivors of earlier runs
@@ -45,6 +45,8 @@ def judge(place, tests, fault, seconds):
     """(verdict, reason)."""
     original = (TREE / fault.path).read_text()
     python, kernel = fault.is_python(), fault.path.startswith("kernels")
+    width = faults.lanes(original, fault.line) if kernel else None
+    lanes = {"PELLUCID_MATH_WIDTH": width} if width else {}
     log, names = WORK / "test.log", tests.choose(fault, seconds)
     compiled = set((WORK / "pocl").glob("*/*"))
     place.apply(fault, original)
@@ -58,7 +60,15 @@ def judge(place, tests, fault, seconds):
             if not python and not place.build(name):
                 return "does not compile", ""
             # Ten times as long as usual is a hang; other processes may take their share of the machine.
-            status, spent = place.test(name, 120 + 10 * tests.measured[name]["seconds"], log)
+            limit = 300 + 10 * tests.measured[name]["seconds"]
+            status, spent = place.test(name, limit, log, **lanes)
+            if status not in PASSED and lanes:  # some tests need the number that the device has
+                place.restore(fault.path, original)
+                place.build(name)
+                sound, _ = place.test(name, limit, WORK / "sound.log", **lanes)
+                place.apply(fault, original)
+                if sound not in PASSED or not place.build(name):
+                    continue
             if status not in PASSED:
                 if kernel and "did not build with" in log.read_text(errors="replace"):
                     return "does not compile", ""
@@ -95,7 +105,7 @@ def main():
     parser.add_argument("n", type=int, nargs="?", default=50)
     parser.add_argument("seed", nargs="?", default="1")
     parser.add_argument("--only", default="")
-    parser.add_argument("--seconds", type=float, default=60)
+    parser.add_argument("--seconds", type=float, default=120)
     for flag in ("--meaning", "--again", "--list", "--as-is"):
         parser.add_argument(flag, action="store_true")
     o = parser.parse_args()

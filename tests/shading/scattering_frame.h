@@ -16,7 +16,15 @@ inline Frame scatteringFrame(PelScattering scattering, uint32_t width, uint32_t 
     l.shadowFilterTexels = 16;
     light.mapSize = 64;
     light.map.components = 1;
-    for (uint32_t i = 0; i < 64 * 64; ++i) light.map.values.push_back(i % 64 > 40 ? 0.2f : 0.48f);
+    for (uint32_t i = 0; i < 64 * 64; ++i) {  // the relief that the camera sees, under a roof
+        const auto pixel = [](uint32_t texel, uint32_t most) {
+            const float length = (float(texel) + 0.5f) * 60 / 64 - 6;
+            return size_t(std::clamp(length / 0.5f, 0.0f, float(most - 1)));
+        };
+        const size_t seen = pixel(i / 64, f.height) * f.width + pixel(i % 64, f.width);
+        light.map.values.push_back(
+            i % 64 > 40 ? 0.2f : 0.5f - 0.01f * f.slots[PEL_SLOT_POSITION].values[3 * seen + 2]);
+    }
     f.lights.push_back(light);
     f.camera.position[2] = 200;
     f.ambient.constant[0] = 0.1f;

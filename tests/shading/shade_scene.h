@@ -22,18 +22,36 @@ inline Buffer upload(const Device& device, const Image& image) {
 constexpr PelFormat floatFormats[] = {PEL_FORMAT_UNDEFINED, PEL_FORMAT_R32F, PEL_FORMAT_RG32F,
                                       PEL_FORMAT_RGB32F, PEL_FORMAT_RGBA32F};
 
+// `padded`: NaNs lie behind each pixel and each row.
+inline pellucid::OwnedImage imageOf(const Device& device, const std::vector<float>& values,
+                                    uint32_t components, uint32_t width, uint32_t height, bool padded) {
+    if (!padded) return imageDesc(Buffer(device, values), floatFormats[components], width, height);
+    const size_t pixel = components + 1, row = width * pixel + 3;
+    std::vector<float> wide(row * height, std::numeric_limits<float>::quiet_NaN());
+    for (size_t i = 0; i < size_t(width) * height; ++i)
+        std::copy_n(&values[i * components], components, &wide[i / width * row + i % width * pixel]);
+    Buffer buffer(device, wide);
+    PelImageDesc desc = imageDesc(buffer, floatFormats[components], width, height);
+    desc.pixelStride = uint32_t(pixel * sizeof(float)), desc.rowStride = row * sizeof(float);
+    return pellucid::OwnedImage(std::move(buffer), desc);
+}
+
 // Sets everything but the output, in float32.
-inline void setFrame(const Device& device, Shader& shader, const Frame& f, const Tables& tables) {
+inline void setFrame(const Device& device, Shader& shader, const Frame& f, const Tables& tables,
+                     bool padded = false) {
+    const auto image = [&](const std::vector<float>& values, uint32_t components, uint32_t width,
+                           uint32_t height) {
+        return imageOf(device, values, components, width, height, padded);
+    };
     shader.set(f.options).set(f.ambient).set(f.camera);
     if (const uint32_t size = uint32_t(f.cube.size)) {
         std::vector<float> texels;
         for (const Rgb& t : f.cube.texels) texels.insert(texels.end(), {float(t.x), float(t.y), float(t.z)});
-        shader.setAmbientCube(imageDesc(Buffer(device, texels), PEL_FORMAT_RGB32F, size, 6 * size));
+        shader.setAmbientCube(image(texels, 3, size, 6 * size));
     }
     for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot)
-        if (const Image& image = f.slots[slot]; !image.values.empty())
-            shader.set(PelImageSlot(slot),
-                       imageDesc(upload(device, image), floatFormats[image.components], f.width, f.height));
+        if (const Image& own = f.slots[slot]; !own.values.empty())
+            shader.set(PelImageSlot(slot), image(own.values, own.components, f.width, f.height));
     for (const auto& [id, material] : f.materials)
         shader.setMaterial(id, material, f.curvatureLut ? tables.curvature : pellucid::Lut(),
                            f.shadowLut ? tables.shadow : pellucid::Lut());
@@ -43,15 +61,11 @@ inline void setFrame(const Device& device, Shader& shader, const Frame& f, const
     for (uint32_t i = 0; i < lights.size(); ++i) {
         const Light& light = f.lights[i];
         if (!light.wide.values.empty())
-            shader.set(i, PEL_LIGHT_WIDE_SHADOW,
-                       imageDesc(upload(device, light.wide), PEL_FORMAT_R32F, f.width, f.height));
+            shader.set(i, PEL_LIGHT_WIDE_SHADOW, image(light.wide.values, 1, f.width, f.height));
         if (!light.map.values.empty())
-            shader.set(i, PEL_LIGHT_SHADOW_MAP,
-                       imageDesc(upload(device, light.map), PEL_FORMAT_R32F, light.mapSize, light.mapSize));
+            shader.set(i, PEL_LIGHT_SHADOW_MAP, image(light.map.values, 1, light.mapSize, light.mapSize));
         for (const MapImage& map : light.maps)
-            shader.set(
-                i, map.slot,
-                imageDesc(Buffer(device, map.values), floatFormats[map.components], map.width, map.height));
+            shader.set(i, map.slot, image(map.values, map.components, map.width, map.height));
     }
 }
 

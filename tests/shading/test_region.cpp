@@ -1,6 +1,7 @@
 // PelShaderOptions.regionX to regionHeight: to the bit what cropped images give, nothing outside, and neither
 // memory nor programs for another size.
 #include "cl/cl_spy.h"
+#include "device_lanes.h"
 #include "scattering_frame.h"
 #include "test.h"
 
@@ -14,7 +15,8 @@ constexpr uint32_t width = 160, height = 96;
 struct Region {
     uint32_t x, y, width, height;
 };
-constexpr Region regions[] = {{33, 17, 96, 64}, {0, 0, width, height}, {63, 0, 97, 41}, {0, 55, 71, 41}};
+constexpr Region regions[] = {{33, 17, 96, 64}, {0, 0, width, height}, {63, 0, 97, 41}, {0, 55, 71, 41},
+                              {80, 13, 1, 70},  {21, 60, 120, 1},      {50, 50, 1, 1}};
 
 void setRegion(PelShaderOptions& options, Region r) {
     options.regionX = r.x, options.regionY = r.y, options.regionWidth = r.width,
@@ -37,16 +39,28 @@ Frame cropped(const Frame& f, Region r) {
     return part;
 }
 
+// A device and its tables.
+struct Place {
+    Device device;
+    Tables tables = makeTables(device, 12, 7);
+};
+const Place& usual() {
+    static const Place place{device()};
+    return place;
+}
+using Change = std::function<void(const Place&, Shader&)>;
+
 // A shader of a frame, with outputs over threes.
 struct Shaded {
-    Shaded(const Frame& f, const std::function<void(Shader&)>& change) : frame(f) {
-        setFrame(device(), shader, f, tables());
+    Shaded(const Place& on, const Frame& f, const Change& change, bool padded = false)
+        : frame(f), shader(on.device) {
+        setFrame(on.device, shader, f, on.tables, padded);
         for (const auto slot : slots) {
             const uint32_t components = slot == PEL_SLOT_OUT_THICKNESS ? 1 : 3;
-            targets.emplace_back(device(), std::vector<float>(f.pixels() * components, 3));
+            targets.emplace_back(on.device, std::vector<float>(f.pixels() * components, 3));
             shader.set(slot, imageDesc(targets.back(), floatFormats[components], f.width, f.height));
         }
-        change(shader);
+        change(on, shader);
     }
     void fill() const {
         for (const Buffer& target : targets) {
@@ -57,14 +71,14 @@ struct Shaded {
     static constexpr PelImageSlot slots[] = {PEL_SLOT_RADIANCE, PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_SPECULAR,
                                              PEL_SLOT_OUT_THICKNESS};
     const Frame& frame;
-    Shader shader{device()};
+    Shader shader;
     std::vector<Buffer> targets;
 };
 
-// Each region in turn by one shader.
+// Each region in turn by one shader; the cropped frame has images with room between pixels and rows.
 void expectCropped(
-    const Frame& f, const std::function<void(Shader&)>& change = [](Shader&) {}) {
-    const Shaded whole(f, change);
+    const Place& on, const Frame& f, const Change& change = [](const Place&, Shader&) {}) {
+    const Shaded whole(on, f, change);
     for (const Region& r : regions) {
         SCOPED_TRACE(testing::Message() << r.width << " x " << r.height << " from " << r.x << ", " << r.y);
         PelShaderOptions options = f.options;
@@ -73,7 +87,7 @@ void expectCropped(
         Shader shader = whole.shader;
         shader.set(options).commit().execute();
         const Frame part = cropped(f, r);
-        const Shaded alone(part, change);
+        const Shaded alone(on, part, change, true);
         Shader other = alone.shader;
         other.commit().execute();
         for (size_t k = 0; k < whole.targets.size(); ++k) {
@@ -98,8 +112,8 @@ Frame frameOf(PelScattering scattering) {
     for (auto& [id, m] : f.materials) m.profile = skin().get(), m.specular = 0.3f;
     return f;
 }
-void setTextures(Shader& shader) {
-    const Buffer texels(device(), std::vector<float>(3 * 16 * 8, 0.5f));
+void setTextures(const Place& on, Shader& shader) {
+    const Buffer texels(on.device, std::vector<float>(3 * 16 * 8, 0.5f));
     for (const uint32_t id : {1u, 2u})
         shader.setScatteredTexture(id, imageDesc(texels, PEL_FORMAT_RGB32F, 16, 8));
 }
@@ -107,12 +121,14 @@ void setTextures(Shader& shader) {
 }  // namespace
 
 TEST(Region, IsACroppedFrameForEveryMethod) {
-    for (const auto scattering :
-         {PEL_SCATTERING_NONE, PEL_SCATTERING_PREINTEGRATED, PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_SCREEN,
-          PEL_SCATTERING_LIGHT, PEL_SCATTERING_TEXTURE, PEL_SCATTERING_AUTO}) {
-        SCOPED_TRACE(int(scattering));
-        expectCropped(frameOf(scattering), setTextures);
-    }
+    const Place oneLane{lanes::deviceOf(1)};
+    for (const Place* on : {&usual(), &oneLane})
+        for (const auto scattering :
+             {PEL_SCATTERING_NONE, PEL_SCATTERING_PREINTEGRATED, PEL_SCATTERING_SEPARABLE,
+              PEL_SCATTERING_SCREEN, PEL_SCATTERING_LIGHT, PEL_SCATTERING_TEXTURE, PEL_SCATTERING_AUTO}) {
+            SCOPED_TRACE(testing::Message() << int(scattering) << (on == &oneLane ? ", one lane" : ""));
+            expectCropped(*on, frameOf(scattering), setTextures);
+        }
 }
 
 // What passes blur on the screen; shadows between pixels, wide shadow images, depth and its matrix.
@@ -120,7 +136,7 @@ TEST(Region, IsACroppedFrameForEveryPass) {
     Frame f = frameOf(PEL_SCATTERING_PREINTEGRATED);
     f.options = pelShaderOptionsDefaults();
     f.options.blurNormals = 1;
-    expectCropped(f);
+    expectCropped(usual(), f);
     f.lights[0].wide.components = 1;
     for (size_t i = 0; i < f.pixels(); ++i) f.lights[0].wide.values.push_back(float(i % 7) / 7);
     Image& depth = f.slots[PEL_SLOT_DEPTH];
@@ -130,7 +146,7 @@ TEST(Region, IsACroppedFrameForEveryPass) {
     f.slots[PEL_SLOT_POSITION] = {};
     const float rows[16] = {40, 0, 0, 40, 0, -24, 0, 24, 0, 0, 100, -50, 0, 0, 0, 1};
     std::copy_n(rows, 16, f.camera.inverseViewProjection);
-    expectCropped(f);
+    expectCropped(usual(), f);
 }
 
 TEST(Region, AnotherSizeTakesNoMemoryAndNoPrograms) {
@@ -140,7 +156,7 @@ TEST(Region, AnotherSizeTakesNoMemoryAndNoPrograms) {
         SCOPED_TRACE(int(scattering));
         Frame f = frameOf(scattering);
         f.options.blurNormals = 1;
-        const Shaded whole(f, setTextures);
+        const Shaded whole(usual(), f, setTextures);
         Shader shader = whole.shader;
         PelShaderOptions options = f.options;
         setRegion(options, {0, 0, width, height});
@@ -167,7 +183,7 @@ TEST(Region, AnotherSizeTakesNoMemoryAndNoPrograms) {
 
 TEST(Region, OutsideOfTheImagesIsRefused) {
     Frame f = frameOf(PEL_SCATTERING_NONE);
-    const Shaded whole(f, setTextures);
+    const Shaded whole(usual(), f, setTextures);
     Shader shader = whole.shader;
     for (const Region r : {Region{0, 0, width + 1, 1},
                            {1, 0, width, 1},

@@ -1,5 +1,5 @@
 // Frames, tables and passes that are submitted behind an event that their caller sets later: calls return,
-// and give the same.
+// and give the same; nothing behind the end of an output is written.
 #include "diffusion/lit_ball.h"
 #include "held_queue.h"
 #include "pass_scene.h"
@@ -15,11 +15,22 @@ const Device& own() {
     return shade_test::device();
 }
 
+// Memory for this many floats, and more behind them, which no call may write.
+Buffer guarded(size_t floats) {
+    return Buffer(own(), std::vector<float>(floats + 4096, -7.0f));
+}
+std::vector<float> checked(const Buffer& buffer, size_t floats, const char* what) {
+    std::vector<float> all = buffer.readAll<float>();
+    EXPECT_EQ(std::count(all.begin() + long(floats), all.end(), -7.0f), 4096) << what;
+    all.resize(floats);
+    return all;
+}
+
 // Commits and executes twice behind the event, with `change` between; the second frame is that of a shader
 // that never waited.
 template <class Make, class Change>
 void expectFrames(const char* what, size_t floats, const Make& make, const Change& change) {
-    const Buffer held(own(), floats * sizeof(float)), plain(own(), floats * sizeof(float));
+    const Buffer held = guarded(floats), plain = guarded(floats);
     Shader shader(own());
     make(shader, held);
     expectReturns(own(), what, [&](const PelSubmit* submit) {
@@ -31,16 +42,16 @@ void expectFrames(const char* what, size_t floats, const Make& make, const Chang
     make(other, plain);
     change(other);
     other.commit().execute();
-    EXPECT_EQ(held.readAll<float>(), plain.readAll<float>()) << what;
+    EXPECT_EQ(checked(held, floats, what), checked(plain, floats, what)) << what;
 }
 
 // What a call makes of a buffer behind the event, and the same at once.
 template <class Call>
 void expectHeld(const char* what, size_t floats, const Call& call) {
-    const Buffer held(own(), floats * sizeof(float)), plain(own(), floats * sizeof(float));
+    const Buffer held = guarded(floats), plain = guarded(floats);
     expectReturns(own(), what, [&](const PelSubmit* submit) { call(held, submit); });
     call(plain, nullptr);
-    EXPECT_EQ(held.readAll<float>(), plain.readAll<float>()) << what;
+    EXPECT_EQ(checked(held, floats, what), checked(plain, floats, what)) << what;
 }
 
 TEST(ShadeHeld, FramesInBandsWithPasses) {
@@ -155,20 +166,21 @@ TEST(ShadeHeld, OtherSubmissions) {
     });
 
     PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
-    desc.width = desc.height = 32;
+    desc.width = 31, desc.height = 29;
     desc.numVertices = 4, desc.uvs = uvs.data();
     desc.numIndices = 6, desc.indices = triangles.data();
-    const Buffer vertices(own(), corners), values(own(), light), drawn(own(), 32 * 32 * 12);
-    const PelImageDesc from = imageDesc(drawn, PEL_FORMAT_RGB32F, 32, 32);
+    const Buffer vertices(own(), corners), values(own(), light), drawn = guarded(31 * 29 * 3);
+    const PelImageDesc from = imageDesc(drawn, PEL_FORMAT_RGB32F, 31, 29);
     TextureScatter texture(own(), desc);
-    expectHeld("texture scattering", 32 * 32 * 3, [&](const Buffer& out, const PelSubmit* submit) {
+    expectHeld("texture scattering", 31 * 29 * 3, [&](const Buffer& out, const PelSubmit* submit) {
         for (int i = 0; i < 2; ++i) {
             texture.setPositions(vertexView(vertices, 4), submit);
             texture.draw(vertexView(values, 4), false, from, submit);
             texture.execute(pelTextureScatterParamsDefaults(), from, nullptr,
-                            imageDesc(out, PEL_FORMAT_RGB32F, 32, 32), submit);
+                            imageDesc(out, PEL_FORMAT_RGB32F, 31, 29), submit);
         }
     });
+    checked(drawn, 31 * 29 * 3, "texture drawing");
 }
 
 TEST(ShadeHeld, Tables) {

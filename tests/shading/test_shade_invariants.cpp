@@ -1,5 +1,6 @@
 // What must change no bit of a frame: skipping, lists of tiles, bands of rows within a budget of scratch
 // memory, a second run, and the frames that the shader made before; and what interpolation may change.
+#include "scattering_frame.h"
 #include "shader_ready.h"
 #include "shadow_forms.h"
 #include "test.h"
@@ -278,6 +279,32 @@ TEST(ShadeSkipping, TracesOfLightInFullShadowAreNone) {
             else
                 EXPECT_GT(some, f.pixels());
         }
+    }
+}
+
+// One light's shadow is filtered wide for the material with tables, the other's only sharply for the one that
+// scatters on screen.
+TEST(ShadeSum, LightsAddUp) {
+    const pellucid::Profile skin = pellucid::Profile::skin();
+    Frame f = scatteringFrame(PEL_SCATTERING_SCREEN, 96, 64);
+    for (auto& [id, m] : f.materials) m.profile = skin.get(), m.specular = 0.3f;
+    f.materials.at(1).scattering = PEL_SCATTERING_PREINTEGRATED;
+    f.ambient = pelAmbientDefaults();
+    Light other = f.lights[0];
+    other.params.shadowFilterTexels = 0;
+    other.params.toLight[0] = -0.6f;
+    const std::vector<Light> both{f.lights[0], other};
+    std::vector<float> sum(3 * f.pixels());
+    for (const Light& light : both) {
+        f.lights = {light};
+        const std::vector<float> one = shade(f);
+        for (size_t i = 0; i < sum.size(); ++i) sum[i] += one[i];
+    }
+    f.lights = both;
+    const std::vector<float> all = shade(f);
+    for (size_t i = 0; i < sum.size(); ++i) {
+        if (f.slots[PEL_SLOT_MATERIAL].at(i / 3) == 2) continue;  // summed more finely under uneven light
+        ASSERT_NEAR(all[i], sum[i], 1e-5) << i;
     }
 }
 

@@ -131,6 +131,9 @@ TEST_F(BatchCommand, TablesBeginAsTheVersionOrThePresetSays) {
         EXPECT_EQ(both[1]["closed_ends"], faceworks ? 0 : 1) << version << preset;
         EXPECT_EQ(both[1]["width_min"] == 8, faceworks) << version << preset;
     }
+    // A shadow has no form.
+    const auto shadows = made("[[grid]]\nkind = \"shadow\"\nform = [\"arc\", \"sphere\"]\nsize = 8\n");
+    EXPECT_EQ(shadows["entries"].get<int>() + shadows["duplicates"].get<int>(), 1);
     // The axis of shadow tables counts, unless an older manifest has one that did not.
     const std::string small = shadow + "size = 8\n";
     EXPECT_EQ(tables("version = 2\n" + small + "axis = \"linear\"\n")[0]["axis"], "linear");

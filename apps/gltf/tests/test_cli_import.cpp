@@ -1,6 +1,7 @@
 // pellucid import: glTF files made here and samples of Debian's assimp-testmodels, to the picture.
 #include "cli/cli_run.h"
 #include "gltf/tests/gltf_bytes.h"
+#include "io/image/color_map.h"
 #include "io/image/image_file.h"
 #include "io/lut/profile_file.h"
 #include "io/mesh/mesh_file.h"
@@ -101,6 +102,8 @@ TEST_F(Import, ABallOfWaxBecomesAPicture) {
     EXPECT_GT(color[3], 96 * 96 / 3);
     EXPECT_GT(color[0], 0.15);
     EXPECT_GT(color[0], 1.3 * color[2]);
+    done("shade @out/gbuffer.exr --scene @out/scene.toml -o @wax.png");
+    expectKept("wax.png", "wax.png", "0.0003");
     // The curvature that was measured is that of the ball.
     const io::Image g = io::readImage(out("gbuffer.exr"));
     const float middle = g.channel("Curvature.V").pixels[48 * 96 + 48];
@@ -138,6 +141,49 @@ TEST_F(Import, LightsCamerasAndProfilesOfOnesOwn) {
     refused("import @head.glb -o @out --profile Neck=skin", 2, "there are Head");
     refused("import @head.glb -o @out --profile granite", 3, "granite");
     refused("import @head.glb -o @out --camera 7", 2, "the scene has 1");
+}
+
+// A square that fills the picture: each pixel's albedo is the factor times the texture between its texels,
+// which repeats. Images that cannot be read are left out, those after them are not.
+TEST_F(Import, TexturesMultiplyTheAlbedo) {
+    if (!draws()) GTEST_SKIP() << "this build has no renderer";
+    constexpr int width = 3, height = 2, size = 12;
+    std::vector<uint8_t> colors(3 * width * height), greys(width * height);
+    for (size_t i = 0; i < colors.size(); ++i) colors[i] = uint8_t(40 + 12 * i);
+    for (size_t i = 0; i < greys.size(); ++i) greys[i] = uint8_t(50 + 40 * i);
+    io::writeImage8(path("colors.png"), width, height, 3, colors);
+    io::writeImage8(path("greys.png"), width, height, 1, greys);
+    write("none.png", "GIF89a");
+    write("bad.png", read(path("colors.png")).substr(0, 60));
+    for (const bool grey : {false, true}) {
+        const std::string file = gltf::square(
+            R"(,"material":0)", R"([{"mesh":0,"children":[1]},{"camera":0,"translation":[0.5,0.5,1]}])",
+            io::concat(
+                R"(,"cameras":[{"type":"perspective","perspective":{"yfov":0.92729522,"znear":0.1}}],)",
+                R"("images":[{"uri":"none.png"},{"uri":"bad.png"},{"uri":")", grey ? "greys" : "colors",
+                R"(.png"}],"textures":[{"source":0},{"source":2}],"materials":[{"pbrMetallicRoughness":)",
+                R"({"metallicFactor":0,"baseColorFactor":[1,0.5,0.25,1],"baseColorTexture":{"index":1}}}])"));
+        write("square.glb", file);
+        reportOf("import @square.glb -o @out --size 12x12");
+        const io::Image g = io::readImage(out("gbuffer.exr"));
+        for (int y = 0; y < size; ++y)
+            for (int x = 0; x < size; ++x)
+                for (int c = 0; c < 3; ++c) {
+                    const double u = (x + 0.5) / size * width - 0.5,
+                                 v = (1 - (y + 0.5) / size) * height - 0.5;
+                    double expected = 0;
+                    for (int k = 0; k < 4; ++k) {
+                        const double tx = std::floor(u) + k % 2, ty = std::floor(v) + k / 2;
+                        const int texel = int(ty + height) % height * width + int(tx + width) % width;
+                        expected += (1 - std::abs(u - tx)) * (1 - std::abs(v - ty)) *
+                                    io::decodeSrgb(grey ? greys[size_t(texel)] / 255.0f
+                                                        : colors[size_t(3 * texel + c)] / 255.0f);
+                    }
+                    ASSERT_NEAR(g.channel(std::string("Albedo.") + "RGB"[c]).pixels[size_t(y * size + x)],
+                                expected / (1 << c), 1e-4)
+                        << x << " " << y << " " << c << " " << grey;
+                }
+    }
 }
 
 // Each camera is drawn, or left out with a warning; what is written can be shaded.

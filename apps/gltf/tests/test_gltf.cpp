@@ -296,6 +296,57 @@ TEST(Gltf, WrongFilesSayWhatAndWhere) {
     expectError(square({}, bad), {"meshes[0].primitives[0]", "index 9", "4 vertices"});
 }
 
+// Numbers, and lists of `count` of them.
+TEST(Gltf, NumbersOutOfTheirRangesAreRefused) {
+    const std::string pbr = "/materials/0/pbrMetallicRoughness/",
+                      of = "/materials/0/extensions/KHR_materials_",
+                      light = "/extensions/KHR_lights_punctual/lights/0/", node = "/nodes/0/",
+                      camera = "/cameras/0/perspective/", gloss = of + "pbrSpecularGlossiness/",
+                      through = of + "diffuse_transmission/diffuseTransmission";
+    const struct {
+        double low, high;
+        size_t count;
+        std::vector<std::string> where;
+    } rows[] = {{0, 1, 4, {pbr + "baseColorFactor", gloss + "diffuseFactor"}},
+                {0, 1, 3, {through + "ColorFactor", of + "volume/attenuationColor"}},
+                {0, 1, 3, {of + "volume_scatter/multiscatterColor", of + "scatter/multiscatterColorFactor"}},
+                {0, 1, 0, {pbr + "metallicFactor", pbr + "roughnessFactor", of + "specular/specularFactor"}},
+                {0, 1, 0, {of + "transmission/transmissionFactor", through + "Factor"}},
+                {0, 1, 0, {gloss + "glossinessFactor"}},
+                {1, 100, 0, {of + "ior/ior"}},
+                {0, 1e6, 0, {of + "volume/thicknessFactor"}},
+                {1e-9, INFINITY, 0, {of + "volume/attenuationDistance"}},
+                {-1, 1, 0, {of + "volume_scatter/scatterAnisotropy"}},
+                {0, 1e6, 3, {light + "color"}},
+                {0, 1e12, 0, {light + "intensity", light + "range"}},
+                {0, M_PI / 2, 0, {light + "spot/outerConeAngle"}},
+                {1e-3, 3.14, 0, {camera + "yfov"}},
+                {1e-3, 1e3, 0, {camera + "aspectRatio"}},
+                {-1e12, 1e12, 3, {node + "translation", node + "scale"}},
+                {-2, 2, 4, {node + "rotation"}}};
+    for (const auto& row : rows)
+        for (const std::string& where : row.where) {
+            SCOPED_TRACE(where);
+            const auto with = [&](double x) {
+                const json value = row.count ? json(std::vector<double>(row.count, x)) : json(x);
+                return square({{"/cameras/0", R"({"type": "perspective", "perspective": {"yfov": 1}})"_json},
+                               {"/nodes/0/camera", 0},
+                               {"/extensions/KHR_lights_punctual/lights/0/type", "spot"},
+                               {"/nodes/0/extensions/KHR_lights_punctual/light", 0},
+                               {"/meshes/0/primitives/0/material", 0},
+                               {"/materials/0/name", "m"},
+                               {where.c_str(), value}});
+            };
+            for (const double end : {row.low, row.high}) {
+                if (end == INFINITY) continue;
+                EXPECT_NO_THROW(decoded(with(end)));
+                const double step = 0.01 * (end == 0 ? 1 : std::abs(end));
+                expectError(with(end == row.low ? end - step : end + step),
+                            {where.substr(where.rfind('/') + 1)});
+            }
+        }
+}
+
 // Work is bounded by what a file draws: nodes times primitives that draw nothing are not visited.
 TEST(Gltf, PrimitivesAreDecodedOnceHoweverManyNodesPlaceThem) {
     constexpr size_t count = 20000;

@@ -41,6 +41,20 @@ def test_positions_lie_on_the_rays_of_their_pixels(session):
     assert g.position[g.material == 0].max(initial=0) == 0
 
 
+def test_lights_are_the_lamps_that_are_on_and_their_maps_are_half_as_large_while_something_moves(session):
+    reset(session)
+    look = session.look
+    look.lamps[0].on, look.lamps[1].shadow, look.lamps[2].shadow = False, False, True
+    for lamp in look.lamps[1:]:
+        lamp.on, lamp.intensity, lamp.color = True, 0.5, (1.0, 0.8, 0.6)
+    for small in (False, True):
+        (plain, none), (light, map) = session.lights(look, small)
+        assert none is None and map.depth.shape == (look.shadow_size // (1 + small),) * 2
+        assert light.shadow_filter_texels == 48
+        for found in plain, light:
+            assert found.color == pytest.approx((0.5, 0.4, 0.3))
+
+
 def test_the_shadow_map_agrees_with_the_positions(session):
     reset(session)
     g = session.gbuffer(200, 100)

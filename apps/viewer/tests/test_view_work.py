@@ -12,7 +12,7 @@ files = pytest.importorskip("pellucid.files", reason="this build reads no files"
 pytest.importorskip("nicegui", reason="nicegui is not installed")
 from view_session import reset  # noqa: E402
 
-from pellucid.view.reference import Reference  # noqa: E402
+from pellucid.view.reference import Reference, vertex_irradiance  # noqa: E402
 from pellucid.view.session import Session  # noqa: E402
 from pellucid.view.widgets import Panel  # noqa: E402
 
@@ -56,6 +56,17 @@ def test_the_reference_leaves_the_session_free(session):
         gate.set()
         session.report = None
         reset(session)
+
+
+def test_the_reference_has_the_light_of_the_lamps(session):
+    reset(session)
+    look = session.look
+    look.ambient, look.surroundings = 0.0, ""
+    for lamp in look.lamps:
+        lamp.on, lamp.color, lamp.intensity = lamp is look.lamps[0], (1.0, 0.5, 0.25), 0.8
+    light = vertex_irradiance(session, look)
+    assert light.max() == pytest.approx(0.8, abs=0.02)
+    assert np.allclose(light * (1, 2, 4), light[:, :1], atol=1e-6)
 
 
 def test_a_reference_is_coarse_first_and_can_be_cancelled():

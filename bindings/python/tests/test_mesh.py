@@ -111,12 +111,15 @@ def test_arrays_that_do_not_fit_are_named(device, sphere, change, message):
         topology.curvature(given.pop("positions"), given.pop("normals"), **given)
 
 
-@pytest.mark.parametrize("indices, error", [
-    ([[0, 1, 9]], pel.PellucidError), ([0, 1], pel.PellucidError), ([[0, 1, -1]], ValueError),
-    ([[0.0, 1, 2]], ValueError)])
-def test_bad_indices(device, indices, error):
-    with pytest.raises(error):
-        pel.MeshTopology(device, indices, 3)
+@pytest.mark.parametrize("indices, count, error, message", [
+    ([[0, 1, 9]], 3, pel.PellucidError, "vertex 9"), ([0, 1], 3, pel.PellucidError, "2 are left over"),
+    ([[0, 1, -1]], 3, ValueError, "from -1 to 1"), ([[0.0, 1, 2]], 3, ValueError, "indices are float64"),
+    ([[0, 1, 2]], None, ValueError, "num_vertices or positions"),
+    ([[0, 1, 2]], 2**32, ValueError, "num_vertices is 4294967296"),
+    ([[0, 1, 2]], -1, ValueError, "num_vertices is -1")])
+def test_bad_indices(device, indices, count, error, message):
+    with pytest.raises(error, match=message):
+        pel.MeshTopology(device, indices, count)
 
 
 def test_orient_mesh_turns_what_disagrees(device, sphere):

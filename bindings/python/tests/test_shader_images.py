@@ -1,4 +1,6 @@
 """Images of a shader in many layouts and formats, and those that do not fit."""
+import weakref
+
 import numpy as np
 import pytest
 from shader_view import HEIGHT, WIDTH, black, shaded, shader_for
@@ -85,3 +87,33 @@ def test_a_region_is_shaded_as_if_alone(device, view):
     shader = shader_for(device, view, out)
     shader.set_options(region_x=3, region_y=2, region_width=width, region_height=height).commit().execute()
     assert np.array_equal(out, expected)
+
+
+def test_images_are_held_until_they_are_taken_back(device):
+    def image(*shape):
+        return pel.Image(device, np.full(shape, 0.5, np.float32))
+
+    shader = pel.Shader(device).set_lights([pel.Light()] * 2).set_material(1, pel.Material())
+    shader.set_eye(1, pel.Eye())
+    setters = {"image": lambda i: shader.set_image("albedo", i),
+               "light image": lambda i: shader.set_light_image(1, "shadow_map", i),
+               "scattered texture": lambda i: shader.set_scattered_texture(1, i),
+               "iris texture": lambda i: shader.set_iris_texture(1, i),
+               "ambient cube": shader.set_ambient_cube, "reflection cube": shader.set_reflection_cube,
+               "environment": shader.set_environment}
+    for name, take in setters.items():
+        cube = "cube" in name or name == "environment"
+        made = image(8, 8) if "light" in name else image(48 if cube else 8, 8, 3)
+        held = weakref.ref(made)
+        take(made)
+        del made
+        assert held() is not None, name
+        take(None)
+        assert held() is None, name
+    maps = [image(4, 4) for _ in range(2)]
+    for light, map in enumerate(maps):
+        shader.set_light_image(light, "shadow_map", map)
+    held = [weakref.ref(map) for map in maps]
+    del maps, map
+    shader.set_lights([pel.Light()])
+    assert held[0]() is not None and held[1]() is None

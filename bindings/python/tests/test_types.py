@@ -1,7 +1,9 @@
 """Structures and enumerations: the same memory as in C, the same defaults, and wrong values named."""
 import enum
+import inspect
 import pickle
 import pydoc
+from dataclasses import is_dataclass
 
 import numpy as np
 import pytest
@@ -62,18 +64,52 @@ def test_help_is_about_the_package():
     assert not {"Any", "annotations"} & set(dir(pel)) and set(pel.__all__) <= set(dir(pel))
 
 
-def test_every_public_name_is_documented():
-    words = " ".join(pel.Material.__doc__.split())
-    assert "share of the light that the profile lets through thin parts" in words
-    source = _types.__loader__.get_data(_types.__file__).decode()
-    assert "Material.shadow_filter_width" in source  # not the name in C
-    found = {name: getattr(pel, name) for name in pel.__all__}
+def public(module):
+    """Names of a module and of its classes' members."""
+    found = {name: getattr(module, name) for name in module.__all__}
     for name, value in list(found.items()):
         if isinstance(value, type) and not issubclass(value, (Struct, enum.Enum)):
             members = {k: v for base in value.__mro__ if base.__module__.startswith("pellucid")
                        for k, v in vars(base).items() if not k.startswith("_")}
             found |= {f"{name}.{k}": v for k, v in members.items()
                       if callable(v) or isinstance(v, (property, classmethod, staticmethod))}
+    return found
+
+
+def test_calls_have_the_defaults_of_the_command():
+    from pellucid import files, gltf
+    from pellucid.conventions import camera_from_view_projection, light_from_view_projection
+    calls = {name: call for name, call in public(pel).items() if not isinstance(call, property)}
+    for call in (files.standard_head, files.load_mesh, files.reference, files.write_image, files.tonemap,
+                 gltf.load_gltf, camera_from_view_projection, light_from_view_projection):
+        calls[call.__name__] = call
+    found = {}
+    for name, call in calls.items():
+        if isinstance(call, type) and (issubclass(call, (Struct, enum.Enum)) or is_dataclass(call)):
+            continue
+        for p in inspect.signature(getattr(call, "__func__", call)).parameters.values():
+            plain = p.name[0] == "_" or p.default in (p.empty, ()) or p.default is True
+            if p.default and not plain:
+                found.setdefault(name, {})[p.name] = p.default
+    integral = {"millimetres_per_unit": 1, "cut": (0, 0, 0), "tolerance": 1e-3}
+    tone = {"exposure": 1, "shoulder": 0.8, "curve": "soft"}
+    convention = {"depth": "-1..1"}
+    assert found == {
+        "Profile.burley": {"fit": pel.BurleyFit.DIFFUSE_TRANSMISSION}, "Profile.dipole": {"eta": 1.3},
+        "Scatter.set_material": {"scale": 1}, "surface_integral": integral,
+        "submit_surface_integral": integral, "standard_head": {"which": "female"},
+        "load_mesh": {"up": "auto"}, "reference": {"samples": 64, "seed": 1, "boundary": "index-matched"},
+        "write_image": tone, "tonemap": tone, "load_gltf": {"unit_mm": 1000},
+        "camera_from_view_projection": convention,
+        "light_from_view_projection": {**convention, "first_row": "top"}}
+
+
+def test_every_public_name_is_documented():
+    words = " ".join(pel.Material.__doc__.split())
+    assert "share of the light that the profile lets through thin parts" in words
+    source = _types.__loader__.get_data(_types.__file__).decode()
+    assert "Material.shadow_filter_width" in source  # not the name in C
+    found = public(pel)
     assert len(found) > 100 and not [name for name, part in found.items() if not (part.__doc__ or "").strip()]
 
 
