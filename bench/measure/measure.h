@@ -60,6 +60,7 @@ class ErrorSum {
 struct Request {
     std::string device;                // selector
     bool quick = false;                // small sizes, few repetitions
+    bool firstGpu = false;             // the checks and predictions of first_gpu.cpp instead of all else
     double stability = 0;              // share of its whole search for the worst errors; 0: none
     std::vector<std::string> only;     // parts of names; empty: every operation
     std::vector<std::string> without;  // names that are left out
@@ -67,7 +68,8 @@ struct Request {
     std::string data;     // folder of the library's data: heads, and the truth of scenes in bench
     std::string command;  // path of the pellucid command, for processes of their own
     std::function<void(const std::string&)> progress;  // a line now and then
-    // What happens, for whoever waits: {"begin": name, "group"}, {"say": text}
+    // What happens, for whoever waits: {"begin": name, "group"}, {"say": text}, {"row": an operation that is
+    // done and need not be measured again}
     std::function<void(const nlohmann::ordered_json&)> event;
     std::function<bool()> cancelled;
 
@@ -91,6 +93,21 @@ nlohmann::ordered_json measureCases(const Request& request);
 
 // In this process: {"scenes", "operations", "pictures"} (docs/guide/measuring.md).
 nlohmann::ordered_json measureMethods(const Request& request);
+
+// In this process, for the first time on a device: each method's picture against the one kept in
+// `request.data`, then its passes at 1080p and 4K. Operations are events.
+void measureFirst(const Request& request);
+
+// Writes the pictures that measureFirst() compares with into `folder`.
+void keepPictures(const Request& request, const std::string& folder);
+
+// What the first time on a device says. Adds to the operations of a report their "tolerance" and "within",
+// to passes of frames "predicted_ms" and "limited_by" (null: not predicted) by the counts of `warps`
+// (bench/roofline), and "first_gpu": {"checked", "out": [names]}.
+void judgeFirst(nlohmann::ordered_json& report, const nlohmann::ordered_json& warps);
+
+// Parts of the names of operations that judgeFirst() judges.
+std::vector<std::string> judgedCases();
 
 // In this process: {"stability": {"share", "operations": [{"name", "range", "unit", "limit", "points",
 // "stopped", "drawn", "worst", "inherent", "where"}]}}, the worst error of every operation against the tests'

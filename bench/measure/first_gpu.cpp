@@ -1,0 +1,126 @@
+// Judges what the first time on a device gave: pictures and operations by tolerances, passes by a roofline.
+#include "measure.h"
+#include "tolerances.h"
+
+namespace pellucid::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Tolerance {
+    const char* part;  // of an operation's name
+    double largest;    // error
+};
+// Of operations: those of the tests. The quadric is compared with the torus itself.
+constexpr Tolerance operationTolerances[] = {{"normals", tolerance::normalComponent},
+                                             {"uv-scale", tolerance::uvScale},
+                                             {"curvature-edge", tolerance::edgeCurvature},
+                                             {"curvature-tensor", tolerance::tensorCurvature},
+                                             {"curvature-quadric", tolerance::torusExactNormals},
+                                             {"table-arc", tolerance::lutTexelGaussians},
+                                             {"table-ring", tolerance::lutTexelGaussians},
+                                             {"table-half-ring", tolerance::lutTexelGaussians},
+                                             {"table-sphere", tolerance::lutTexelGaussians},
+                                             {"table-shadow", tolerance::lutTexelGaussians},
+                                             {"table-specular", tolerance::lutTexelOther},
+                                             {"shade-surface", tolerance::shadeSum},
+                                             {"shade-32-taps", tolerance::shadeSum},
+                                             {"shade-eye", tolerance::shadeSum}};
+// Of pictures, share of white: at 99 of 100 drawn pixels, and RMS. Where rounding decides otherwise, a pixel or
+// a tile takes other samples.
+constexpr double pictureP99 = 3e-4, pictureRms = 2e-3;
+
+// NAN: it is not judged.
+double toleranceOf(const Json& e) {
+    const std::string name = e.at("name"), group = e.at("group");
+    if (group == "pictures") return pictureP99;
+    if (group == "frames") return NAN;
+    const auto* const found = std::ranges::find_if(
+        operationTolerances, [&](const Tolerance& t) { return name.find(t.part) != name.npos; });
+    return found == std::end(operationTolerances) ? NAN : found->largest;
+}
+bool isWithin(const Json& e, double tolerance) {
+    const auto below = [&](const char* key, double limit) {
+        return e.at(key).is_number() && e.at(key).get<double>() <= limit;
+    };
+    if (e.at("group") != "pictures") return below("error_max", tolerance);
+    return below("error_p99", tolerance) && below("error_rms", pictureRms) && e.at("repeats").get<bool>();
+}
+
+// What a kernel's work grows with, beside the pixels.
+bool growsWithMaps(const std::string& kernel) {
+    return kernel == "light_texels" || kernel == "light_reduce";
+}
+bool growsWithLights(const std::string& kernel) {
+    return kernel == "wide_shadow" || kernel == "light_seen" || kernel == "light_hidden" ||
+           kernel == "light_classify";
+}
+
+// Of a pass, by the name of its kernel; other kernels of a method are those of its own pass.
+std::string passOf(const std::string& kernel, const std::string& method) {
+    if (kernel == "make_irradiance") return "irradiance";
+    for (const char* shared : {"classify_tiles", "wide_shadow", "mean_curvature", "shade"})
+        if (kernel == shared) return kernel;
+    return "scatter_" + (method == "auto" ? "screen" : method);
+}
+
+// Milliseconds that a pass of this name takes for so many pixels of skin under a light with a map, and what
+// limits it.
+void predict(Json& pass, const Json& row, const Json& device, const Json& warps) {
+    constexpr double memoryShare = 0.8, arithmeticShare = 0.5;  // as docs/roofline.md
+    constexpr double mapTexels = 2048.0 * 2048;
+    const Json &copies = device.at("copy_bytes_per_second"), &peak = device.at("operations_per_second");
+    const Json& methods = warps.at("methods");
+    std::string method = row.at("method");
+    pass["predicted_ms"] = nullptr;
+    if (method == "Lambert") method = "none";
+    // Tables stand in for what `shade` reads elsewhere; passes before it are the same for all methods.
+    if (!methods.contains(method)) {
+        if (pass.at("name") == "shade" || pass.at("name") == "irradiance") return;
+        method = "auto";
+    }
+    int width = 0, height = 0;
+    std::sscanf(warps.at("part").get<std::string>().c_str(), "%dx%d", &width, &height);
+    const double pixels = row.at("items").get<double>() / (double(width) * height),
+                 maps = mapTexels / (2 * std::pow(warps.at("map").get<double>(), 2)), lights = 0.5;
+    double bytes = 0, slots = 0;
+    for (const auto& [kernel, counted] : methods.at(method).items()) {
+        if (passOf(kernel, method) != pass.at("name")) continue;
+        const double work = growsWithMaps(kernel) ? maps : growsWithLights(kernel) ? lights * pixels : pixels;
+        bytes += work * counted.at("moved").get<double>();
+        slots += work * counted.at("slots").get<double>();
+    }
+    if (bytes == 0 || !copies.is_number() || !peak.is_number()) return;
+    // An instruction is as long as a multiply-add, which is two operations.
+    const double memory = bytes / (memoryShare * copies.get<double>()),
+                 arithmetic = 2 * slots / (arithmeticShare * peak.get<double>());
+    pass["predicted_ms"] = 1e3 * std::max(memory, arithmetic);
+    pass["limited_by"] = memory > arithmetic ? "memory" : "arithmetic";
+}
+
+}  // namespace
+
+std::vector<std::string> judgedCases() {
+    std::vector<std::string> names;
+    for (const Tolerance& t : operationTolerances) names.emplace_back(t.part);
+    return names;
+}
+
+void judgeFirst(Json& device, const Json& warps) {
+    size_t checked = 0;
+    Json out = Json::array();
+    for (Json& e : device.at("operations")) {
+        if (e.contains("failed")) out.push_back(e.at("name"));
+        if (e.contains("passes"))
+            for (Json& pass : e["passes"]) predict(pass, e, device, warps);
+        const double tolerance = toleranceOf(e);
+        if (std::isnan(tolerance) || e.contains("failed")) continue;
+        e["tolerance"] = tolerance;
+        e["within"] = isWithin(e, tolerance);
+        ++checked;
+        if (!e["within"].get<bool>()) out.push_back(e.at("name"));
+    }
+    device["first_gpu"] = {{"checked", checked}, {"out", out}};
+}
+
+}  // namespace pellucid::bench
