@@ -26,8 +26,8 @@ constexpr Tolerance operationTolerances[] = {{"normals", tolerance::normalCompon
                                              {"shade-surface", tolerance::shadeSum},
                                              {"shade-32-taps", tolerance::shadeSum},
                                              {"shade-eye", tolerance::shadeSum}};
-// Of pictures, share of white: at 99 of 100 drawn pixels, and RMS. Where rounding decides otherwise, a pixel or
-// a tile takes other samples.
+// Of pictures, share of white: at 99 of 100 drawn pixels, and RMS. Where rounding decides otherwise, a pixel
+// or a tile takes other samples.
 constexpr double pictureP99 = 3e-4, pictureRms = 2e-3;
 
 // NAN: it is not judged.

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <pellucid/pellucid.hpp>
 
+#include "tuning/launch_sizes.h"
+
 namespace pellucid::bench {
 
 struct Error {
@@ -117,6 +119,17 @@ nlohmann::ordered_json measureStability(const Request& request);
 // Writes the truth of each scene and clip that `folder` does not have into it. Minutes each.
 void makeTruth(const Device& device, const std::string& folder, const std::string& headFile,
                const std::function<void(const std::string&)>& say, const std::function<bool()>& cancelled);
+
+// The fastest launch sizes of a device; those that are built in where no others gain more than the noise.
+struct Tuned {
+    pel::LaunchPolicy sizes;
+    double ratio = 1;  // of its times over those of what is built in
+    nlohmann::ordered_json measured = nlohmann::ordered_json::array();
+};
+using TuneProgress = std::function<void(double fraction, const char* what)>;
+// `selector`: that opened `device`.
+Tuned tuneLaunches(const Device& device, const std::string& selector, bool quick,
+                   const TuneProgress& progress);
 
 // What a process pays once for its first table and frame: {"device_ms", "table_ms", "shade_ms", "total_ms"}.
 nlohmann::ordered_json firstUse(const std::string& device);

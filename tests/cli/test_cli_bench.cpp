@@ -231,6 +231,37 @@ TEST_F(BenchCommand, TheFirstTimeOnAGpuJudgesWhatItMakes) {
     refused("bench --first-gpus -o @none", 2, "--first-gpu");
 }
 
+TEST_F(BenchCommand, TuneKeepsWhatIsFasterAndShowsWhatIsInForce) {
+    const auto device = reportOf("devices").at("devices").at(0);
+    const auto text = [&](const char* key) { return device.at(key).get<std::string>(); };
+    const std::string none = "PELLUCID_TUNING= PELLUCID_CACHE_DIR='" + path("cache") + "'",
+                      named = "PELLUCID_TUNING='" + path("own.txt") + "'",
+                      own =
+                          "pellucid tuning 1\ndevice " + text("name") + ", " + text("platform") + "\nlaunch ";
+    const std::string made = " " + done("--version").out;
+    write("own.txt", own + "4 64 128 32" + made.substr(0, made.size() - 1) + " " + text("driver") + "\n");
+    const auto shown = [&](const std::string& environment) {
+        return reportOf("tune --show --device 0", environment);
+    };
+    const auto builtIn = shown(none);
+    EXPECT_EQ(builtIn.at("from"), "built in");
+    EXPECT_EQ(shown("PELLUCID_TUNING=off").at("sizes"), builtIn.at("sizes"));
+    EXPECT_EQ(shown(named).at("from"), path("own.txt"));
+    EXPECT_EQ(shown(named).at("sizes").at("texels"), 32);
+    write("own.txt", own);
+    EXPECT_EQ(shown(named).at("sizes"), builtIn.at("sizes"));
+    EXPECT_TRUE(contains(shown(named).at("warnings").at(0).get<std::string>(), "does not set launch sizes"));
+    EXPECT_EQ(cli("tune --show --strict --device 0", named).exitCode, 3);
+    const auto tuned = reportOf("tune --quick --device 0 -o @tuned.txt");
+    EXPECT_EQ(tuned.at("built_in"), builtIn.at("sizes"));
+    EXPECT_GE(tuned.at("measured").size(), 8u);
+    EXPECT_EQ(std::filesystem::exists(path("tuned.txt")), tuned.at("sizes") != tuned.at("built_in"));
+    EXPECT_EQ(shown("PELLUCID_TUNING='" + path("tuned.txt") + "'").at("sizes"), tuned.at("sizes"));
+    refused("tune -o @none/tuned.txt", 2, "none/tuned.txt");
+    refused("tune --sho", 2, "--show");
+    refused("tune", 2, "name one with -o", "PELLUCID_CACHE_DIR=off");
+}
+
 TEST_F(BenchCommand, VerdictsSurviveNoise) {
     const struct {
         const char* what;
