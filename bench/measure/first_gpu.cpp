@@ -26,14 +26,14 @@ constexpr Tolerance operationTolerances[] = {{"normals", tolerance::normalCompon
                                              {"shade-surface", tolerance::shadeSum},
                                              {"shade-32-taps", tolerance::shadeSum},
                                              {"shade-eye", tolerance::shadeSum}};
-// Of pictures, share of white: at 99 of 100 drawn pixels, and RMS. Where rounding decides otherwise, a pixel
-// or a tile takes other samples.
-constexpr double pictureP99 = 3e-4, pictureRms = 2e-3;
+// Of pictures, share of white: at nine of ten drawn pixels, and RMS. Where rounding decides otherwise, a pixel
+// takes other samples. Between the compilers of PoCL and Intel the largest error of all pixels is 5e-7.
+constexpr double pictureP90 = 3e-5, pictureRms = 5e-4;
 
 // NAN: it is not judged.
 double toleranceOf(const Json& e) {
     const std::string name = e.at("name"), group = e.at("group");
-    if (group == "pictures") return pictureP99;
+    if (group == "pictures") return pictureP90;
     if (group == "frames") return NAN;
     const auto* const found = std::ranges::find_if(
         operationTolerances, [&](const Tolerance& t) { return name.find(t.part) != name.npos; });
@@ -44,7 +44,7 @@ bool isWithin(const Json& e, double tolerance) {
         return e.at(key).is_number() && e.at(key).get<double>() <= limit;
     };
     if (e.at("group") != "pictures") return below("error_max", tolerance);
-    return below("error_p99", tolerance) && below("error_rms", pictureRms) && e.at("repeats").get<bool>();
+    return below("error_p90", tolerance) && below("error_rms", pictureRms) && e.at("repeats").get<bool>();
 }
 
 // What a kernel's work grows with, beside the pixels.

@@ -328,7 +328,7 @@ class Methods {
              {"what", std::to_string(s.width) + "x" + std::to_string(s.height)},
              {"error_max", finite(sum.result().max)},
              {"error_rms", finite(sum.result().rms)},
-             {"error_p99", finite(errors[size_t(0.99 * double(errors.size()))])},
+             {"error_p90", finite(errors[errors.size() * 9 / 10])},
              {"repeats", again == shot.light},
              {"truth", "the picture by PoCL on a CPU, with one lane, at drawn pixels; absolute"}});
     }

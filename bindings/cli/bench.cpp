@@ -133,7 +133,7 @@ void printFirst(const Json& device) {
                         text(e, "failed").c_str());
         if (!e.contains("tolerance")) continue;
         std::printf("  %-44s %12s %12.0e%s%s\n", text(e, "name").c_str(),
-                    error(e.value("error_p99", e["error_max"])).c_str(), e["tolerance"].get<double>(),
+                    error(e.value("error_p90", e["error_max"])).c_str(), e["tolerance"].get<double>(),
                     e["within"].get<bool>() ? "" : "  OUT OF TOLERANCE",
                     e.value("repeats", true) ? "" : ", other bits in the second frame");
     }
