@@ -177,11 +177,14 @@ struct Contender {
 
 class Methods {
   public:
-    explicit Methods(const Request& request) : request_(request), device_(request.device) {}
+    // `sends`: rows are sent when they are done, and kept if a later one ends the process.
+    explicit Methods(const Request& request, bool sends = false)
+        : request_(request), device_(request.device), sends_(sends) {}
 
     Json measure() {
         for (const FrozenScene& scene : frozenScenes())
             if (scene.quick || !request_.quick) measureScene(scene);
+        if (!request_.quick && request_.only.empty()) measureFrames();
         measureClips();
         return {{"scenes", scenes_}, {"operations", rows_}, {"pictures", pictures_}};
     }
@@ -217,11 +220,15 @@ class Methods {
             writePictures(folder, of + ("-" + std::to_string(int(scale))), s, pictures);
         }
     }
-    // Of each method alone: at 4K all of them together need more memory than most devices have.
+    // Each method alone: at 4K all of them together need more memory than most devices have.
     void measureFrames() {
         const FrozenScene& scene = frozenScenes()[0];
         std::optional<Stage> stage;
-        for (const auto& [name, width, height] : frames(request_.quick)) {
+        using Frame = std::tuple<const char*, int, int>;
+        const std::vector<Frame> frames = request_.quick
+                                              ? std::vector<Frame>{{"270p", 480, 270}}
+                                              : std::vector<Frame>{{"1080p", 1920, 1080}, {"4K", 3840, 2160}};
+        for (const auto& [name, width, height] : frames) {
             if (!anyLeft(name)) continue;
             attempt(name, "frames", [&, name = name, width = width, height = height] {
                 say(std::string(name) + ": the scene is made");
@@ -256,11 +263,6 @@ class Methods {
     static const FrozenScene& sceneOf(const std::string& name) {
         return *std::ranges::find(frozenScenes(), name, [](const FrozenScene& s) { return s.name; });
     }
-    using Frame = std::tuple<const char*, int, int>;
-    static std::vector<Frame> frames(bool quick) {
-        return quick ? std::vector<Frame>{{"270p", 480, 270}}
-                     : std::vector<Frame>{{"1080p", 1920, 1080}, {"4K", 3840, 2160}};
-    }
     std::string headFile() const { return request_.data + "/heads/head_female.obj"; }
     LitScene lookAt(const FrozenScene& scene, double scale) const {
         SceneRequest request = scene.request;
@@ -284,8 +286,8 @@ class Methods {
         attempt(name, group, work);
         sendRows();
     }
-    // Rows that are sent are kept if a later one ends the process.
     void sendRows() {
+        if (!sends_) return;
         for (const Json& row : rows_) request_.event({{"row", row}});
         rows_.clear();
     }
@@ -436,10 +438,6 @@ class Methods {
         }
         if (scene.name != frozenScenes()[0].name || !request_.only.empty() || !stage) return;
         measureShares(scene, *stage);
-        if (request_.quick) return;
-        for (const auto& [name, width, height] : frames(false))
-            attempt(name, "frames",
-                    [&, name = name, w = width, h = height] { measureFrame(scene, *stage, name, w, h); });
     }
 
     void measureLook(const FrozenScene& scene, const Stage& stage, const std::string& name, double scale) {
@@ -492,12 +490,6 @@ class Methods {
             const std::string name = std::to_string(share) + " % of the skin";
             attempt(name, "shares", [&] { measureShown(s, name, "shares", request_.quick ? 3 : 7); });
         }
-    }
-    void measureFrame(const FrozenScene& scene, const Stage& stage, const char* name, int width, int height) {
-        SceneRequest request = scene.request;
-        request.width = width, request.size = height;
-        say(std::string(name) + ": " + scene.title);
-        measureShown(stage.look(request, profile_), name, "frames", 3);
     }
     void measureShown(const LitScene& s, const std::string& name, const char* group, int rounds) {
         std::vector<Contender> contenders;
@@ -601,6 +593,7 @@ class Methods {
 
     const Request& request_;
     Device device_;
+    bool sends_;
     Profile profile_ = usualProfile();
     Json scenes_ = Json::array(), rows_ = Json::array(), pictures_ = Json::array();
 };
@@ -612,7 +605,7 @@ Json measureMethods(const Request& request) {
 }
 
 void measureFirst(const Request& request) {
-    Methods methods(request);
+    Methods methods(request, true);
     methods.comparePictures();
     methods.measureFrames();
 }

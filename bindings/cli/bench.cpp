@@ -8,7 +8,6 @@
 #include "command.h"
 #include "io/atomic_file.h"
 #include "io/input_file.h"
-#include "io/shortest.h"
 #include "measure/measure.h"
 #include "measure/report.h"
 #include "system/process.h"
@@ -119,35 +118,25 @@ void makeTruth(const Arguments& a) {
     bench::keepPictures(request, a.truth);
 }
 
-// What --first-gpu found.
+// What --first-gpu found; the page has the rest.
 void printFirst(const Json& device) {
-    std::printf("%s\n  %-44s %12s %12s\n", device.at("name").get<std::string>().c_str(), "correctness",
-                "error", "tolerance");
-    const auto text = [](const Json& e, const char* key) { return e.at(key).get<std::string>(); };
-    const auto error = [](const Json& v) {
-        return v.is_number() ? io::printed("%.1e", v.get<double>()) : "NaN or Inf";
-    };
+    const Json& first = device.at("first_gpu");
+    std::printf("%s\n  %d pictures and operations judged, %d out of tolerance or not done\n",
+                device.at("name").get<std::string>().c_str(), first.at("checked").get<int>(),
+                int(first.at("out").size()));
     for (const Json& e : device.at("operations")) {
         if (e.contains("failed"))
-            std::printf("  %-44s could not be done: %s\n", text(e, "name").c_str(),
-                        text(e, "failed").c_str());
-        if (!e.contains("tolerance")) continue;
-        std::printf("  %-44s %12s %12.0e%s%s\n", text(e, "name").c_str(),
-                    error(e.value("error_p90", e["error_max"])).c_str(), e["tolerance"].get<double>(),
-                    e["within"].get<bool>() ? "" : "  OUT OF TOLERANCE",
-                    e.value("repeats", true) ? "" : ", other bits in the second frame");
-    }
-    std::printf("  %-44s %12s %12s\n", "passes of frames", "ms", "predicted");
-    for (const Json& e : device.at("operations")) {
+            std::printf("  %s: could not be done: %s\n", e["name"].get<std::string>().c_str(),
+                        e["failed"].get<std::string>().c_str());
         if (!e.contains("passes")) continue;
-        std::printf("  %-44s %12.2f\n", text(e, "name").c_str(), e.at("median_ms").get<double>());
+        std::printf("  %-44s %9.2f ms:", e["name"].get<std::string>().c_str(), e["median_ms"].get<double>());
         for (const Json& pass : e["passes"]) {
-            const Json& predicted = pass.at("predicted_ms");
-            std::printf("    %-42s %12.2f %12s\n", text(pass, "name").c_str(), pass.at("ms").get<double>(),
-                        predicted.is_number() ? io::printed("%.2f", predicted.get<double>()).c_str()
-                                              : "no prediction");
+            std::printf(" %s %.2f", pass["name"].get<std::string>().c_str(), pass["ms"].get<double>());
+            if (pass["predicted_ms"].is_number()) std::printf(" (%.2f)", pass["predicted_ms"].get<double>());
         }
+        std::printf("\n");
     }
+    std::printf("  In brackets: predicted.\n");
 }
 
 // The methods, fastest first: those that no other beats in both time and error.
