@@ -194,7 +194,7 @@ class Methods {
             if (request_.quick && of != keptScenes[0].first) continue;
             const std::string name = of + ("-" + std::to_string(int(scale)));
             if (!anyLeft(name)) continue;
-            attempt(name, "pictures", [&, scale = scale] {
+            attempt(name, "pictures", [&, of = of, scale = scale] {
                 say(name + ": the scene is made");
                 const FrozenScene& scene = sceneOf(of);
                 const LitScene s = lookAt(scene, scale);
