@@ -84,9 +84,9 @@ class Tuner {
                 LaunchPolicy policy = best;
                 policy.*size.of = size_t(double(best.*size.of) * by);
                 if (pel::allowedPolicy(policy, info_) != policy) continue;
-                add(all, policy, size.tables, size.frames, size.name);
+                add(all, policy, size.tables, size.frames);
             }
-            measure(all, size.name);
+            measure(all);
             size_t taken = 0;
             for (size_t i = 0; i < all.size(); ++i) {
                 const Ratio r = ratioOf(all[i], all[0]);
@@ -102,9 +102,9 @@ class Tuner {
         if (best == builtIn) return result;
         // Together, against what is built in, over everything: what was chosen by chance is not faster twice.
         std::vector<Candidate> both;
-        add(both, builtIn, true, true, "all");
-        add(both, best, true, true, "all");
-        measure(both, "all");
+        add(both, builtIn, true, true);
+        add(both, best, true, true);
+        measure(both);
         const Ratio r = ratioOf(both[1], both[0]);
         result.measured.push_back({{"size", "all"},
                                    {"time_ratio", std::exp(r.log)},
@@ -119,9 +119,8 @@ class Tuner {
     }
 
     // A size that the device refuses is left out, except the first.
-    void add(std::vector<Candidate>& all, const LaunchPolicy& policy, bool tables, bool frames,
-             const char* what) {
-        progress_(done_, what);
+    void add(std::vector<Candidate>& all, const LaunchPolicy& policy, bool tables, bool frames) {
+        progress_(done_, "tables and frames with other launch sizes");
         try {
             const Temporary file(pel::launchText(info_, policy));
             Candidate c{policy, Device(selector_)};
@@ -158,13 +157,13 @@ class Tuner {
         }
     }
 
-    void measure(std::vector<Candidate>& all, const char* what) {
+    void measure(std::vector<Candidate>& all) {
         const int rounds = quick_ ? 3 : 11;
         std::mt19937 random(1);
         std::vector<size_t> order(all.size());
         for (size_t i = 0; i < order.size(); ++i) order[i] = i;
         for (int round = 0; round < rounds; ++round) {
-            progress_(done_, what);
+            progress_(done_, "tables and frames with other launch sizes");
             std::ranges::shuffle(order, random);
             for (const size_t i : order)
                 for (Work& w : all[i].work) all[i].sample(w);
@@ -176,23 +175,24 @@ class Tuner {
     class Temporary {
       public:
         explicit Temporary(const std::string& text)
-            : path_((std::filesystem::temp_directory_path() /
-                     ("pellucid-tune-" + std::to_string(pel::system::processId()) + ".txt"))
-                        .string()) {
+            : folder_(pel::system::makeTemporaryFolder(std::filesystem::temp_directory_path().string(),
+                                                       "pellucid-tune-")) {
             if (const char* const named = std::getenv(variable)) before_ = named;
-            std::ofstream(path_, std::ios::binary) << text;
-            pel::system::setVariable(variable, path_.c_str());
+            const std::string file = folder_ + "/tuning.txt";
+            if (folder_.empty() || !(std::ofstream(file, std::ios::binary) << text))
+                throw std::runtime_error("no file can be made in the folder for temporary files");
+            pel::system::setVariable(variable, file.c_str());
         }
         ~Temporary() {
             pel::system::setVariable(variable, before_ ? before_->c_str() : nullptr);
             std::error_code ignored;
-            std::filesystem::remove(path_, ignored);
+            std::filesystem::remove_all(folder_, ignored);
         }
         Temporary(const Temporary&) = delete;
 
       private:
         static constexpr const char* variable = "PELLUCID_TUNING";
-        std::string path_;
+        std::string folder_;
         std::optional<std::string> before_;
     };
 
