@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <pellucid/pellucid.hpp>
 
+#include "tuning/launch_sizes.h"
+
 namespace pellucid::bench {
 
 struct Error {
@@ -60,6 +62,7 @@ class ErrorSum {
 struct Request {
     std::string device;                // selector
     bool quick = false;                // small sizes, few repetitions
+    bool firstGpu = false;             // the checks and predictions of first_gpu.cpp instead of all else
     double stability = 0;              // share of its whole search for the worst errors; 0: none
     std::vector<std::string> only;     // parts of names; empty: every operation
     std::vector<std::string> without;  // names that are left out
@@ -67,7 +70,8 @@ struct Request {
     std::string data;     // folder of the library's data: heads, and the truth of scenes in bench
     std::string command;  // path of the pellucid command, for processes of their own
     std::function<void(const std::string&)> progress;  // a line now and then
-    // What happens, for whoever waits: {"begin": name, "group"}, {"say": text}
+    // What happens, for whoever waits: {"begin": name, "group"}, {"say": text}, {"row": an operation that is
+    // done and need not be measured again}
     std::function<void(const nlohmann::ordered_json&)> event;
     std::function<bool()> cancelled;
 
@@ -92,6 +96,21 @@ nlohmann::ordered_json measureCases(const Request& request);
 // In this process: {"scenes", "operations", "pictures"} (docs/guide/measuring.md).
 nlohmann::ordered_json measureMethods(const Request& request);
 
+// In this process, for the first time on a device: each method's picture against the one kept in
+// `request.data`, then its passes at 1080p and 4K. Operations are events.
+void measureFirst(const Request& request);
+
+// Writes the pictures that measureFirst() compares with into `folder`.
+void keepPictures(const Request& request, const std::string& folder);
+
+// What the first time on a device says. Adds to the operations of a report their "tolerance" and "within",
+// to passes of frames "predicted_ms" and "limited_by" (null: not predicted) by the counts of `warps`
+// (bench/roofline), and "first_gpu": {"checked", "out": [names]}.
+void judgeFirst(nlohmann::ordered_json& report, const nlohmann::ordered_json& warps);
+
+// Parts of the names of operations that judgeFirst() judges.
+std::vector<std::string> judgedCases();
+
 // In this process: {"stability": {"share", "operations": [{"name", "range", "unit", "limit", "points",
 // "stopped", "drawn", "worst", "inherent", "where"}]}}, the worst error of every operation against the tests'
 // oracles, on the device that PELLUCID_DEVICE names (docs/stability.md).
@@ -100,6 +119,17 @@ nlohmann::ordered_json measureStability(const Request& request);
 // Writes the truth of each scene and clip that `folder` does not have into it. Minutes each.
 void makeTruth(const Device& device, const std::string& folder, const std::string& headFile,
                const std::function<void(const std::string&)>& say, const std::function<bool()>& cancelled);
+
+// The fastest launch sizes of a device; those that are built in where no others gain more than the noise.
+struct Tuned {
+    pel::LaunchPolicy sizes;
+    double ratio = 1;  // of its times over those of what is built in
+    nlohmann::ordered_json measured = nlohmann::ordered_json::array();
+};
+using TuneProgress = std::function<void(double fraction, const char* what)>;
+// `selector`: that opened `device`.
+Tuned tuneLaunches(const Device& device, const std::string& selector, bool quick,
+                   const TuneProgress& progress);
 
 // What a process pays once for its first table and frame: {"device_ms", "table_ms", "shade_ms", "total_ms"}.
 nlohmann::ordered_json firstUse(const std::string& device);

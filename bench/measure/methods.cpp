@@ -163,6 +163,9 @@ class InTexture {
     PelTextureScatterParams params_ = pelTextureScatterParamsDefaults();
 };
 
+// The scenes in which pictures are compared with those kept; the first one alone with --quick.
+constexpr std::pair<const char*, double> keptScenes[] = {{"ball", 4}, {"side", 4}, {"ear", 1}};
+
 // A method at work on a scene, and its times, in milliseconds.
 struct Contender {
     Setting setting;
@@ -174,16 +177,165 @@ struct Contender {
 
 class Methods {
   public:
-    explicit Methods(const Request& request) : request_(request), device_(request.device) {}
+    // `sends`: rows are sent when they are done, and kept if a later one ends the process.
+    explicit Methods(const Request& request, bool sends = false)
+        : request_(request), device_(request.device), sends_(sends) {}
 
     Json measure() {
         for (const FrozenScene& scene : frozenScenes())
             if (scene.quick || !request_.quick) measureScene(scene);
+        if (!request_.quick && request_.only.empty()) measureFrames();
         measureClips();
         return {{"scenes", scenes_}, {"operations", rows_}, {"pictures", pictures_}};
     }
 
+    void comparePictures() {
+        for (const auto& [of, scale] : keptScenes) {
+            if (request_.quick && of != keptScenes[0].first) continue;
+            const std::string name = of + ("-" + std::to_string(int(scale)));
+            if (!anyLeft(name)) continue;
+            attempt(name, "pictures", [&, of = of, scale = scale] {
+                say(name + ": the scene is made");
+                const FrozenScene& scene = sceneOf(of);
+                const LitScene s = lookAt(scene, scale);
+                const std::vector<Setting> methods = keptSettings(s);
+                const KeptPictures kept = readPictures(request_.data + "/bench", name, s, methods.size());
+                for (size_t i = 0; i < methods.size(); ++i) {
+                    attemptAlone(name, methods[i], "pictures", [&] {
+                        comparePicture(contenderOf(methods[i], scene, s, scale), name, s, kept.pixels,
+                                       kept.light[i]);
+                    });
+                }
+            });
+            sendRows();
+        }
+    }
+    void keepPictures(const std::string& folder) {
+        for (const auto& [of, scale] : keptScenes) {
+            const FrozenScene& scene = sceneOf(of);
+            const LitScene s = lookAt(scene, scale);
+            std::vector<std::vector<float>> pictures;
+            for (const Setting& setting : keptSettings(s))
+                pictures.push_back(contenderOf(setting, scene, s, scale).shot.light);
+            writePictures(folder, of + ("-" + std::to_string(int(scale))), s, pictures);
+        }
+    }
+    // Each method alone: at 4K all of them together need more memory than most devices have.
+    void measureFrames() {
+        const FrozenScene& scene = frozenScenes()[0];
+        std::optional<Stage> stage;
+        using Frame = std::tuple<const char*, int, int>;
+        const std::vector<Frame> frames = request_.quick
+                                              ? std::vector<Frame>{{"270p", 480, 270}}
+                                              : std::vector<Frame>{{"1080p", 1920, 1080}, {"4K", 3840, 2160}};
+        for (const auto& [name, width, height] : frames) {
+            if (!anyLeft(name)) continue;
+            attempt(name, "frames", [&, name = name, width = width, height = height] {
+                say(std::string(name) + ": the scene is made");
+                if (!stage) stage.emplace(device_, scene.body(headFile()), 1);
+                SceneRequest request = scene.request;
+                request.width = width, request.size = height;
+                const LitScene s = stage->look(request, profile_);
+                double plain = NAN;
+                for (const Setting& setting : keptSettings(s))
+                    attemptAlone(name, setting, "frames", [&] {
+                        std::vector<Contender> one;
+                        one.push_back(contenderOf(setting, scene, s, 1));
+                        const double once = one[0].shot.stats.deviceMilliseconds;
+                        run(one, name, "frames", int(std::clamp(3000 / once, 1.0, 7.0)));
+                        if (setting.method == "Lambert") plain = timeOfPlain(one);
+                        rows_.push_back(rowOf(one[0], name, "frames", s, plain));
+                    });
+            });
+            sendRows();
+        }
+    }
+
   private:
+    // A setting of each method.
+    static std::vector<Setting> keptSettings(const LitScene& s) {
+        std::vector<Setting> kept = settings();
+        std::erase_if(kept, [&](const Setting& one) {
+            return !one.shown && (one.texture != 1024 || s.gbuffer.uv.data.empty());
+        });
+        return kept;
+    }
+    static const FrozenScene& sceneOf(const std::string& name) {
+        return *std::ranges::find(frozenScenes(), name, [](const FrozenScene& s) { return s.name; });
+    }
+    std::string headFile() const { return request_.data + "/heads/head_female.obj"; }
+    LitScene lookAt(const FrozenScene& scene, double scale) const {
+        SceneRequest request = scene.request;
+        request.profileScale = scale;
+        LitScene s = Stage(device_, scene.body(headFile()), 1).look(request, profile_);
+        // Instead of the mesh's, which the device has made: each operation is judged by itself.
+        for (size_t i = 0; i < s.covered.size(); ++i) s.gbuffer.curvature.data[i] = 0.02f * float(1 + i % 10);
+        return s;
+    }
+    // Whether a method is still to be measured in this scene.
+    bool anyLeft(const std::string& scene) const {
+        return std::ranges::any_of(settings(), [&](const Setting& s) {
+            return (s.shown || s.texture == 1024) && request_.wants(scene + ": " + s.name());
+        });
+    }
+    template <class Work>
+    void attemptAlone(const std::string& scene, const Setting& setting, const char* group, const Work& work) {
+        const std::string name = scene + ": " + setting.name();
+        if (!request_.wants(name)) return;
+        say(name);
+        attempt(name, group, work);
+        sendRows();
+    }
+    void sendRows() {
+        if (!sends_) return;
+        for (const Json& row : rows_) request_.event({{"row", row}});
+        rows_.clear();
+    }
+
+    Contender contenderOf(const Setting& setting, const FrozenScene& scene, const LitScene& s, double scale) {
+        ShadeRequest how = setting.request;
+        how.materials = scene.materials;
+        how.timeBudget = float(1e-6 * setting.budget * double(s.places.size()));
+        std::shared_ptr<InTexture> texture;
+        if (setting.texture) {
+            texture = std::make_shared<InTexture>(device_, scene.body(headFile()).mesh, s, profile_, scale,
+                                                  uint32_t(setting.texture));
+            texture->run();
+            how.texture = texture->texture();
+        }
+        return {setting, shoot(device_, s, profile_, scale, how), texture};
+    }
+
+    void comparePicture(Contender contender, const std::string& scene, const LitScene& s,
+                        const std::vector<size_t>& pixels, const std::vector<float>& kept) {
+        const Setting& setting = contender.setting;
+        Shot& shot = contender.shot;
+        ErrorSum sum;
+        std::vector<double> errors;
+        for (size_t k = 0; k < kept.size(); ++k) {
+            errors.push_back(std::abs(double(shot.light[3 * pixels[k / 3] + k % 3]) - kept[k]));
+            if (errors.back() != errors.back()) errors.back() = INFINITY;
+            sum.add(errors.back());
+        }
+        std::ranges::sort(errors);
+        // Work-items that run at the same time may not change a bit from one frame to the next.
+        shot.shader.execute();
+        const std::vector<float> again = shot.out.readAll<float>();
+        rows_.push_back(
+            {{"name", scene + ": " + setting.name()},
+             {"group", "pictures"},
+             {"scene", scene},
+             {"method", setting.method},
+             {"setting", setting.setting},
+             {"what", std::to_string(s.width) + "x" + std::to_string(s.height)},
+             {"error_max", finite(sum.result().max)},
+             {"error_rms", finite(sum.result().rms)},
+             {"error_p90", finite(errors[errors.size() * 9 / 10])},
+             {"repeats", again == shot.light},
+             {"truth", "the picture by PoCL on a CPU, with one lane, at drawn pixels; absolute"}});
+    }
+    static Json finite(double v) { return std::isfinite(v) ? Json(v) : Json(); }
+
     // Lambert comes with every other, for the times beyond it.
     bool wanted(const std::string& scene, const Setting& s) const {
         return (s.quick || !request_.quick) && request_.wants(scene + ": " + s.name());
@@ -280,16 +432,12 @@ class Methods {
             if (!wanted(name)) continue;
             attempt(name, "methods", [&] {
                 say(name + ": " + scene.title);
-                if (!stage) stage.emplace(device_, scene.body(request_.data + "/heads/head_female.obj"), 1);
+                if (!stage) stage.emplace(device_, scene.body(headFile()), 1);
                 measureLook(scene, *stage, name, scale);
             });
         }
         if (scene.name != frozenScenes()[0].name || !request_.only.empty() || !stage) return;
         measureShares(scene, *stage);
-        if (request_.quick) return;
-        for (const auto& [name, width, height] : {std::tuple{"1080p", 1920, 1080}, {"4K", 3840, 2160}})
-            attempt(name, "frames",
-                    [&, name = name, w = width, h = height] { measureFrame(scene, *stage, name, w, h); });
     }
 
     void measureLook(const FrozenScene& scene, const Stage& stage, const std::string& name, double scale) {
@@ -314,18 +462,7 @@ class Methods {
             if (setting.texture && s.gbuffer.uv.data.empty()) continue;
             attempt(name + ": " + setting.name(), "methods", [&] {
                 s.lamps = setting.mapSize ? stage.lampsOf(s.lighting, setting.mapSize) : lamps;
-                ShadeRequest how = setting.request;
-                how.materials = scene.materials;
-                how.timeBudget = float(1e-6 * setting.budget * double(s.places.size()));
-                std::shared_ptr<InTexture> texture;
-                if (setting.texture) {
-                    const Body body = scene.body(request_.data + "/heads/head_female.obj");
-                    texture = std::make_shared<InTexture>(device_, body.mesh, s, profile_, scale,
-                                                          uint32_t(setting.texture));
-                    texture->run();
-                    how.texture = texture->texture();
-                }
-                contenders.push_back({setting, shoot(device_, s, profile_, scale, how), texture});
+                contenders.push_back(contenderOf(setting, scene, s, scale));
                 Shot& shot = contenders.back().shot;
                 addErrors(errors[setting.name()], valuesAt(shot.light, truth.pixels), truth, s.subsets);
                 if (setting.shown && scale > 1) addPicture(name, setting, s, shot.light);
@@ -354,12 +491,6 @@ class Methods {
             attempt(name, "shares", [&] { measureShown(s, name, "shares", request_.quick ? 3 : 7); });
         }
     }
-    void measureFrame(const FrozenScene& scene, const Stage& stage, const char* name, int width, int height) {
-        SceneRequest request = scene.request;
-        request.width = width, request.size = height;
-        say(std::string(name) + ": " + scene.title);
-        measureShown(stage.look(request, profile_), name, "frames", 3);
-    }
     void measureShown(const LitScene& s, const std::string& name, const char* group, int rounds) {
         std::vector<Contender> contenders;
         for (const Setting& setting : settings())
@@ -381,9 +512,7 @@ class Methods {
                 if (!setting.shown || !wanted(clip.name, setting)) continue;
                 if (request_.quick && (setting.method == "light" || clip.cameraStep > 0)) continue;
                 attempt(clip.name + (": " + setting.name()), "clips", [&] {
-                    if (!stage)
-                        stage.emplace(device_,
-                                      frozenScenes()[0].body(request_.data + "/heads/head_female.obj"), 1);
+                    if (!stage) stage.emplace(device_, frozenScenes()[0].body(headFile()), 1);
                     for (int k = int(frames.size()); k < clipFrames; ++k)
                         frames.push_back(stage->look(clipRequest(clip, k), profile_));
                     if (!truth) truth = readClip(request_.data + "/bench", clip, frames);
@@ -464,6 +593,7 @@ class Methods {
 
     const Request& request_;
     Device device_;
+    bool sends_;
     Profile profile_ = usualProfile();
     Json scenes_ = Json::array(), rows_ = Json::array(), pictures_ = Json::array();
 };
@@ -472,6 +602,16 @@ class Methods {
 
 Json measureMethods(const Request& request) {
     return Methods(request).measure();
+}
+
+void measureFirst(const Request& request) {
+    Methods methods(request, true);
+    methods.comparePictures();
+    methods.measureFrames();
+}
+
+void keepPictures(const Request& request, const std::string& folder) {
+    Methods(request).keepPictures(folder);
 }
 
 }  // namespace pellucid::bench

@@ -57,12 +57,13 @@ std::string fileOf(const std::string& folder, const std::string& name) {
     return folder + "/" + name + ".npy";
 }
 
-// Half floats: `layers` of as many RGB values.
-void write(const std::string& path, const std::vector<std::vector<float>>& layers) {
+// `layers` of as many RGB values.
+void write(const std::string& path, const std::vector<std::vector<float>>& layers,
+           io::ChannelType type = io::ChannelType::Half) {
     std::vector<float> all;
     for (const std::vector<float>& layer : layers) all.insert(all.end(), layer.begin(), layer.end());
     const size_t shape[] = {layers.size(), layers[0].size() / 3, 3};
-    io::writeNpy(path, shape, all, io::ChannelType::Half);
+    io::writeNpy(path, shape, all, type);
 }
 // The last layer must be `places`, so that light is compared where it was made.
 std::vector<std::vector<float>> read(const std::string& path, const std::vector<float>& places) {
@@ -185,6 +186,24 @@ ClipTruth readClip(const std::string& folder, const FrozenClip& clip, const std:
     ClipTruth t{clipPixels(frames), {}};
     t.light = read(fileOf(folder, clip.name), at(frames[0].positions, t.pixels[0]));
     return t;
+}
+
+KeptPictures readPictures(const std::string& folder, const std::string& name, const LitScene& scene,
+                          size_t methods) {
+    KeptPictures kept{drawn(scene, truthPoints), {}};
+    const std::string path = fileOf(folder, "pictures-" + name);
+    kept.light = read(path, at(scene.positions, kept.pixels));
+    if (kept.light.size() != methods) throw std::runtime_error(path + " has pictures of other methods");
+    return kept;
+}
+
+void writePictures(const std::string& folder, const std::string& name, const LitScene& scene,
+                   const std::vector<std::vector<float>>& wholePictures) {
+    const std::vector<size_t> pixels = drawn(scene, truthPoints);
+    std::vector<std::vector<float>> layers;
+    for (const std::vector<float>& picture : wholePictures) layers.push_back(at(picture, pixels));
+    layers.push_back(at(scene.positions, pixels));
+    write(fileOf(folder, "pictures-" + name), layers, io::ChannelType::Float);
 }
 
 void makeTruth(const Device& device, const std::string& folder, const std::string& headFile,

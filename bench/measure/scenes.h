@@ -40,6 +40,17 @@ struct Truth {
 // Throws std::runtime_error where `folder` has none, or has that of another scene.
 Truth readTruth(const std::string& folder, const std::string& name, const lit_scenes::LitScene& scene);
 
+// What each method made of a scene on PoCL, for an albedo of 1: three values for each of `pixels`.
+struct KeptPictures {
+    std::vector<size_t> pixels;
+    std::vector<std::vector<float>> light;
+};
+// Throws as readTruth(), and where others than `methods` are kept.
+KeptPictures readPictures(const std::string& folder, const std::string& name,
+                          const lit_scenes::LitScene& scene, size_t methods);
+void writePictures(const std::string& folder, const std::string& name, const lit_scenes::LitScene& scene,
+                   const std::vector<std::vector<float>>& wholePictures);
+
 // The pixels that show the points of frame 0 in each frame (SIZE_MAX: none does), and light there without
 // noise that differs between frames.
 struct ClipTruth {

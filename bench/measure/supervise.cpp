@@ -100,8 +100,9 @@ class Again {
 };
 
 // The report of one process; null if it did not get there. `part`: what it measures. `at`: its last case.
+// `done`: gets what it measured before.
 Json runApart(const Request& request, const char* part, const std::set<std::string>& without, Json& at,
-              std::string& why) {
+              Json& done, std::string& why) {
     std::vector<std::string> words{"--events", part, "--limit", std::to_string(request.limitSeconds)};
     if (request.quick) words.push_back("--quick");
     for (const std::string& name : request.only) words.insert(words.end(), {"--only", name});
@@ -116,6 +117,7 @@ Json runApart(const Request& request, const char* part, const std::set<std::stri
         if (!event->is_object()) continue;
         if (event->contains("begin")) at = *event;
         if (event->contains("say") && request.progress) request.progress((*event)["say"]);
+        if (event->contains("row")) done.push_back((*event)["row"]);
         if (event->contains("report")) report = (*event)["report"];
     }
     why = child.why();
@@ -127,22 +129,23 @@ Json runApart(const Request& request, const char* part, const std::set<std::stri
 // others are measured without it.
 Json measureApart(const Request& request, const char* part) {
     std::set<std::string> without;
-    Json lost = Json::array();
-    // After a loss all others are measured again.
+    Json done = Json::array();
+    // After a loss all others that are not done are measured again.
     for (;;) {
         Json at;
         std::string why;
-        Json report = runApart(request, part, without, at, why);
+        Json report = runApart(request, part, without, at, done, why);
         if (!report.is_null()) {
-            for (const Json& e : lost) report["operations"].push_back(e);
+            for (const Json& e : done) report["operations"].push_back(e);
             return report;
         }
+        for (const Json& e : done) without.insert(e.at("name").get<std::string>());
         if (at.is_null()) at = {{"begin", "start"}, {"group", "device"}};
         const std::string name = at.at("begin");
         if (request.progress) request.progress(name + ": " + why);
-        lost.push_back({{"name", name}, {"group", at.at("group")}, {"failed", why}});
+        done.push_back({{"name", name}, {"group", at.at("group")}, {"failed", why}});
         // The process did not reach any case, or reached one that was left out.
-        if (name == "start" || !without.insert(name).second) return {{"operations", lost}};
+        if (name == "start" || !without.insert(name).second) return {{"operations", done}};
     }
 }
 
@@ -193,9 +196,15 @@ Json measureDevice(const Request& request) {
     measureFirstUse(request, report);
     report.update({{"copy_bytes_per_second", Json()}, {"operations_per_second", Json()}});
     report["operations"] = Json::array();
-    for (const char* part : {"cases", "methods", "stability"}) {
+    for (const char* part : {"cases", "methods", "first", "stability"}) {
         if (part == std::string("stability") && request.stability == 0) continue;
-        Json measured = measureApart(request, part);
+        if (part == std::string(request.firstGpu ? "methods" : "first")) continue;
+        Request own = request;
+        if (request.firstGpu && part == std::string("cases")) {
+            own.quick = true;
+            if (own.only.empty()) own.only = judgedCases();
+        }
+        Json measured = measureApart(own, part);
         for (Json& e : measured["operations"]) report["operations"].push_back(std::move(e));
         measured.erase("operations");
         report.update(measured);

@@ -22,7 +22,7 @@ struct Arguments {
     std::vector<double> errors{2e-3};
     std::string output, slower, lessAccurate, truth;
     double limitSeconds = 0, stabilityShare = 0;  // 0: depends on `quick`
-    bool quick = false, json = false, firstUse = false, stability = false;
+    bool quick = false, json = false, firstUse = false, firstGpu = false, stability = false;
     std::string events;  // in a child process: what it measures; it prints one JSON object a line
 };
 
@@ -53,16 +53,18 @@ void writePage(const std::string& path, const Json& reports) {
 
 std::atomic<bool> stopped{false};
 
-// Numbers of the devices to measure: those of --device, or all but simulators.
+// Numbers of the devices to measure: those of --device, or all but simulators; with --first-gpu all GPUs.
 std::vector<std::string> chosenDevices(const Arguments& a) {
     if (!a.devices.empty()) return a.devices;
     std::vector<std::string> chosen;
     for (const PelDeviceInfo& d : Device::all()) {
+        if (a.firstGpu && d.type != PEL_DEVICE_GPU) continue;
         if (std::string(d.platform).find("Oclgrind") != std::string::npos)
             std::fprintf(stderr, "%u: %s is left out; --device %u measures it\n", d.index, d.name, d.index);
         else
             chosen.push_back(std::to_string(d.index));
     }
+    if (chosen.empty() && a.firstGpu) std::fprintf(stderr, "no GPU is there: the best device stands in\n");
     if (chosen.empty()) chosen.push_back("");  // opening it gives the library's message
     return chosen;
 }
@@ -74,10 +76,11 @@ bench::Request requestOf(const Arguments& a, const std::string& device) {
                                                  : !a.stability       ? 0
                                                  : a.quick            ? 0.002
                                                                       : 0.05;
+    request.firstGpu = a.firstGpu;
     request.only = a.only;
     request.without = a.without;
     request.data = dataFolder();
-    request.limitSeconds = a.limitSeconds > 0 ? a.limitSeconds : a.quick ? 60 : 120;
+    request.limitSeconds = a.limitSeconds > 0 ? a.limitSeconds : a.quick || a.firstGpu ? 60 : 120;
     return request;
 }
 
@@ -92,9 +95,13 @@ void measureWithEvents(const Arguments& a) {
     };
     bench::Request request = requestOf(a, a.devices.empty() ? "" : a.devices[0]);
     request.event = tell;
-    const Json report = a.events == "methods"     ? bench::measureMethods(request)
-                        : a.events == "stability" ? bench::measureStability(request)
-                                                  : bench::measureCases(request);
+    Json report = Json::object();
+    if (a.events == "first")
+        bench::measureFirst(request);
+    else
+        report = a.events == "methods"     ? bench::measureMethods(request)
+                 : a.events == "stability" ? bench::measureStability(request)
+                                           : bench::measureCases(request);
     tell({{"report", report}});
     std::fclose(out);
 }
@@ -105,6 +112,31 @@ void makeTruth(const Arguments& a) {
         Device(a.devices.empty() ? "" : a.devices[0]), a.truth, dataFolder() + "/heads/head_female.obj",
         [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); },
         [] { return stopped.load(); });
+    pel::system::setVariable("PELLUCID_MATH_WIDTH", "1");
+    bench::Request request = requestOf(a, a.devices.empty() ? "" : a.devices[0]);
+    request.event = [](const Json&) {};
+    bench::keepPictures(request, a.truth);
+}
+
+// What --first-gpu found; the page has the rest.
+void printFirst(const Json& device) {
+    const Json& first = device.at("first_gpu");
+    std::printf("%s\n  %d pictures and operations judged, %d out of tolerance or not done\n",
+                device.at("name").get<std::string>().c_str(), first.at("checked").get<int>(),
+                int(first.at("out").size()));
+    for (const Json& e : device.at("operations")) {
+        if (e.contains("failed"))
+            std::printf("  %s: could not be done: %s\n", e["name"].get<std::string>().c_str(),
+                        e["failed"].get<std::string>().c_str());
+        if (!e.contains("passes")) continue;
+        std::printf("  %-44s %9.2f ms:", e["name"].get<std::string>().c_str(), e["median_ms"].get<double>());
+        for (const Json& pass : e["passes"]) {
+            std::printf(" %s %.2f", pass["name"].get<std::string>().c_str(), pass["ms"].get<double>());
+            if (pass["predicted_ms"].is_number()) std::printf(" (%.2f)", pass["predicted_ms"].get<double>());
+        }
+        std::printf("\n");
+    }
+    std::printf("  In brackets: predicted.\n");
 }
 
 // The methods, fastest first: those that no other beats in both time and error.
@@ -130,12 +162,17 @@ void measure(const Arguments& a) {
         std::cout << jsonText(bench::firstUse(a.devices.empty() ? "" : a.devices[0]), -1) << std::endl;
         return;
     }
-    if (a.output.empty()) throw UsageError("-o is needed: a folder for bench.json");
-    const std::string jsonPath = a.output + "/bench.json";
+    const std::string folder = a.output.empty() && a.firstGpu ? "pellucid-first-gpu" : a.output;
+    if (folder.empty()) throw UsageError("-o is needed: a folder for bench.json");
+    if (a.firstGpu && (a.stability || a.stabilityShare > 0))
+        throw UsageError("--first-gpu does not search for the worst errors: leave --stability out");
+    // As GPUs have it. A window of pixels that lanes share makes small differences.
+    if (a.firstGpu) pel::system::setVariable("PELLUCID_MATH_WIDTH", "1");
+    const std::string jsonPath = folder + "/bench.json";
     std::vector<double> budgets;
     for (const std::string& text : a.budgets) budgets.push_back(numberOf(text, "ms", "--budget"));
     const std::vector<std::string> chosen = chosenDevices(a);
-    checkFolder(a.output, "bench.json");
+    checkFolder(folder, "bench.json");
     std::signal(SIGINT, [](int signal) {
         stopped = true;
         std::signal(signal, SIG_DFL);
@@ -145,7 +182,7 @@ void measure(const Arguments& a) {
                    {"quick", a.quick},
                    {"limit_s", requestOf(a, "").limitSeconds},
                    {"devices", Json::array()}};
-    std::string names;
+    std::string names, out;
     Json pictures = Json::array();
     double deviceMilliseconds = 0;
     for (const std::string& selector : chosen) {
@@ -158,6 +195,11 @@ void measure(const Arguments& a) {
         report["devices"].push_back(bench::measureDevice(request));
         Json& d = report["devices"].back();
         bench::summarize(d, budgets, a.errors);
+        if (a.firstGpu) {
+            bench::judgeFirst(
+                d, Json::parse(io::readWholeFile(dataFolder() + "/bench/warps.json", io::textLimit)));
+            for (const Json& name : d.at("first_gpu").at("out")) out += "\n  " + name.get<std::string>();
+        }
         pictures.push_back(d.value("pictures", Json::array()));
         d.erase("pictures");  // of the page alone
         names += (names.empty() ? "" : ", ") + d.at("name").get<std::string>();
@@ -169,11 +211,11 @@ void measure(const Arguments& a) {
     for (const Json& d : report["devices"]) tuning += bench::tuningText(d);
     if (!tuning.empty())
         io::writeWholeFile(
-            a.output + "/tuning.txt",
+            folder + "/tuning.txt",
             "pellucid tuning 1\n# method, target error, ns per pixel of the materials and of the "
             "frame, RMS error against light\n" +
                 tuning);
-    const std::string page = a.output + "/bench.html";
+    const std::string page = folder + "/bench.html";
     Json shown = report;
     for (size_t i = 0; i < pictures.size(); ++i) shown["devices"][i]["pictures"] = pictures[i];
     writePage(page, Json::array({shown}));
@@ -184,11 +226,20 @@ void measure(const Arguments& a) {
                        {"device_ms", deviceMilliseconds},
                        {"total_ms", total.count()},
                        {"warnings", Json::array()}};
+    const auto end = [&] {
+        if (out.empty()) return;
+        std::fprintf(stderr, "pellucid: out of tolerance, or not done:%s\n", out.c_str());
+        throw ExitWith(exitWorse);
+    };
     if (a.json) {
         printJson(said);
-        return;
+        return end();
     }
     for (const Json& d : report["devices"]) {
+        if (a.firstGpu) {
+            printFirst(d);
+            continue;
+        }
         std::printf("%s\n  %-28s %10s %9s %10s %10s %12s\n", d.at("name").get<std::string>().c_str(),
                     "operation", "median ms", "MAD", "bandwidth", "arithmetic", "largest error");
         for (const Json& e : d.at("operations")) {
@@ -220,6 +271,7 @@ void measure(const Arguments& a) {
                 d["budgets"]["near"].get<int>(), d["budgets"]["worst_ratio"].get<double>());
     }
     std::printf("%s\n%s\n", jsonPath.c_str(), page.c_str());
+    end();
 }
 
 // A report, or the folder that `pellucid bench -o` wrote it into.
@@ -308,6 +360,10 @@ void addBench(CLI::App& app) {
     option(*command, "--make-truth", a->truth, "", hidden);
     option(*command, "--without", a->without, "", oneEach, hidden);
     jsonOption(*command, a->json);
+    option(
+        *command, "--first-gpu", a->firstGpu,
+        "the first time on a GPU: pictures of every method against those of a CPU, and the time of each pass "
+        "beside a prediction; -o: pellucid-first-gpu. Below 8 minutes");
     option(*command, "--first-use", a->firstUse,
            "time from nothing to the first table and frame, in this process alone");
     CLI::App* two =

@@ -176,6 +176,7 @@ void addCompare(CLI::App& app);
 void addWarmUp(CLI::App& app);
 void addDemo(CLI::App& app);
 void addBench(CLI::App& app);
+void addTune(CLI::App& app);
 void addView(CLI::App& app);  // and gallery
 void addDescribe(CLI::App& app);
 

@@ -45,8 +45,9 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     app.set_version_flag("--version",
                          io::concat(PEL_VERSION_MAJOR, ".", PEL_VERSION_MINOR, ".", PEL_VERSION_PATCH));
-    for (const auto add : {addDevices, addCurvature, addLut, addProfile, addBatch, addShade, addReference,
-                           addImport, addCompare, addWarmUp, addDemo, addBench, addView, addDescribe})
+    for (const auto add :
+         {addDevices, addCurvature, addLut, addProfile, addBatch, addShade, addReference, addImport,
+          addCompare, addWarmUp, addDemo, addBench, addTune, addView, addDescribe})
         add(app);
     try {
         checkSubcommand(app, argc, argv);

@@ -6,6 +6,7 @@ namespace pellucid::cli {
 void addReference(CLI::App&) {}
 void addDemo(CLI::App&) {}
 void addBench(CLI::App&) {}
+void addTune(CLI::App&) {}
 
 void writeCurvaturePicture(const std::string&, const io::MeshData&, const std::vector<float>&, float, float,
                            char, const std::string&) {

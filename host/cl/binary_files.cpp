@@ -43,15 +43,6 @@ bool isTemporary(const std::string& name) {
 
 }  // namespace
 
-fs::path binaryFolder() {
-    if (const char* own = std::getenv("PELLUCID_CACHE_DIR")) {
-        const std::string text = own;
-        return text == "0" || text == "off" ? fs::path() : fs::path(text);
-    }
-    const std::vector<fs::path> homes = cacheHomes();
-    return homes.empty() ? fs::path() : homes.front() / "pellucid";
-}
-
 std::optional<std::string> BinaryFiles::load(const Digest& name) const {
     if (!whyNotPrivate(folder_).empty()) return {};
     const std::optional<std::string> file = readFile(pathOf(name), Digest::length + limit_);

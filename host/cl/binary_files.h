@@ -35,9 +35,6 @@ class Digest {
     XXH3_state_t state_;
 };
 
-// The folder: PELLUCID_CACHE_DIR, else pellucid in XDG_CACHE_HOME or ~/.cache. Empty: none.
-std::filesystem::path binaryFolder();
-
 // A folder with one file per program. A fault of a file is never an error: the program is then compiled.
 class BinaryFiles {
   public:

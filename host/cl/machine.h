@@ -28,10 +28,6 @@ double uptime();
 
 // Private folders: they hold machine code that this process will run, so nobody else may write there.
 
-// This user's cache folders, which need not exist, the preferred one first: XDG_CACHE_HOME, ~/.cache by HOME,
-// ~/.cache by the user's entry in the system. Relative paths are ignored [XDG base directory specification].
-std::vector<std::filesystem::path> cacheHomes();
-
 // Makes the folder and its missing parents, for this user alone. False if that is not possible.
 bool makePrivateFolder(const std::filesystem::path& folder);
 

@@ -67,7 +67,7 @@ void choosePoclCache() {
     } else {
         std::string why;
         fs::path folder;
-        for (const fs::path& home : cacheHomes()) {
+        for (const fs::path& home : system::cacheHomes()) {
             folder = home / "pellucid" / "pocl";
             const std::string reason = whyNot(folder);
             if (reason.empty()) break;

@@ -10,6 +10,7 @@
 #include "cl/machine.h"
 #include "cl/platform.h"
 #include "cl/pocl_cache.h"
+#include "system/process.h"
 
 namespace pel::cl {
 
@@ -162,7 +163,7 @@ BinaryCache::BinaryCache(cl_context context, cl_device_id device) : context_(con
     const Use use = wanted(device);
     if (!use.load) return;
     stores_ = use.store;
-    const std::filesystem::path folder = binaryFolder();
+    const std::filesystem::path folder = system::cacheFolder();
     if (folder.empty()) return;
     builtBy_ = describeBuilder(device);
     files_.emplace(folder, limit);

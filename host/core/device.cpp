@@ -5,7 +5,7 @@
 #include "cl/host_memory.h"
 #include "cl/machine.h"
 #include "cl/platform.h"
-#include "core/launch_policy.h"
+#include "core/error_log.h"
 
 namespace pel {
 
@@ -58,11 +58,14 @@ Device::Device(cl::Context context, cl_device_id id, cl::Queue queue, const PelD
       id_(id),
       queue_(std::move(queue)),
       info_(info),
+      launches_(launchRule(info)),
       programs_(std::move(context), id,
-                {{"PEL_WIDTH", info.mathWidth}, {"PEL_GROUP", launchPolicy(info.mathWidth).texels}}),
+                {{"PEL_WIDTH", info.mathWidth}, {"PEL_GROUP", launches_.policy.texels}}),
       profiling_(cl::info<cl_command_queue_properties>(queue_.get(), CL_QUEUE_PROPERTIES) &
                  CL_QUEUE_PROFILING_ENABLE),
-      stats_(pelDeviceStatsDefaults()) {}
+      stats_(pelDeviceStatsDefaults()) {
+    warn(launches_.warning);
+}
 
 Device::~Device() {
     clFinish(queue_.get());

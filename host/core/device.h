@@ -3,6 +3,7 @@
 #include "cl/launch.h"
 #include "cl/program_cache.h"
 #include "core/object.h"
+#include "tuning/launch_sizes.h"
 
 namespace pel {
 
@@ -25,6 +26,7 @@ class Device final : public Object {
     static Ref<Device> createFromCl(cl_context context, cl_device_id device, cl_command_queue queue);
 
     const PelDeviceInfo& info() const { return info_; }
+    const LaunchPolicy& policy() const { return launches_.policy; }
     cl_context context() const { return context_.get(); }
     cl_device_id id() const { return id_; }
     cl_command_queue queue() const { return queue_.get(); }
@@ -102,6 +104,7 @@ class Device final : public Object {
     cl_device_id id_;
     cl::Queue queue_;
     PelDeviceInfo info_;
+    LaunchRule launches_;
     cl::ProgramCache programs_;
     bool profiling_;
     PelAllocateCallback allocate_ = nullptr;

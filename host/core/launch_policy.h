@@ -1,4 +1,4 @@
-// The sizes of work-groups and work-items by kind of device: the one place for what was measured.
+// Ranges of launches by the sizes of groups that a device has (tuning/launch_sizes.h).
 #pragma once
 #include <algorithm>
 
@@ -6,19 +6,13 @@
 
 namespace pel {
 
-// Devices of several lanes (lib/width.clh) run few long work-items with vectors, others many short ones.
-struct LaunchPolicy {
-    size_t group;         // work-items of kernels that loop over tiles or columns
-    size_t columns;       // of a table's row per work-item, where a texel is cheap
-    size_t tableColumns;  // where each texel of it walks a tabulated profile
-    size_t texels;        // PEL_GROUP: work-items of a group where each is short: a texel, a block of a map
-};
-
-constexpr LaunchPolicy launchPolicy(uint32_t lanes) {
-    return lanes > 1 ? LaunchPolicy{1, 256, 64, 16} : LaunchPolicy{64, 1, 1, 64};
+inline const LaunchPolicy& launchPolicy(const Device& device) {
+    return device.policy();
 }
-inline LaunchPolicy launchPolicy(const Device& device) {
-    return launchPolicy(device.info().mathWidth);
+// Work-items of a group that add floats up together on a device of one lane. The order of such a sum shows in
+// the result, so that no measurement may change it.
+inline size_t summingGroup(const Device& device) {
+    return builtInPolicy(device.info().mathWidth).texels;
 }
 
 // Groups that share `tiles` among them: just enough to keep every compute unit busy to the end.
@@ -45,6 +39,12 @@ inline uint32_t levelsPerLaunch(const Device& device, uint32_t left) {
 inline cl::Range groupRange(const Device& device, size_t groups) {
     const size_t group = launchPolicy(device).texels;
     return {{groups * group, 1, 1}, {group, 1, 1}};
+}
+// One item, or one group with one lane, for each tile of a kernel whose groups add up.
+inline cl::Range summingRange(const Device& device, size_t tiles) {
+    const size_t group = summingGroup(device);
+    if (device.info().mathWidth > 1) return cl::folded(tiles, group);
+    return {{tiles * group, 1, 1}, {group, 1, 1}};
 }
 inline cl::Range blockRange(const Device& device, uint32_t width, uint32_t height, uint32_t levels) {
     if (device.info().mathWidth > 1) return vectorRange(device, width, height);

@@ -110,6 +110,7 @@ void LightSpace::addFiles(cl::ProgramKey& program) const {
     for (const char* file : {"light_seen", "light_texels", "light_reduce", "light_classify"})
         program.files.push_back(text("diffusion/", file, ".cl"));
     program.files.push_back(hidden_ ? "diffusion/light_hidden.cl" : "diffusion/scatter_light.cl");
+    program.defines["PEL_SUM_GROUP"] = summingGroup(*device_);
     program.defines["PEL_HIDDEN"] = int(hidden_);
     program.defines["PEL_FORMAT_SHADOW_MAP"] = mapFormat_;
     program.defines["PEL_SHADOW_CONTENT"] = content_;
@@ -156,9 +157,7 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
     }
     std::swap(cells_[0], cells_[1]);
     known_ = std::ranges::all_of(maps_, [](const LightMap& map) { return map.constants.levels > 1; });
-    device_->launch(events, screen.program, "light_classify",
-                    device_->info().mathWidth > 1 ? itemRange(*device_, screen.tileCount)
-                                                  : groupRange(*device_, screen.tileCount),
+    device_->launch(events, screen.program, "light_classify", summingRange(*device_, screen.tileCount),
                     screen.frame, screen.pyramid, screen.tables, screen.nodes, screen.tiles, mapUpload_,
                     cl_uint(maps_.size()), pyramid_, parts_, screen.counters);
 }

@@ -45,7 +45,8 @@ std::string readTuning(const std::string& path) {
 
 Tuning tuningOf(const PelDeviceInfo& device) {
     Tuning tuning;
-    const char* const path = std::getenv("PELLUCID_TUNING");
+    const char* const variable = std::getenv("PELLUCID_TUNING");
+    const char* const path = variable && std::strcmp(variable, "off") != 0 ? variable : nullptr;
     bool here = false;
     std::istringstream file(path && *path ? readTuning(path) : "pellucid tuning 1");
     size_t number = 0;
@@ -57,7 +58,7 @@ Tuning tuningOf(const PelDeviceInfo& device) {
         if (line.ends_with('\r')) line.pop_back();
         if (number == 1 && line != "pellucid tuning 1")
             damaged("\"pellucid tuning 1\" must be here: `pellucid bench` writes such records");
-        if (number == 1 || line.empty() || line[0] == '#') continue;
+        if (number == 1 || line.empty() || line[0] == '#' || line.starts_with("launch ")) continue;
         if (line.starts_with("device ")) {
             here = !tuning.own && line.substr(7) == std::string(device.name) + ", " + device.platform;
             tuning.own |= here;

@@ -1,6 +1,8 @@
 // This process: its environment, program and streams.
 #pragma once
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,18 @@ unsigned long processId();
 // "NAME=VALUE" of every variable.
 std::vector<std::string> environment();
 void setVariable(const char* name, const char* value);  // nullptr removes it
+// This user's cache folders, which need not exist, the preferred one first: XDG_CACHE_HOME, ~/.cache by HOME,
+// ~/.cache by the user's entry in the system. Relative paths are ignored [XDG base directory specification].
+std::vector<std::filesystem::path> cacheHomes();
+// Ours: PELLUCID_CACHE_DIR, else "pellucid" in the first of them. Empty: none.
+inline std::filesystem::path cacheFolder() {
+    if (const char* const own = std::getenv("PELLUCID_CACHE_DIR")) {
+        const std::string text = own;
+        return text == "0" || text == "off" ? std::filesystem::path() : std::filesystem::path(text);
+    }
+    const std::vector<std::filesystem::path> homes = cacheHomes();
+    return homes.empty() ? std::filesystem::path() : homes.front() / "pellucid";
+}
 // The processor's instruction set extensions, as the system lists them; "" if unknown.
 std::string instructionSet();
 // A new folder for this process only in `parent`, whose name begins with `prefix`; "" if none can be made.

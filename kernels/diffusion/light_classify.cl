@@ -6,7 +6,8 @@
 // largest light per tile. Without PEL_HIDDEN: a tile has 4 x 4 parts of 4 x 4 pixels, which are blocks of
 // level 2 of the screen's pyramid. A part counts where the sum over the texels differs from the irradiance,
 // or where classify_scatter has flagged the tile. Output: a bit per part. One work-item is one tile; one
-// lane: a work-group is, whose work-items share the blocks of each ring. Variants: PEL_HIDDEN.
+// lane: a work-group is, whose work-items share the blocks of each ring. Variants: PEL_HIDDEN, PEL_SUM_GROUP
+// (work-items in a group).
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/windowed.clh"
 
@@ -15,7 +16,7 @@
 
 #if PEL_WIDTH == 1
 #define LANE get_local_id(0)
-#define LANES PEL_GROUP
+#define LANES PEL_SUM_GROUP
 
 // The sum over the work-items of a group, which all call it.
 static inline float3 sumOfGroup(float3 v, __local float3* partial) {
@@ -138,7 +139,7 @@ static inline bool lightMatters(__global const PelDiffusionFrame* frame, __globa
 }
 #endif
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_classify(
+__kernel __attribute__((reqd_work_group_size(PEL_SUM_GROUP, 1, 1))) void light_classify(
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global uint* tiles, __global const PelLightMap* restrict maps, uint mapCount,

@@ -1,6 +1,6 @@
-// For LD_PRELOAD: a driver that hangs or crashes when one kernel is created.
+// For LD_PRELOAD: a driver that hangs or crashes when one kernel is created, or never runs it.
 //   BAD_KERNEL   the name of that kernel
-//   BAD_ENDING   hang, or crash
+//   BAD_ENDING   hang, crash, or skip
 #include <CL/cl.h>
 #include <dlfcn.h>
 #include <unistd.h>
@@ -8,13 +8,30 @@
 #include <cstdlib>
 #include <cstring>
 
-extern "C" __attribute__((visibility("default"))) cl_kernel clCreateKernel(cl_program program,
-                                                                           const char* name, cl_int* code) {
-    const char *bad = std::getenv("BAD_KERNEL"), *ending = std::getenv("BAD_ENDING");
-    if (bad && ending && std::strcmp(bad, name) == 0) {
-        while (std::strcmp(ending, "hang") == 0) ::pause();
-        std::abort();
-    }
-    return reinterpret_cast<decltype(clCreateKernel)*>(dlsym(RTLD_NEXT, "clCreateKernel"))(program, name,
-                                                                                           code);
+#define REAL(function) reinterpret_cast<decltype(function)*>(dlsym(RTLD_NEXT, #function))
+#define EXPORTED extern "C" __attribute__((visibility("default")))
+
+static bool isBad(const char* name) {
+    const char* const bad = std::getenv("BAD_KERNEL");
+    return bad && std::strcmp(bad, name) == 0;
+}
+static bool endsBy(const char* what) {
+    const char* const ending = std::getenv("BAD_ENDING");
+    return ending && std::strcmp(ending, what) == 0;
+}
+
+EXPORTED cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* code) {
+    while (isBad(name) && endsBy("hang")) ::pause();
+    if (isBad(name) && endsBy("crash")) std::abort();
+    return REAL(clCreateKernel)(program, name, code);
+}
+
+EXPORTED cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
+                                       const size_t* offset, const size_t* items, const size_t* group,
+                                       cl_uint numWaits, const cl_event* waits, cl_event* done) {
+    char name[64] = "";
+    clGetKernelInfo(kernel, CL_KERNEL_FUNCTION_NAME, sizeof name, name, nullptr);
+    if (isBad(name) && endsBy("skip")) return clEnqueueMarkerWithWaitList(queue, numWaits, waits, done);
+    return REAL(clEnqueueNDRangeKernel)(queue, kernel, dimensions, offset, items, group, numWaits, waits,
+                                        done);
 }

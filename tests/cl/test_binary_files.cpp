@@ -3,6 +3,7 @@
 
 #include "cl/binary_files.h"
 #include "io/io_files.h"
+#include "system/process.h"
 #include "variable.h"
 
 namespace fs = std::filesystem;
@@ -107,7 +108,7 @@ TEST_F(BinaryFile, OldestGoWhenThereIsTooMuch) {
 TEST_F(BinaryFile, WhereItIs) {
     const auto folder = [](const char* own, const char* xdg, const char* home) {
         const Variable ours("PELLUCID_CACHE_DIR", own), caches("XDG_CACHE_HOME", xdg), user("HOME", home);
-        return pel::cl::binaryFolder().string();
+        return pel::system::cacheFolder().string();
     };
     EXPECT_EQ(folder(nullptr, nullptr, "/home/x"), "/home/x/.cache/pellucid");
     EXPECT_EQ(folder(nullptr, "/var/c", "/home/x"), "/var/c/pellucid");

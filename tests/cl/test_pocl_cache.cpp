@@ -133,10 +133,10 @@ TEST_F(PoclCache, WithoutHomeNothingInTheTemporaryFolderIsTrusted) {
               }),
               0);
     EXPECT_GE(kernels(fs::path(path("home")) / "pellucid/pocl", ".so").size(), 1u);
-    const auto homes = pel::cl::cacheHomes();
+    const auto homes = pel::system::cacheHomes();
     const Variable home("HOME", nullptr);
-    EXPECT_FALSE(pel::cl::cacheHomes().empty()) << "the system knows";
-    for (const fs::path& each : pel::cl::cacheHomes()) EXPECT_TRUE(each.is_absolute());
+    EXPECT_FALSE(pel::system::cacheHomes().empty()) << "the system knows";
+    for (const fs::path& each : pel::system::cacheHomes()) EXPECT_TRUE(each.is_absolute());
     EXPECT_EQ(fs::exists(fixed), there);
 }
 

@@ -182,7 +182,8 @@ TEST_F(Cli, EveryDeviceOptionIsHeard) {
         {"import ", "@none.glb -o @o"},
         {"batch ", "@m.toml -o @tables"},
         {"demo ", "-o @demo"},
-        {"bench ", "-o @bench"}};
+        {"bench ", "-o @bench"},
+        {"tune ", "-o @t.txt"}};
     size_t heard = 0;
     eachCommand([&](const std::string& name, const json& app) {
         for (const json& option : app.at("options")) {

@@ -188,6 +188,80 @@ TEST_F(BenchCommand, ADriverThatHangsOrCrashesCostsOneOperation) {
 }
 #endif
 
+// The pictures are those that PoCL made with one lane, which is what runs here too.
+TEST_F(BenchCommand, TheFirstTimeOnAGpuJudgesWhatItMakes) {
+    const std::string command =
+        "bench --first-gpu --quick --limit 600 --only table-arc --only 'ball-4: disk' --only 'ball-4: auto' "
+        "--only '270p: disk' -o @out";
+    const auto rows = [&] {
+        std::map<std::string, Json> found;
+        const Json device = Json::parse(read(path("out/bench.json"))).at("devices").at(0);
+        EXPECT_EQ(device.at("math_width"), 1);
+        for (const Json& e : device.at("operations")) found[e.at("name")] = e;
+        found["all"] = device.at("first_gpu");
+        return found;
+    };
+    const std::string disk = "ball-4: disk, 32 taps", frame = "270p: disk, 32 taps",
+                      other = "ball-4: auto, error 0.002 of white";
+    EXPECT_TRUE(contains(done(command).out, path("out") + "/bench.html"));
+    std::map<std::string, Json> of = rows();
+    EXPECT_EQ(of["all"], (Json{{"checked", 3}, {"out", Json::array()}}));
+    for (const std::string& name : {disk, other, std::string("table-arc")})
+        EXPECT_EQ(of[name]["within"], true);
+    for (const Json& pass : of[frame]["passes"]) {
+        EXPECT_GT(pass.at("ms").get<double>(), 0) << pass;
+        EXPECT_GT(pass.at("predicted_ms").get<double>(), 0) << pass;
+    }
+    EXPECT_TRUE(contains(read(path("out/bench.html")), "first_gpu"));
+#ifndef __SANITIZE_ADDRESS__
+    const std::string bad = "LD_PRELOAD='" BAD_DRIVER "' BAD_KERNEL=scatter_disk BAD_ENDING=";
+    const Result skips = cli(command, bad + "skip");
+    EXPECT_EQ(skips.exitCode, 1);
+    EXPECT_TRUE(contains(skips.err, "out of tolerance, or not done:\n  " + disk)) << skips.err;
+    of = rows();
+    EXPECT_EQ(of[disk]["within"], false);
+    EXPECT_EQ(of[other]["within"], true);
+    EXPECT_EQ(cli(command, bad + "crash").exitCode, 1);
+    of = rows();
+    EXPECT_EQ(of["all"]["out"], (Json{disk, frame}));
+    EXPECT_TRUE(contains(of[disk]["failed"].get<std::string>(), "ended by signal 6"));
+    EXPECT_EQ(of[other]["within"], true);
+#endif
+    refused("bench --first-gpu --stability -o @none", 2, "leave --stability out");
+    refused("bench --first-gpus -o @none", 2, "--first-gpu");
+}
+
+TEST_F(BenchCommand, TuneKeepsWhatIsFasterAndShowsWhatIsInForce) {
+    const auto device = reportOf("devices").at("devices").at(0);
+    const auto text = [&](const char* key) { return device.at(key).get<std::string>(); };
+    const std::string none = "PELLUCID_TUNING= PELLUCID_CACHE_DIR='" + path("cache") + "'",
+                      named = "PELLUCID_TUNING='" + path("own.txt") + "'",
+                      own =
+                          "pellucid tuning 1\ndevice " + text("name") + ", " + text("platform") + "\nlaunch ";
+    const std::string made = " " + done("--version").out;
+    write("own.txt", own + "4 64 128 32" + made.substr(0, made.size() - 1) + " " + text("driver") + "\n");
+    const auto shown = [&](const std::string& environment) {
+        return reportOf("tune --show --device 0", environment);
+    };
+    const auto builtIn = shown(none);
+    EXPECT_EQ(builtIn.at("from"), "built in");
+    EXPECT_EQ(shown("PELLUCID_TUNING=off").at("sizes"), builtIn.at("sizes"));
+    EXPECT_EQ(shown(named).at("from"), path("own.txt"));
+    EXPECT_EQ(shown(named).at("sizes").at("texels"), 32);
+    write("own.txt", own);
+    EXPECT_EQ(shown(named).at("sizes"), builtIn.at("sizes"));
+    EXPECT_TRUE(contains(shown(named).at("warnings").at(0).get<std::string>(), "does not set launch sizes"));
+    EXPECT_EQ(cli("tune --show --strict --device 0", named).exitCode, 3);
+    const auto tuned = reportOf("tune --quick --device 0 -o @tuned.txt");
+    EXPECT_EQ(tuned.at("built_in"), builtIn.at("sizes"));
+    EXPECT_GE(tuned.at("measured").size(), 8u);
+    EXPECT_EQ(std::filesystem::exists(path("tuned.txt")), tuned.at("sizes") != tuned.at("built_in"));
+    EXPECT_EQ(shown("PELLUCID_TUNING='" + path("tuned.txt") + "'").at("sizes"), tuned.at("sizes"));
+    refused("tune -o @none/tuned.txt", 2, "none/tuned.txt");
+    refused("tune --sho", 2, "--show");
+    refused("tune", 2, "name one with -o", "PELLUCID_CACHE_DIR=off");
+}
+
 TEST_F(BenchCommand, VerdictsSurviveNoise) {
     const struct {
         const char* what;

@@ -17,13 +17,14 @@ SOURCES = {".h", ".hpp", ".c", ".cpp", ".cl", ".clh"}
 # Who may include whom (docs/dataflow.md, "Layers"): one way only. A folder's own files, the standard library
 # and other people's headers are always allowed.
 API, CL = "host/include/pellucid", "kernels/shared host/include/pellucid host/cl"
-CORE = f"host/fields {CL} host/core"
+CORE = f"host/fields {CL} host/tuning host/core"
 LAYERS = {
     "kernels/shared": "", "kernels/lib": "kernels/shared",
     **{f"kernels/{room}": "kernels/shared kernels/lib" for room in "mesh lut eye shading diffusion".split()},
     API: "", "host/system": "", "host/fields": API,
     "host/cl": f"kernels/shared {API} host/system",
-    "host/core": f"host/fields {CL}",
+    "host/tuning": f"{API} host/system",
+    "host/core": f"host/fields {CL} host/tuning",
     "host/mesh": f"{CL} host/core",
     "host/lut": CORE,
     "host/eye": f"{CORE} host/lut",
@@ -34,22 +35,23 @@ LAYERS = {
     "host/scene": f"host/fields {API} host/io",
     "host/profile_fit": f"{API} host/io",
     "host/sample": API,
-    "bench/measure": f"{API} host/io host/sample tests/reference tests",  # the scenes of tests/diffusion
+    # The scenes of tests/diffusion.
+    "bench/measure": f"{API} host/system host/tuning host/io host/sample tests/reference tests",
     # Applications: their commands are part of the command, which links them without including them.
     "apps/batch": f"{API} host/system host/io bindings/cli",
     "apps/demo": "host/io host/sample",
     "apps/gltf": f"{API} host/io host/sample bindings/cli",
     "apps/batch/tests": f"{API} host/io apps/batch tests",
     "apps/gltf/tests": f"{API} host/io apps/gltf tests",
-    "bindings/cli": f"host/fields {API} host/system host/io host/scene host/profile_fit host/sample "
-                    "bench/measure apps/demo",
+    "bindings/cli": f"host/fields {API} host/system host/tuning host/io host/scene host/profile_fit "
+                    "host/sample bench/measure apps/demo",
     "bindings/python": f"host/fields {API} host/io host/scene apps/batch apps/demo apps/gltf",
     "examples": API,
     "bench": f"kernels/shared kernels/lib {API} host/io host/sample apps/demo bench/measure tests/reference "
              "tests",
     # host/cl and host/system: compiled programs and processes, which no call of the library shows.
-    "tests": f"host/fields {CL} host/system host/io host/scene host/profile_fit host/sample apps/batch "
-             "apps/gltf apps/gltf/tests bench/measure tests/reference",
+    "tests": f"host/fields {CL} host/system host/tuning host/io host/scene host/profile_fit host/sample "
+             "apps/batch apps/gltf apps/gltf/tests bench/measure tests/reference",
     "tests/reference": "",
 }
 BASES = [ROOT / base for base in "host kernels host/include apps tests bindings bench".split()]

@@ -1,4 +1,3 @@
-#include <pwd.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -146,15 +145,6 @@ void freeAligned(void* at) {
 namespace fs = std::filesystem;
 namespace {
 
-std::string homeInSystem() {
-    std::vector<char> room(1 << 14);
-    struct passwd entry {
-    }, *found = nullptr;
-    if (::getpwuid_r(::geteuid(), &entry, room.data(), room.size(), &found) != 0 || !found || !entry.pw_dir)
-        return {};
-    return entry.pw_dir;
-}
-
 std::string whyNotPrivate(const fs::path& part, bool last) {
     struct stat status {};
     if (::stat(part.c_str(), &status) != 0) return text(part.string(), " cannot be looked at");
@@ -167,17 +157,6 @@ std::string whyNotPrivate(const fs::path& part, bool last) {
 }
 
 }  // namespace
-
-std::vector<fs::path> cacheHomes() {
-    std::vector<fs::path> all;
-    const auto add = [&](const fs::path& base, const char* below) {
-        if (base.is_absolute()) all.push_back(base / below);
-    };
-    if (const char* cache = std::getenv("XDG_CACHE_HOME")) add(cache, "");
-    if (const char* home = std::getenv("HOME")) add(home, ".cache");
-    add(homeInSystem(), ".cache");
-    return all;
-}
 
 bool makePrivateFolder(const fs::path& folder) {
     struct stat status {};

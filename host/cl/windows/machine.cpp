@@ -5,6 +5,7 @@
 
 #include "cl/error.h"
 #include "cl/machine.h"
+#include "system/process.h"
 
 namespace pel::cl {
 
@@ -45,20 +46,10 @@ void freeAligned(void* at) {
 
 namespace fs = std::filesystem;
 
-constexpr const char* profiles[] = {"LOCALAPPDATA", "USERPROFILE"};
-
 static bool below(const fs::path& folder, const fs::path& top) {
     std::error_code error;
     const fs::path real = fs::weakly_canonical(folder, error), base = fs::weakly_canonical(top, error);
     return !error && std::mismatch(base.begin(), base.end(), real.begin(), real.end()).first == base.end();
-}
-
-std::vector<fs::path> cacheHomes() {
-    std::vector<fs::path> all;
-    for (const char* name : profiles)
-        if (const char* folder = std::getenv(name); folder && fs::path(folder).is_absolute())
-            all.emplace_back(folder);
-    return all;
 }
 
 bool makePrivateFolder(const fs::path& folder) {
@@ -70,7 +61,7 @@ bool makePrivateFolder(const fs::path& folder) {
 std::string whyNotPrivate(const fs::path& folder) {
     std::error_code error;
     if (!fs::is_directory(folder, error)) return text(folder.string(), " is not a folder");
-    for (const fs::path& profile : cacheHomes())
+    for (const fs::path& profile : system::cacheHomes())
         if (below(folder, profile)) return {};
     return text(folder.string(), " is not below the user's profile, where others may not write");
 }

@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <pwd.h>
 #include <spawn.h>
 #include <sys/file.h>
 #include <sys/resource.h>
@@ -52,7 +53,27 @@ void removeAbandoned(const fs::path& parent, const std::string& prefix) {
     }
 }
 
+std::string homeInSystem() {
+    std::vector<char> room(1 << 14);
+    struct passwd entry {
+    }, *found = nullptr;
+    if (::getpwuid_r(::geteuid(), &entry, room.data(), room.size(), &found) != 0 || !found || !entry.pw_dir)
+        return {};
+    return entry.pw_dir;
+}
+
 }  // namespace
+
+std::vector<fs::path> cacheHomes() {
+    std::vector<fs::path> all;
+    const auto add = [&](const fs::path& base, const char* below) {
+        if (base.is_absolute()) all.push_back(base / below);
+    };
+    if (const char* cache = std::getenv("XDG_CACHE_HOME")) add(cache, "");
+    if (const char* home = std::getenv("HOME")) add(home, ".cache");
+    add(homeInSystem(), ".cache");
+    return all;
+}
 
 unsigned long processId() {
     return static_cast<unsigned long>(::getpid());

@@ -16,6 +16,14 @@
 namespace pel::system {
 namespace fs = std::filesystem;
 
+std::vector<fs::path> cacheHomes() {
+    std::vector<fs::path> all;
+    for (const char* name : {"LOCALAPPDATA", "USERPROFILE"})
+        if (const char* folder = std::getenv(name); folder && fs::path(folder).is_absolute())
+            all.emplace_back(folder);
+    return all;
+}
+
 unsigned long processId() {
     return ::GetCurrentProcessId();
 }

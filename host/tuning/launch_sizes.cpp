@@ -1,0 +1,112 @@
+#include "tuning/launch_sizes.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <fstream>
+#include <locale>
+#include <sstream>
+
+#include "system/process.h"
+
+namespace pel {
+namespace {
+
+constexpr const char* tuningHeader = "pellucid tuning 1";
+constexpr uintmax_t mostTuningBytes = 1 << 20;
+
+std::string deviceLine(const PelDeviceInfo& device) {
+    return std::string("device ") + device.name + ", " + device.platform;
+}
+// Sizes that were measured with another driver or version may be slow.
+std::string madeWith(const PelDeviceInfo& device) {
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text << PEL_VERSION_MAJOR << '.' << PEL_VERSION_MINOR << '.' << PEL_VERSION_PATCH << ' ' << device.driver;
+    return text.str();
+}
+
+// The sizes in a line "launch GROUP COLUMNS TABLE_COLUMNS TEXELS VERSION DRIVER"; "" or what is wrong.
+std::string readSizes(const std::string& line, const PelDeviceInfo& device, LaunchPolicy& policy) {
+    std::istringstream words(line.substr(7));
+    words.imbue(std::locale::classic());
+    int64_t sizes[4];
+    for (int64_t& size : sizes)
+        if (!(words >> size) || size < 1 || size > 1 << 20) return "four numbers from 1 on are needed";
+    std::string made;
+    std::getline(words >> std::ws, made);
+    if (made != madeWith(device)) return "measured with " + made + ", and this is " + madeWith(device);
+    policy = {size_t(sizes[0]), size_t(sizes[1]), size_t(sizes[2]), size_t(sizes[3])};
+    return {};
+}
+
+}  // namespace
+
+LaunchPolicy allowedPolicy(LaunchPolicy policy, const PelDeviceInfo& device) {
+    const size_t lanes = std::max(device.mathWidth, 1u),
+                 most = std::clamp<size_t>(size_t(device.maxWorkGroupSize), 16, 256);
+    const auto within = [](size_t v, size_t low, size_t high) {
+        return std::bit_floor(std::clamp(v, low, std::bit_floor(high)));
+    };
+    return {within(policy.group, 1, most), within(policy.columns, lanes, 4096),
+            within(policy.tableColumns, lanes, 4096),
+            within(policy.texels, 16, most)};  // a group has the 16 parts of a tile (scatter_light.cl)
+}
+
+std::filesystem::path launchFile(const PelDeviceInfo& device) {
+    const std::filesystem::path folder = system::cacheFolder();
+    if (folder.empty()) return {};
+    uint64_t hash = 14695981039346656037u;  // FNV-1a [Fowler, Noll, Vo]
+    for (const char c : deviceLine(device) + '\n' + madeWith(device) + char(device.mathWidth))
+        hash = (hash ^ uint8_t(c)) * 1099511628211u;
+    std::ostringstream name;
+    name.imbue(std::locale::classic());
+    name << "tuning-" << std::hex << hash << ".txt";
+    return folder / name.str();
+}
+
+std::string launchText(const PelDeviceInfo& device, const LaunchPolicy& p) {
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text << tuningHeader << '\n'
+         << deviceLine(device) << "\nlaunch " << p.group << ' ' << p.columns << ' ' << p.tableColumns << ' '
+         << p.texels << ' ' << madeWith(device) << '\n';
+    return text.str();
+}
+
+LaunchRule launchRule(const PelDeviceInfo& device) {
+    LaunchRule rule{builtInPolicy(device.mathWidth), {}, {}};
+    const char* const named = std::getenv("PELLUCID_TUNING");
+    const bool own = !named || !*named;
+    if (!own && std::string(named) == "off") return rule;
+    const std::filesystem::path path = own ? launchFile(device) : std::filesystem::path(named);
+    std::error_code error;
+    if (path.empty() || (own && !std::filesystem::exists(path, error))) return rule;
+    const auto ignored = [&](const std::string& why) {
+        rule.warning = path.string() + " does not set launch sizes: " + why;
+        return rule;
+    };
+    if (!std::filesystem::is_regular_file(path, error) ||
+        std::filesystem::file_size(path, error) > mostTuningBytes || error)
+        return ignored("it is no readable file of at most 1 MiB");
+    std::ifstream file(path, std::ios::binary);
+    bool here = false;
+    size_t number = 0;
+    for (std::string line; std::getline(file, line);) {
+        if (line.ends_with('\r')) line.pop_back();
+        if (++number == 1 && line != tuningHeader)
+            return ignored(std::string("it does not begin with ") + tuningHeader);
+        if (line.starts_with("device ")) here = line == deviceLine(device);
+        if (!here || !line.starts_with("launch ")) continue;
+        const std::string wrong = readSizes(line, device, rule.policy);
+        if (!wrong.empty()) return ignored("line " + std::to_string(number) + ": " + wrong);
+        rule.policy = allowedPolicy(rule.policy, device);
+        rule.file = path.string();
+        return rule;
+    }
+    if (number == 0) return ignored("it is empty or cannot be read");
+    if (own) return ignored("it has none for this device");
+    return rule;  // a record for time budgets alone
+}
+
+}  // namespace pel

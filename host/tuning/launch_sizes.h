@@ -1,0 +1,40 @@
+// How many work-items a group has, and how much one of them does: built in by kind of device, or as
+// `pellucid tune` measured (docs/guide/devices.md, "Launch sizes"). Results have the same bits with all.
+#pragma once
+#include <pellucid/pellucid.h>
+
+#include <filesystem>
+#include <string>
+
+namespace pel {
+
+// Devices of several lanes (lib/width.clh) run few long work-items with vectors, others many short ones.
+struct LaunchPolicy {
+    size_t group;         // work-items of kernels that loop over tiles or columns
+    size_t columns;       // of a table's row per work-item, where a texel is cheap
+    size_t tableColumns;  // where each texel of it walks a tabulated profile
+    size_t texels;        // PEL_GROUP: work-items of a group where each is short: a texel, a block of a map
+
+    bool operator==(const LaunchPolicy&) const = default;
+};
+
+constexpr LaunchPolicy builtInPolicy(uint32_t lanes) {
+    return lanes > 1 ? LaunchPolicy{1, 256, 64, 16} : LaunchPolicy{64, 1, 1, 64};
+}
+// The nearest sizes that kernels can have on this device: powers of two.
+LaunchPolicy allowedPolicy(LaunchPolicy policy, const PelDeviceInfo& device);
+
+struct LaunchRule {
+    LaunchPolicy policy;
+    std::string file;     // whose sizes these are; "": built in
+    std::string warning;  // why a file does not count; ""
+};
+// By the file that PELLUCID_TUNING names, or else launchFile(); "off": built in. Never throws for a file.
+LaunchRule launchRule(const PelDeviceInfo& device);
+
+// This user's file for the device with its driver and this version of the library; empty: there is no folder.
+std::filesystem::path launchFile(const PelDeviceInfo& device);
+// What such a file holds; PelShaderOptions.timeBudget reads other lines of the same format.
+std::string launchText(const PelDeviceInfo& device, const LaunchPolicy& policy);
+
+}  // namespace pel
