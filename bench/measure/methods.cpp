@@ -367,7 +367,8 @@ class Methods {
                 const double start = milliseconds(), before = c.texture ? c.texture->run() : 0;
                 c.shot.shader.execute();
                 c.wall.push_back(milliseconds() - start);
-                c.device.push_back(before + c.shot.shader.stats().deviceMilliseconds);
+                const double own = before + c.shot.shader.stats().deviceMilliseconds;
+                c.device.push_back(own > 0 ? own : c.wall.back());  // of drivers that tell no times
                 if (c.texture) c.passes["in the texture"].push_back(before);
                 for (const PelPassStats& pass : c.shot.shader.passes())
                     c.passes[pass.name].push_back(pass.milliseconds);
