@@ -11,7 +11,6 @@
 // PEL_WIDTH pixels of a row. Variants: PEL_FORMAT_NORMAL, PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH,
 // PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_OUT.
 #include "lib/diffusion/item.clh"
-#include "lib/diffusion/lanes.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 #include "lib/shading/position.clh"
@@ -73,8 +72,8 @@ static inline floatw stepTo(const Images* in, const Point* here, int x, int y) {
 }
 
 // Differences of positions and of normals along one axis. Returns where there are any.
-static inline maskw differences(const Images* in, const Point* here, int x, int y, int dx, int dy, float far2,
-                                Vec3w* positions, Vec3w* normals) {
+static inline maskw differences(const Images* in, const Point* here, int x, int y, int dx, int dy,
+                                floatw far2, Vec3w* positions, Vec3w* normals) {
     maskw known = (maskw)(0);
     *positions = *normals = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
     for (int side = -1; side <= 1; side += 2) {
@@ -92,13 +91,10 @@ static inline maskw differences(const Images* in, const Point* here, int x, int 
     return known;
 }
 
-// Of pixels of one material, `on`.
-static inline floatw curvatureOf(const Images* in, const Point* here, uint x, uint y, float window,
-                                 maskw on) {
-    const float step =
-        sqrt(minLane(fmin(stepTo(in, here, (int)x + 1, (int)y), stepTo(in, here, (int)x, (int)y + 1)), on));
-    const int pixels = (int)clamp(window / step + 0.5f, 1.0f, (float)MAX_PIXELS);
-    const float far = SAME_SURFACE * fmax(window, (float)pixels * step), far2 = far * far;
+// From neighbours that many pixels away; `step`: to the next pixel.
+static inline floatw curvatureAt(const Images* in, const Point* here, uint x, uint y, float window,
+                                 floatw step, int pixels, maskw on) {
+    const floatw far = SAME_SURFACE * fmax((floatw)(window), (float)pixels * step), far2 = far * far;
     Vec3w pu, nu, pv, nv;
     const maskw known = differences(in, here, (int)x, (int)y, pixels, 0, far2, &pu, &nu) &
                         differences(in, here, (int)x, (int)y, 0, pixels, far2, &pv, &nv);
@@ -107,6 +103,23 @@ static inline floatw curvatureOf(const Images* in, const Point* here, uint x, ui
     const maskw sound = on & known & (area2 > MIN_INDEPENDENT * e * g);
     const floatw curvature = 0.5f * sum / selectw((floatw)(1.0f), area2, sound);
     return selectw((floatw)(0.0f), curvature, sound & finitew(curvature));
+}
+
+// Of pixels of one material, `on`. Lanes whose windows are as many pixels go together.
+static inline floatw curvatureOf(const Images* in, const Point* here, uint x, uint y, float window,
+                                 maskw on) {
+    const floatw step =
+        sqrt(fmin(stepTo(in, here, (int)x + 1, (int)y), stepTo(in, here, (int)x, (int)y + 1)));
+    const uintw pixels =
+        convert_uintw(clamp(window / step + 0.5f, (floatw)(1.0f), (floatw)((float)MAX_PIXELS)));
+    floatw value = 0.0f;
+    while (anyw(on)) {
+        const uint most = greatestId(pixels, on);
+        const maskw mine = on & (pixels == most);
+        value = selectw(value, curvatureAt(in, here, x, y, window, step, (int)most, mine), mine);
+        on &= notw(mine);
+    }
+    return value;
 }
 
 // `firstRow`: of the launch; `outRow`: that the output begins with.

@@ -1,5 +1,6 @@
 // The gain of curved bodies (docs/mathematics.md, section 12): the mean curvature that is measured on the
 // screen, and pictures against random walks.
+#include "device_lanes.h"
 #include "diffusion/reference_scenes.h"
 #include "npy.h"
 #include "test.h"
@@ -34,7 +35,7 @@ const Surface rippled{
 
 // Under even light, which scattering leaves as it is.
 Shown gainsOf(const Surface& surface, uint32_t side, double size, PelScattering method, float strength,
-              uint64_t budget = 0, bool cut = false, double unit = 1) {
+              uint64_t budget = 0, bool cut = false, double unit = 1, const Device& device = Device("")) {
     scatter_scene::Picture p(side, side);
     std::vector<float> normals;
     for (uint32_t row = 0; row < side; ++row)
@@ -57,7 +58,7 @@ Shown gainsOf(const Surface& surface, uint32_t side, double size, PelScattering 
     f.profile = profile();
     f.material.specular = 0;
     f.material.curvatureGain = strength;
-    scatter_scene::ShownImages shown(Device(""), 1, 1);
+    scatter_scene::ShownImages shown(device, 1, 1);
     if (method == PEL_SCATTERING_PREINTEGRATED) {  // its gain is one of direct light
         f.lamps.resize(1);
         f.lamps[0].light.toLight[0] = f.lamps[0].light.toLight[1] = 0, f.lamps[0].light.toLight[2] = 1;
@@ -148,6 +149,24 @@ TEST(CurvatureGain, NeedsNeitherAllNeighboursNorTheWholeFrame) {
     for (size_t x = 16; x < 48; ++x) {
         const size_t i = 3 * (24 * 48 + x);
         EXPECT_NEAR(whole.light[i] / none.light[i], gainAt(0.05, 0), 2 * tolerance::gain) << x;
+    }
+}
+
+// A window is as many pixels as the surface at this pixel asks for, whatever its neighbours' in a vector are.
+// Differences that reach beyond the frame are left out by whole vectors.
+TEST(CurvatureGain, DoesNotDependOnTheWidthOfVectors) {
+    const Surface waves{"waves", [](double x, double y) { return 3 * std::cos(x) + 0.1 * y * y; }, 0};
+    constexpr uint32_t side = 96, edge = 32;
+    const std::vector<float> one =
+        gainsOf(waves, side, 0.1, PEL_SCATTERING_SEPARABLE, 1, 0, false, 1, lanes::deviceOf(1)).light;
+    for (int count : {8, 16}) {
+        const std::vector<float> many =
+            gainsOf(waves, side, 0.1, PEL_SCATTERING_SEPARABLE, 1, 0, false, 1, lanes::deviceOf(count)).light;
+        for (size_t y = 0; y < side; ++y)
+            for (size_t x = edge; x < side - edge; ++x)
+                for (size_t i = 3 * (side * y + x); i < 3 * (side * y + x) + 3; ++i)
+                    ASSERT_NEAR(many[i], one[i], tolerance::widthsAgree)
+                        << count << " lanes, " << x << ", " << y;
     }
 }
 
