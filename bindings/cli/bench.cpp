@@ -210,11 +210,11 @@ void measure(const Arguments& a) {
     std::string tuning;
     for (const Json& d : report["devices"]) tuning += bench::tuningText(d);
     if (!tuning.empty())
-        io::writeWholeFile(
-            folder + "/tuning.txt",
-            "pellucid tuning 1\n# method, target error, ns per pixel of the materials and of the "
-            "frame, RMS error against light\n" +
-                tuning);
+        io::writeWholeFile(folder + "/tuning.txt",
+                           std::string(pel::tuningHeader) +
+                               "\n# method, target error, ns per pixel of the materials and of the "
+                               "frame, RMS error against light\n" +
+                               tuning);
     const std::string page = folder + "/bench.html";
     Json shown = report;
     for (size_t i = 0; i < pictures.size(); ++i) shown["devices"][i]["pictures"] = pictures[i];

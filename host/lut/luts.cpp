@@ -114,6 +114,22 @@ void integrateShadow(Luts luts, const cl::Memory& texels) {
     device.launch(launch, {{items, all.height + 1, luts.size()}, {group, 1, 1}});
 }
 
+void integrate(Luts luts, const cl::Memory& texels) {
+    (luts[0]->info().kind == PEL_LUT_CURVATURE ? integrateCurvature : integrateShadow)(luts, texels);
+}
+
+// A curvature or shadow table whose description is valid.
+Ref<Lut> integrated(Ref<Device> device, const PelLutInfo& info) {
+    Ref<Lut> lut = make<Lut>(std::move(device), info);
+    if (!isTabulated(*lut))
+        integrate({&lut, 1}, lut->texels());
+    else if (info.kind == PEL_LUT_CURVATURE)
+        integrateTabulatedCurvature(*lut);
+    else
+        integrateTabulatedShadow(*lut);
+    return lut;
+}
+
 }  // namespace
 
 Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& desc) {
@@ -121,12 +137,7 @@ Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& de
     PelLutInfo info = pelLutInfoDefaults();
     info.kind = PEL_LUT_CURVATURE;
     info.curvature = desc;
-    Ref<Lut> lut = make<Lut>(device, info);
-    if (isTabulated(*lut))
-        integrateTabulatedCurvature(*lut);
-    else
-        integrateCurvature({&lut, 1}, lut->texels());
-    return lut;
+    return integrated(std::move(device), info);
 }
 
 Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
@@ -134,12 +145,7 @@ Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
     PelLutInfo info = pelLutInfoDefaults();
     info.kind = PEL_LUT_SHADOW;
     info.shadow = desc;
-    Ref<Lut> lut = make<Lut>(device, info);
-    if (isTabulated(*lut))
-        integrateTabulatedShadow(*lut);
-    else
-        integrateShadow({&lut, 1}, lut->texels());
-    return lut;
+    return integrated(std::move(device), info);
 }
 
 Ref<Lut> tabulateSpecularLut(Ref<Device> device, const PelSpecularLutDesc& desc) {
@@ -282,7 +288,6 @@ void readLutStack(const Ref<Device>& device, std::span<const PelLutInfo> tables,
                   void* destination, size_t bytes) {
     if (tables.empty()) return;
     checkAlike(tables);
-    const bool curvature = tables[0].kind == PEL_LUT_CURVATURE;
     const Ref<Lut> like = make<Lut>(device, tables[0], true);
     const size_t each = packedBytes(*like, encoding);
     if (bytes / tables.size() < each)
@@ -301,12 +306,11 @@ void readLutStack(const Ref<Device>& device, std::span<const PelLutInfo> tables,
             luts.push_back(std::move(lut));
         }
         if (luts.empty()) {  // a tabulated profile
-            luts.push_back(curvature ? integrateCurvatureLut(device, tables[i].curvature)
-                                     : integrateShadowLut(device, tables[i].shadow));
+            luts.push_back(integrated(device, tables[i]));
             readLut(*luts[0], encoding, to, true);
         } else {
             const cl::Memory texels = device->allocate(luts.size() * like->texelBytes());
-            (curvature ? integrateCurvature : integrateShadow)(luts, texels);
+            integrate(luts, texels);
             encodeAndRead(*like, texels, luts.size(), encoding, to, true);
         }
         to += luts.size() * each;

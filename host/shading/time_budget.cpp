@@ -9,6 +9,7 @@
 
 #include "shading/features.h"
 #include "shading/image_slots.h"
+#include "tuning/launch_sizes.h"
 
 namespace pel {
 namespace {
@@ -22,7 +23,7 @@ constexpr TunedSetting guessed[] = {{PEL_SCATTERING_NONE, 0, 0, 0, 0.14},
 // Of that device: cores, lanes, and MHz by bench/results/pocl-3.1-amd-epyc.json.
 constexpr double guessedLanes = 2 * 16 * 2596.0;
 
-constexpr size_t mostBytes = 1 << 20, mostSettings = 64;
+constexpr size_t mostSettings = 64;
 
 // Numbers of lanes that work at once, times their clock.
 double lanesOf(const PelDeviceInfo& device) {
@@ -32,12 +33,12 @@ double lanesOf(const PelDeviceInfo& device) {
 
 std::string readTuning(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
-    std::string bytes(mostBytes + 1, '\0');
+    std::string bytes(mostTuningBytes + 1, '\0');
     file.read(bytes.data(), std::streamsize(bytes.size()));
     if (file.bad() || file.gcount() <= 0) invalidArgument("PELLUCID_TUNING: ", path, " cannot be read");
     bytes.resize(size_t(file.gcount()));
-    if (bytes.size() > mostBytes)
-        invalidArgument("PELLUCID_TUNING: ", path, " has more than ", mostBytes, " bytes");
+    if (bytes.size() > mostTuningBytes)
+        invalidArgument("PELLUCID_TUNING: ", path, " has more than ", mostTuningBytes, " bytes");
     return bytes;
 }
 
@@ -48,7 +49,7 @@ Tuning tuningOf(const PelDeviceInfo& device) {
     const char* const variable = std::getenv("PELLUCID_TUNING");
     const char* const path = variable && std::strcmp(variable, "off") != 0 ? variable : nullptr;
     bool here = false;
-    std::istringstream file(path && *path ? readTuning(path) : "pellucid tuning 1");
+    std::istringstream file(path && *path ? readTuning(path) : tuningHeader);
     size_t number = 0;
     for (std::string line; std::getline(file, line);) {
         const auto damaged = [&](auto&&... why) {
@@ -56,11 +57,11 @@ Tuning tuningOf(const PelDeviceInfo& device) {
         };
         ++number;
         if (line.ends_with('\r')) line.pop_back();
-        if (number == 1 && line != "pellucid tuning 1")
-            damaged("\"pellucid tuning 1\" must be here: `pellucid bench` writes such records");
+        if (number == 1 && line != tuningHeader)
+            damaged("\"", tuningHeader, "\" must be here: `pellucid bench` writes such records");
         if (number == 1 || line.empty() || line[0] == '#' || line.starts_with("launch ")) continue;
         if (line.starts_with("device ")) {
-            here = !tuning.own && line.substr(7) == std::string(device.name) + ", " + device.platform;
+            here = !tuning.own && line == deviceLine(device);
             tuning.own |= here;
             continue;
         }

@@ -1,5 +1,8 @@
 #include "tuning/launch_sizes.h"
 
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
 #include <algorithm>
 #include <bit>
 #include <cstdlib>
@@ -12,12 +15,6 @@
 namespace pel {
 namespace {
 
-constexpr const char* tuningHeader = "pellucid tuning 1";
-constexpr uintmax_t mostTuningBytes = 1 << 20;
-
-std::string deviceLine(const PelDeviceInfo& device) {
-    return std::string("device ") + device.name + ", " + device.platform;
-}
 // Sizes that were measured with another driver or version may be slow.
 std::string madeWith(const PelDeviceInfo& device) {
     std::ostringstream text;
@@ -42,6 +39,10 @@ std::string readSizes(const std::string& line, const PelDeviceInfo& device, Laun
 
 }  // namespace
 
+std::string deviceLine(const PelDeviceInfo& device) {
+    return std::string("device ") + device.name + ", " + device.platform;
+}
+
 LaunchPolicy allowedPolicy(LaunchPolicy policy, const PelDeviceInfo& device) {
     const size_t lanes = std::max(device.mathWidth, 1u),
                  most = std::clamp<size_t>(size_t(device.maxWorkGroupSize), 16, 256);
@@ -56,12 +57,10 @@ LaunchPolicy allowedPolicy(LaunchPolicy policy, const PelDeviceInfo& device) {
 std::filesystem::path launchFile(const PelDeviceInfo& device) {
     const std::filesystem::path folder = system::cacheFolder();
     if (folder.empty()) return {};
-    uint64_t hash = 14695981039346656037u;  // FNV-1a [Fowler, Noll, Vo]
-    for (const char c : deviceLine(device) + '\n' + madeWith(device) + char(device.mathWidth))
-        hash = (hash ^ uint8_t(c)) * 1099511628211u;
+    const std::string key = deviceLine(device) + '\n' + madeWith(device) + char(device.mathWidth);
     std::ostringstream name;
     name.imbue(std::locale::classic());
-    name << "tuning-" << std::hex << hash << ".txt";
+    name << "tuning-" << std::hex << XXH3_64bits(key.data(), key.size()) << ".txt";
     return folder / name.str();
 }
 

@@ -8,6 +8,12 @@
 
 namespace pel {
 
+// The format of such files, which PelShaderOptions.timeBudget reads as well: a first line, and lines for one
+// device after another, each of which begins with deviceLine().
+inline constexpr const char* tuningHeader = "pellucid tuning 1";
+inline constexpr size_t mostTuningBytes = 1 << 20;
+std::string deviceLine(const PelDeviceInfo& device);
+
 // Devices of several lanes (lib/width.clh) run few long work-items with vectors, others many short ones.
 struct LaunchPolicy {
     size_t group;         // work-items of kernels that loop over tiles or columns
@@ -34,7 +40,7 @@ LaunchRule launchRule(const PelDeviceInfo& device);
 
 // This user's file for the device with its driver and this version of the library; empty: there is no folder.
 std::filesystem::path launchFile(const PelDeviceInfo& device);
-// What such a file holds; PelShaderOptions.timeBudget reads other lines of the same format.
+// What such a file holds.
 std::string launchText(const PelDeviceInfo& device, const LaunchPolicy& policy);
 
 }  // namespace pel
