@@ -29,3 +29,13 @@ template <class Call>
 void expectRefused(const char* word, const Call& call) {
     expectRefused(std::vector{word}, call);
 }
+
+// What two programs make of one frame. GPUs' compilers contract multiplications and additions of each in
+// their own way.
+inline void expectSameBits(const pellucid::Device& device, const std::vector<float>& a,
+                           const std::vector<float>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    const float most = device.info().type == PEL_DEVICE_CPU ? 0 : 2e-6f;
+    for (size_t i = 0; i < a.size(); ++i)
+        ASSERT_LE(std::abs(a[i] - b[i]), most * std::max(1.0f, std::abs(b[i]))) << i;
+}

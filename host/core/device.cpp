@@ -71,12 +71,15 @@ Device::~Device() {
     clFinish(queue_.get());
 }
 
-cl::Queue Device::anotherQueue() const {
-    cl_int code = CL_SUCCESS;
-    cl::Queue queue(
-        clCreateCommandQueue(context_.get(), id_, profiling_ ? CL_QUEUE_PROFILING_ENABLE : 0, &code));
-    cl::check(code, "clCreateCommandQueue");
-    return queue;
+cl_command_queue Device::sideQueue() {
+    const std::lock_guard lock(mutex_);
+    if (!sideQueue_) {
+        cl_int code = CL_SUCCESS;
+        sideQueue_ = cl::Queue(
+            clCreateCommandQueue(context_.get(), id_, profiling_ ? CL_QUEUE_PROFILING_ENABLE : 0, &code));
+        cl::check(code, "clCreateCommandQueue");
+    }
+    return sideQueue_.get();
 }
 
 cl::Event Device::launch(cl::Launch& launch, const cl::Range& range, cl_command_queue queue) {
@@ -110,9 +113,16 @@ cl::Memory Device::allocate(size_t bytes, const void* initial, bool zeros) {
     }
     if (!memory) {
         cl_int code = CL_SUCCESS;
-        const cl_mem_flags flags = CL_MEM_READ_WRITE | (initial ? CL_MEM_COPY_HOST_PTR : 0);
-        memory = cl::Memory(clCreateBuffer(context_.get(), flags, bytes, const_cast<void*>(initial), &code));
+        // NVIDIA's driver crashes when such a buffer is released before the queue gets to what uses it.
+        const bool copies = initial && info_.sharedMemory;
+        const cl_mem_flags flags = CL_MEM_READ_WRITE | (copies ? CL_MEM_COPY_HOST_PTR : 0);
+        memory = cl::Memory(clCreateBuffer(context_.get(), flags, bytes,
+                                           copies ? const_cast<void*>(initial) : nullptr, &code));
         if (code != CL_SUCCESS) cl::check(code, text("clCreateBuffer(", bytes, " bytes)").c_str());
+        if (initial && !copies) {
+            exchange(memory.get(), bytes, initial, nullptr);
+            initial = nullptr;  // counted already
+        }
     }
     if (const cl_uchar zero = 0; zeros)
         cl::check(clEnqueueFillBuffer(queue(), memory.get(), &zero, 1, 0, bytes, 0, nullptr, nullptr),
@@ -156,39 +166,35 @@ void Device::write(cl_mem memory, size_t offset, size_t bytes, const void* sourc
 
 void Device::writeLater(cl_mem memory, std::vector<unsigned char> bytes) {
     if (CountedRun::on()) return;
-    auto kept = std::make_unique<std::vector<unsigned char>>(std::move(bytes));
     cl_event written = nullptr;
     cl::check(
-        clEnqueueWriteBuffer(queue(), memory, CL_FALSE, 0, kept->size(), kept->data(), 0, nullptr, &written),
+        clEnqueueWriteBuffer(queue(), memory, CL_FALSE, 0, bytes.size(), bytes.data(), 0, nullptr, &written),
         "clEnqueueWriteBuffer");
-    countTransfer(kept->size(), 0);
-    const cl::Event event(written);
-    const auto release = [](cl_event, cl_int, void* bytes) {
-        delete static_cast<std::vector<unsigned char>*>(bytes);
-    };
-    if (clSetEventCallback(written, CL_COMPLETE, release, kept.get()) != CL_SUCCESS)
-        finish();
-    else
-        kept.release();
+    countTransfer(bytes.size(), 0);
+    const std::lock_guard lock(mutex_);
+    // Not by a callback of the event: those run on the driver's threads.
+    std::erase_if(writes_, [](const Write& write) {
+        return cl::info<cl_int>(write.event.get(), CL_EVENT_COMMAND_EXECUTION_STATUS) <= CL_COMPLETE;
+    });
+    writes_.push_back({cl::Event(written), std::move(bytes)});
 }
 
 void Device::exchange(cl_mem memory, size_t bytes, const void* source, void* destination) {
     if (bytes == 0 || CountedRun::on()) return;
-    const cl::Queue queue = anotherQueue();
+    const cl_command_queue queue = sideQueue();
     if (!info_.sharedMemory)
-        return source ? write(memory, 0, bytes, source, true, queue.get())
-                      : read(memory, 0, bytes, destination, true, queue.get());
+        return source ? write(memory, 0, bytes, source, true, queue)
+                      : read(memory, 0, bytes, destination, true, queue);
     // One at a time: PoCL confuses mappings of one buffer that several threads make.
     static std::mutex mapping;
     const std::lock_guard lock(mapping);
     cl_int code = CL_SUCCESS;
-    void* const at = clEnqueueMapBuffer(queue.get(), memory, CL_TRUE, source ? CL_MAP_WRITE : CL_MAP_READ, 0,
-                                        bytes, 0, nullptr, nullptr, &code);
+    void* const at = clEnqueueMapBuffer(queue, memory, CL_TRUE, source ? CL_MAP_WRITE : CL_MAP_READ, 0, bytes,
+                                        0, nullptr, nullptr, &code);
     cl::check(code, "clEnqueueMapBuffer");
     std::memcpy(source ? at : destination, source ? source : at, bytes);
-    cl::check(clEnqueueUnmapMemObject(queue.get(), memory, at, 0, nullptr, nullptr),
-              "clEnqueueUnmapMemObject");
-    cl::check(clFinish(queue.get()), "clFinish");
+    cl::check(clEnqueueUnmapMemObject(queue, memory, at, 0, nullptr, nullptr), "clEnqueueUnmapMemObject");
+    cl::check(clFinish(queue), "clFinish");
 }
 
 void Device::copy(cl_mem from, cl_mem to, size_t offset, size_t bytes) {

@@ -43,7 +43,7 @@ class Device final : public Object {
         events.push_back(launch(one, range));
     }
     // For work that a call waits for: the device's own queue may wait for an event of the caller.
-    cl::Queue anotherQueue() const;
+    cl_command_queue sideQueue();
 
     // Device memory: a copy of `initial`, else zeros if asked for.
     cl::Memory allocate(size_t bytes, const void* initial = nullptr, bool zeros = false);
@@ -113,6 +113,12 @@ class Device final : public Object {
     std::mutex mutex_;  // guards the rest
     std::map<std::string, cl::Memory> constants_;
     std::vector<cl::Event> pending_;
+    struct Write {
+        cl::Event event;
+        std::vector<unsigned char> bytes;
+    };
+    std::vector<Write> writes_;  // that may be queued still
+    cl::Queue sideQueue_;
     PelDeviceStats stats_;
     PelProgressCallback progress_ = nullptr;
     void* progressUser_ = nullptr;

@@ -33,8 +33,10 @@ inline cl::Range vectorRange(const Device& device, uint32_t width, uint32_t heig
 // first of them. One lane: a group for each of the blocks that the last of these levels has. Of several
 // lanes each work-item has PEL_WIDTH blocks.
 inline uint32_t levelsPerLaunch(const Device& device, uint32_t left) {
-    constexpr uint32_t usual = 5, most = 6;  // 4 and 16 blocks of the first level per item
-    return device.info().mathWidth > 1 ? 1 : left <= most ? left : usual;
+    // A block of the first level per item: with more, the few groups of the coarse levels take longer than a
+    // launch more.
+    constexpr uint32_t most = 4;
+    return device.info().mathWidth > 1 ? 1 : std::min(left, most);
 }
 inline cl::Range groupRange(const Device& device, size_t groups) {
     const size_t group = launchPolicy(device).texels;

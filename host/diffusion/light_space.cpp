@@ -143,7 +143,8 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
                     images.positions ? images.positions : images.depth, images.ids, mapUpload_,
                     screen.pyramid, seen_);
     lightBufferArguments(seen, images_);
-    launch(seen, forMaps(vectorRange(*device_, screen.width, (screen.height + 1) / 2)));
+    const uint32_t across = device_->info().mathWidth == 1 ? (screen.width + 1) / 2 : screen.width;
+    launch(seen, forMaps(vectorRange(*device_, across, (screen.height + 1) / 2)));
     cl::Launch texels(screen.program, "light_texels", mapUpload_, seen_, cells_[0], cells_[1], frameNumber_,
                       pyramid_);
     lightBufferArguments(texels, images_);
@@ -171,10 +172,11 @@ void LightSpace::enqueueHidden(const ScreenMemory& screen, std::vector<cl::Event
 
 void LightSpace::enqueueSums(const ScatterImages& images, const ScreenMemory& screen,
                              std::vector<cl::Event>& events) {
+    const size_t pixels = size_t(screen.tileCount) * PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE;
     device_->launch(events, screen.program, "scatter_light",
-                    groupRange(*device_, groupsFor(*device_, screen.tileCount)), screen.frame, screen.pyramid,
-                    screen.tables, screen.nodes, parts_, mapUpload_, cl_uint(maps_.size()), pyramid_,
-                    images.out, screen.counters);
+                    groupRange(*device_, groupsFor(*device_, pixels / launchPolicy(*device_).texels)),
+                    screen.frame, screen.pyramid, screen.tables, screen.nodes, parts_, mapUpload_,
+                    cl_uint(maps_.size()), pyramid_, images.out, screen.counters);
 }
 
 }  // namespace pel

@@ -199,7 +199,7 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
         blocks += size_t(frame_.level[k].width) * frame_.level[k].height;
     if (!byLevels) launch(PYRAMIDS, "surface_differences", itemRange(*device_, blocks), pyramid_);
     const size_t tiles = size_t(frame_.tilesX) * frame_.tilesY;
-    launch(CLASSIFY, "classify_scatter", itemRange(*device_, tiles), pyramid_, tables_, nodes_, tiles_,
+    launch(CLASSIFY, "classify_scatter", groupRange(*device_, tiles), pyramid_, tables_, nodes_, tiles_,
            counters_);
     if (!light_.empty()) light_.enqueuePyramids(images, screen, events);
     // With the texels only, the screen's last step just copies.

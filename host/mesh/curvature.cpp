@@ -191,18 +191,18 @@ const MeshTopology::TwoRings& twoRings(MeshTopology& topology, const cl::Program
     const size_t padded =
         (size_t(topology.slots()) + PEL_POINT_LANES - 1) / PEL_POINT_LANES * PEL_POINT_LANES;
     std::vector<uint32_t> counts(padded);
-    const cl::Queue queue = device.anotherQueue();
+    const cl_command_queue queue = device.sideQueue();
     const cl::Memory links = device.allocate(std::max<size_t>(topology.ringEntries(), 1) * sizeof(uint32_t)),
                      rounds = device.allocate(padded * sizeof(uint32_t)),
                      counted = device.allocate(padded * sizeof(uint32_t));
     const auto run = [&](uint32_t stage, const cl::Memory& starts, const cl::Memory& points) {
         cl::Launch launch(program, "two_ring", stage, topology.slots(), topology.slices(), topology.rings(),
                           links, rounds, counted, starts, points);
-        device.launch(launch, over(padded), queue.get());
+        device.launch(launch, over(padded), queue);
     };
     run(PEL_TWO_RING_LINK, {}, {});
     run(PEL_TWO_RING_COUNT, {}, {});
-    cl::check(clFinish(queue.get()), "clFinish");
+    cl::check(clFinish(queue), "clFinish");
     device.readOnSideQueue(counted.get(), counts.size() * sizeof(uint32_t), counts.data());
     const std::vector<uint32_t> starts = startsOf(counts);
     const size_t entries = std::max<size_t>(size_t(starts.back()) * PEL_POINT_LANES, 1);
@@ -210,7 +210,7 @@ const MeshTopology::TwoRings& twoRings(MeshTopology& topology, const cl::Program
                      points = device.allocate(entries * sizeof(uint32_t));
     device.writeAside(begin.get(), starts.size() * sizeof(uint32_t), starts.data());
     run(PEL_TWO_RING_LIST, begin, points);
-    cl::check(clFinish(queue.get()), "clFinish");
+    cl::check(clFinish(queue), "clFinish");
     made = {begin, points, rounds};
     return made;
 }

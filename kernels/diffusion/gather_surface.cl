@@ -62,9 +62,9 @@ static inline void copyPoint(__global const PelGatherFrame* frame, __global ucha
     }
     e.w = as_float(id);
     __global float* to = points + PEL_GATHER_FLOATS * ((size_t)y * frame->width + x);
-    vstore4(p, 0, to + PEL_GATHER_POINT);
-    vstore4(e, 0, to + PEL_GATHER_LIGHT);
-    vstore4(pixel, 0, to + PEL_GATHER_PIXEL);
+    PEL_STORE4(p, to + PEL_GATHER_POINT);
+    PEL_STORE4(e, to + PEL_GATHER_LIGHT);
+    PEL_STORE4(pixel, to + PEL_GATHER_PIXEL);
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void gather_points(
@@ -145,7 +145,7 @@ static inline uint measured(__global const PelGatherFrame* frame, __global float
     measurePixel(frame, points, x, y);
     const uint material = frame->materialOf[id];
     if (!material) return PEL_TILE_LIT;
-    const float4 pixel = vload4(0, points + at + PEL_GATHER_PIXEL);
+    const float4 pixel = PEL_LOAD4(points + at + PEL_GATHER_PIXEL);
     // Where all taps would fall into the pixel itself, irradiance is right as it is.
     const float radius = materials[material - 1].farthest * pixel.z;
     const bool wide = radius > fmin(pixel.x, pixel.y) || frame->everywhere;

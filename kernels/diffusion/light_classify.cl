@@ -30,11 +30,21 @@ static inline float3 sumOfGroup(float3 v, __local float3* partial) {
     barrier(CLK_LOCAL_MEM_FENCE);
     return sum;
 }
+static inline uint bitsOfGroup(uint bits, __local uint* all) {
+    if (LANE == 0) *all = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (bits) atomic_or(all, bits);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    return *all;
+}
 #else
 #define LANE 0
 #define LANES 1
 static inline float3 sumOfGroup(float3 v, __local float3* partial) {
     return v;
+}
+static inline uint bitsOfGroup(uint bits, __local uint* all) {
+    return bits;
 }
 #endif
 
@@ -69,41 +79,54 @@ static inline float maxStep(__global const float* block, uint stride, uint level
 }
 
 #if PEL_HIDDEN
+// A block as a receiver with all of its surface within the margin. Returns its profile table, -1 if it does
+// not scatter.
+static inline int wholeBlock(__global const PelDiffusionFrame* frame, __global const float* pyramid,
+                             uint level, uint x, uint y, Receiver* receiver) {
+    __global const PelPyramidLevel* at = &frame->level[level];
+    if (x >= at->width || y >= at->height) return -1;
+    __global const float* block = pyramid + pyramidRow(at, (int)y) + x;
+    const int table = receiverOf(frame, block, at->stride, receiver);
+    if (table >= 0) receiver->margin = 0.71f * (float)(1 << level) * maxStep(block, at->stride, level);
+    return table;
+}
+
 // The most light that occluded texels can add to a tile. The block of a tile stands for one surface. Parts
 // of the tile that lie further away, such as an ear in front of a neck, are tested by themselves.
 static inline float changeByLight(__global const PelDiffusionFrame* frame, __global const float* pyramid,
                                   uint tileX, uint tileY, __global const PelProfileTable* tables,
                                   __global const float* nodes, __global const PelLightMap* maps,
                                   uint mapCount, __global const float* lights, uint* texels,
-                                  __local float3* partial) {
-    __global const PelPyramidLevel *whole = &frame->level[PEL_TILE_LEVEL], *part = &frame->level[PART_LEVEL];
+                                  __local float3* partial, __local uint* partsOfGroup) {
     const uint side = PEL_DIFFUSION_TILE >> PART_LEVEL;
     Receiver receiver;
     receiver.rho = 0.0f;
     receiver.normal = (float3)(0.0f);
     receiver.curvature = 0.0f;
-    float3 middle = (float3)(0.0f);
-    float change = 0.0f, around = 0.0f;
+    int table = wholeBlock(frame, pyramid, PEL_TILE_LEVEL, tileX, tileY, &receiver);
+    if (table < 0) return 0.0f;
+    // Work-items look at a part each, since these loads wait for each other otherwise.
+    uint apart = 0;
+    for (uint k = LANE; k < side * side; k += LANES) {
+        Receiver part;
+        const int own =
+            wholeBlock(frame, pyramid, PART_LEVEL, tileX * side + k % side, tileY * side + k / side, &part);
+        if (own >= 0 && !(own == table && distance(part.p, receiver.p) < receiver.margin)) apart |= 1u << k;
+    }
+    apart = bitsOfGroup(apart, partsOfGroup);
     const float widest = maxRadius(frame, pyramid, tileX, tileY);
-    int number = -1;
-    for (uint k = 0; k <= side * side; ++k) {  // 0: the whole tile
-        const uint x = k ? tileX * side + (k - 1) % side : tileX,
-                   y = k ? tileY * side + (k - 1) / side : tileY;
-        const uint atLevel = k ? PART_LEVEL : PEL_TILE_LEVEL;
-        __global const PelPyramidLevel* level = k ? part : whole;
-        if (x >= level->width || y >= level->height) continue;
-        __global const float* block = pyramid + pyramidRow(level, (int)y) + x;
-        const int table = receiverOf(frame, block, level->stride, &receiver);
-        if (k == 0 && table < 0) return 0.0f;
-        if (table < 0 || (k && table == number && distance(receiver.p, middle) < around)) continue;
-        receiver.margin = 0.71f * (float)(1 << atLevel) * maxStep(block, level->stride, atLevel);
-        if (k == 0) number = table, middle = receiver.p, around = receiver.margin;
+    float change = 0.0f;
+    for (;;) {
         receiver.directed = tables[table].directed;
         const float3 light = farLight(maps, mapCount, lights, nodes, atRadius(tables[table], widest),
                                       &receiver, texels, partial);
         change = fmax(change, fmax(light.x, fmax(light.y, light.z)));
+        if (!apart) return change;
+        const uint k = 31 - clz(apart);
+        apart ^= 1u << k;
+        table = wholeBlock(frame, pyramid, PART_LEVEL, tileX * side + k % side, tileY * side + k / side,
+                           &receiver);
     }
-    return change;
 }
 #else
 // Of one of its pixels.
@@ -146,10 +169,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_SUM_GROUP, 1, 1))) void light_c
     __global const float* restrict lights, __global uint* parts, __global uint* restrict counters) {
 #if PEL_WIDTH == 1
     __local float3 partial[LANES];
-    __local uint texelsOfGroup;
+    __local uint texelsOfGroup, partsOfGroup;
     const uint tile = get_group_id(0);
 #else
     __local float3* const partial = 0;
+    __local uint partsOfGroup;
     const uint tile = itemOfFolded();
     if (tile >= frame->tilesX * frame->tilesY) return;
 #endif
@@ -158,7 +182,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_SUM_GROUP, 1, 1))) void light_c
 #if PEL_HIDDEN
     const uint word = tiles[tile];
     const float change = changeByLight(frame, pyramid, tileX, tileY, tables, nodes, maps, mapCount, lights,
-                                       &texels, partial),
+                                       &texels, partial, &partsOfGroup),
                 least = frame->everyTile ? 0.0f : LEFT_ALONE * frame->tolerance;
     const bool reached = change > least;
     if (reached && LANE == 0)

@@ -5,6 +5,7 @@
 // light_classify has found per tile, the pyramids of the lights. Output: light, weight and far light per
 // block of flagged tiles, and zeros in the tiles beside them, which interpolation reads. One work-group
 // takes tiles, one work-item blocks of them. Variants: PEL_HIDDEN is 1.
+#include "lib/diffusion/item.clh"
 #include "lib/diffusion/levels.clh"
 #include "lib/diffusion/windowed.clh"
 
@@ -102,6 +103,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_hidde
             to[6 * stride] = far.x, to[7 * stride] = far.y, to[8 * stride] = far.z;
         }
     }
-    if (pixels) atomic_add(&counters[PEL_COUNT_LIGHT_PIXELS], pixels);
-    if (texels) atomic_add(&counters[PEL_COUNT_LIGHT_TEXELS], texels);
+    __local uint sumsOfGroup[2];
+    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_PIXELS], pixels, &sumsOfGroup[0]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_TEXELS], texels, &sumsOfGroup[1]);
 }

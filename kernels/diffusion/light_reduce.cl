@@ -112,6 +112,9 @@ static inline bool cellsMatter(__global const PelLightMap* map, __global const u
     return false;
 }
 
+// Blocks wider than so many cells are always made: few have no lit cell, and a search would take longer.
+#define MOST_CELLS 4
+
 // PEL_WIDTH blocks of level `to`.
 static inline void reduceLight(__global const PelLightMap* map, uint to, uint x, uint y, uint frameNumber,
                                __global const uchar* before, __global const uchar* now, __global uchar* seen,
@@ -119,7 +122,8 @@ static inline void reduceLight(__global const PelLightMap* map, uint to, uint x,
     __global const PelPyramidLevel *fine = &map->level[to - 1], *coarse = &map->level[to];
     const uint points = to == 1 ? 1 : 2, stride = fine->stride;
     if (to == 1) clearMarks(map, seen, x, y);
-    if (!cellsMatter(map, before, now, frameNumber, x << to, y << to, (x + PEL_WIDTH) << to, (y + 1) << to))
+    if ((1u << to) <= MOST_CELLS * PEL_LIGHT_CELL &&
+        !cellsMatter(map, before, now, frameNumber, x << to, y << to, (x + PEL_WIDTH) << to, (y + 1) << to))
         return;
     __global const float* upper = pyramid + lightRow(fine, points, 2 * (int)y) + 2 * x;
     const size_t at = lightRow(coarse, 2, (int)y) + x;

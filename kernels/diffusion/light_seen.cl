@@ -7,10 +7,9 @@
 // texel, set to 0 beforehand: the id of the pixel, or PEL_SEEN_OTHER where the pixel does not scatter.
 // Patches of several work-items meet at a texel, so bytes are merged atomically, and the result does not
 // depend on their order: with PEL_HIDDEN the bits of all ids, since only "not 0" matters, otherwise the
-// smallest id. One work-item: PEL_WIDTH pixels of every other row, in a
-// map. Variants: PEL_FORMAT_POSITION or
-// PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT,
-// PEL_HIDDEN.
+// smallest id. One work-item: PEL_WIDTH pixels of every other row, one lane: every other pixel of it, in a map.
+// Variants: PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1),
+// PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT, PEL_HIDDEN.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/light_space.clh"
 #include "lib/diffusion/pyramid.clh"
@@ -19,7 +18,8 @@
 
 #define MAX_TEXELS \
     6.0f  // half the width of a patch; wider patches are seen at a grazing angle, and neighbours cover them
-#define EVERY 2          // pixel, along a side, has a patch
+#define EVERY 2                                    // pixel, along a side, has a patch
+#define STEP (PEL_WIDTH == 1 ? EVERY : PEL_WIDTH)  // pixels of a row from work-item to work-item
 #define OFF_PLANE 0.75f  // largest distance of a texel from the plane of the patch, in lengths of a texel
 
 static inline Vec3w loadPositions(__global const PelDiffusionFrame* frame, __global uchar* position, uint x,
@@ -147,10 +147,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_seen(
     __global const PelDiffusionFrame* restrict frame, __global uchar* position, __global uchar* ids,
     __global const PelLightMap* restrict maps, __global const float* restrict pyramid,
     volatile __global uint* seen PEL_LIGHT_BUFFER_ARGUMENTS) {
-    const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across * EVERY;
+    const uint across = (frame->width + STEP - 1) / STEP, y = itemOfFolded() / across * EVERY;
     if (y >= frame->height) return;
     __global const PelLightMap* map = maps + get_global_id(2);
-    const uint from = itemOfFolded() % across * PEL_WIDTH, x = vectorStart(from, frame->width);
+    const uint from = itemOfFolded() % across * STEP, x = vectorStart(from, frame->width);
     const intw column = lanesw() + (int)x;
     const maskw mine = (column >= (int)from) & (column < (int)frame->width) & (column % EVERY == 0);
     const Vec3w p = loadPositions(frame, position, x, y);

@@ -6,6 +6,7 @@
 // disk. Input: the surface (gather_surface.cl), taps and profiles. Output: an image like the irradiance;
 // pixels that nothing changes keep their value. One work-group takes tiles, one work-item columns of their
 // pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT.
+#include "lib/diffusion/item.clh"
 #include "lib/diffusion/gather.clh"
 #include "lib/image/image.clh"
 
@@ -82,6 +83,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_dis
             }
         }
     }
-    if (pixels) atomic_add(&counters[PEL_COUNT_PIXELS_TAPPED], pixels);
-    if (taken) atomic_add(&counters[PEL_COUNT_TAPS], taken);
+    __local uint sumsOfGroup[2];
+    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_TAPPED], pixels, &sumsOfGroup[0]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taken, &sumsOfGroup[1]);
 }

@@ -7,6 +7,7 @@
 // flags of classify_scatter, the sums of level 1. Output: an image in the format of the irradiance; pixels
 // of other tiles keep their value. One work-group takes tiles, one work-item PEL_WIDTH pixels of a row at a
 // time. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT, PEL_HIDDEN (with shadow maps).
+#include "lib/diffusion/item.clh"
 #include "lib/diffusion/levels.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
@@ -193,6 +194,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_scr
             if (near) taps += PEL_BAND * covered;
         }
     }
-    if (pixels) atomic_add(&counters[PEL_COUNT_PIXELS_TAPPED], pixels);
-    if (taps) atomic_add(&counters[PEL_COUNT_TAPS], taps);
+    __local uint sumsOfGroup[2];
+    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_TAPPED], pixels, &sumsOfGroup[0]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taps, &sumsOfGroup[1]);
 }

@@ -7,6 +7,7 @@
 // spreads. Output: filter_rows: irradiance and -, four floats a pixel; filter_columns: an image like the
 // irradiance, with pixels that nothing changes as they were. One work-group takes tiles, one work-item
 // columns of their pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT.
+#include "lib/diffusion/item.clh"
 #include "lib/diffusion/gather.clh"
 #include "lib/image/image.clh"
 
@@ -51,7 +52,7 @@ static inline uint addPixel(const Line* line, __global const PelGatherTap* tap, 
     const float4 brings =
         part * flows *
         tapBrings(line->nodes, line->material->table, tap, dot(between, between) / (plane * plane));
-    sums->light += brings * vload4(0, line->light + there * line->lightStride);
+    sums->light += brings * PEL_LOAD4(line->light + there * line->lightStride);
     sums->weight += brings;
     // Light that is held back at a border is replaced by the light of the pixel itself.
     const float4 kept = select((float4)(0.0f), share, flows <= 0.0f);
@@ -95,7 +96,7 @@ static inline float4 filterPixel(__global const PelGatherFrame* frame, __global 
     line.size = down ? pixel.y : pixel.x;
     line.p = gathered(points, line.here, PEL_GATHER_POINT).xyz;
     line.id = as_uint(gathered(points, line.here, PEL_GATHER_LIGHT).w);
-    line.own = vload4(0, light + line.here * lightStride);
+    line.own = PEL_LOAD4(light + line.here * lightStride);
     return filterLine(&line, taps, radius, taken);
 }
 
@@ -119,10 +120,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void filter_rows
             if (material && pixel.x > 0.0f && pixel.z != 0.0f)
                 light = filterPixel(frame, points, points + PEL_GATHER_LIGHT, PEL_GATHER_FLOATS,
                                     &materials[material - 1], taps, nodes, x, y, false, &taken);
-            vstore4(light, at, rows);
+            PEL_STORE4(light, rows + 4 * at);
         }
     }
-    if (taken) atomic_add(&counters[PEL_COUNT_TAPS], taken);
+    __local uint sumsOfGroup[1];
+    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taken, &sumsOfGroup[0]);
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void filter_columns(
@@ -156,6 +158,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void filter_colu
             }
         }
     }
-    if (pixels) atomic_add(&counters[PEL_COUNT_PIXELS_TAPPED], pixels);
-    if (taken) atomic_add(&counters[PEL_COUNT_TAPS], taken);
+    __local uint sumsOfGroup[2];
+    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_TAPPED], pixels, &sumsOfGroup[0]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taken, &sumsOfGroup[1]);
 }

@@ -30,8 +30,8 @@ static inline floatw shareOf(floatw component, float own, float most) {
 #if PEL_WIDTH == 1
 static inline Skin nodesAround(__global const float* table, int first, float x, float y) {
     __global const float* node = table + first;
-    const float4 low = mix(vload4(0, node), vload4(1, node), x),
-                 high = mix(vload4(0, node + ROW_FLOATS), vload4(1, node + ROW_FLOATS), x),
+    const float4 low = mix(PEL_LOAD4(node), PEL_LOAD4(node + 4), x),
+                 high = mix(PEL_LOAD4(node + ROW_FLOATS), PEL_LOAD4(node + ROW_FLOATS + 4), x),
                  v = mix(low, high, y);
     const Skin skin = {{v.x, v.y, v.z}, v.w};
     return skin;

@@ -48,6 +48,8 @@ def collect_programs(build, scenes, folder):
             variant.write_text(text)
             gbuffer = scenes / f"{scene.stem}_gbuffer.exr"
             calls.append(["shade", gbuffer, "--scene", variant, "-o", out / "o.exr"])
+    # light from maps alone, which no scene of the demo has
+    calls.append(["bench", "--first-gpu", "--only", "ear-1: light", "-o", out / "bench"])
     for call in calls:
         code, said = run([build / "bin/pellucid", *call], env=env)
         if code and not list(folder.glob("*.cl")):

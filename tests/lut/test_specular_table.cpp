@@ -18,7 +18,7 @@ std::vector<float> evaluate(const pellucid::Device& device, const std::vector<fl
                             const std::vector<float>& inputs, int lanes) {
     // Clang warns of vectors wider than the registers.
     const char* source =
-        "#pragma clang diagnostic ignored \"-Wpsabi\"\n"
+        "#ifndef __NV_CL_C_VERSION\n#pragma clang diagnostic ignored \"-Wpsabi\"\n#endif\n"
         R"(#include "lib/shading/specular_table.clh"
 #define V(i) vec3(loadw(at, in + (i) * n), loadw(at, in + (i + 1) * n), loadw(at, in + (i + 2) * n))
 __kernel void evaluate(__global const float* in, __global const float* table, uint width, uint height,

@@ -156,7 +156,7 @@ TEST(ShadeOutputs, EachMatchesTheOracleAndRadianceStaysWhatItIs) {
         const Frame f = partsFrame(seed);
         const Shaded shaded = shadeParts(f);
         if (seed == 2) {
-            EXPECT_EQ(shaded.radiance, shade(f)) << "to the bit";
+            expectSameBits(device(), shaded.radiance, shade(f));
         }
         EXPECT_TRUE(shaded.stats.features & PEL_FEATURE_OUTPUTS);
         for (size_t i = 0; i < f.pixels(); ++i) {
@@ -189,7 +189,7 @@ TEST(ShadeOutputs, OneAloneInHalf) {
     shader.set(PEL_SLOT_OUT_SPECULAR, imageDesc(specular, PEL_FORMAT_RGBA16F, f.width, f.height));
     shader.set(PEL_SLOT_OUT_THICKNESS, imageDesc(thickness, PEL_FORMAT_R16F, f.width, f.height));
     shader.commit().execute();
-    EXPECT_EQ(radiance.readAll<float>(), all.radiance);
+    expectSameBits(device(), radiance.readAll<float>(), all.radiance);
     const auto s = specular.readAll<uint16_t>(), t = thickness.readAll<uint16_t>();
     for (size_t i = 0; i < f.pixels(); ++i) {
         EXPECT_EQ(s[4 * i], toHalf(all.specular[3 * i]));
