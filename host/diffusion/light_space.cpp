@@ -172,11 +172,13 @@ void LightSpace::enqueueHidden(const ScreenMemory& screen, std::vector<cl::Event
 
 void LightSpace::enqueueSums(const ScatterImages& images, const ScreenMemory& screen,
                              std::vector<cl::Event>& events) {
-    const size_t pixels = size_t(screen.tileCount) * PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE;
-    device_->launch(events, screen.program, "scatter_light",
-                    groupRange(*device_, groupsFor(*device_, pixels / launchPolicy(*device_).texels)),
-                    screen.frame, screen.pyramid, screen.tables, screen.nodes, parts_, mapUpload_,
-                    cl_uint(maps_.size()), pyramid_, images.out, screen.counters);
+    const size_t each = device_->info().mathWidth == 1 ? 1 : 16,  // pixels of a work-item
+        items = size_t(screen.tileCount) * PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE / each;
+    device_->launch(
+        events, screen.program, "scatter_light",
+        groupRange(*device_, groupsFor(*device_, (items - 1) / launchPolicy(*device_).texels + 1)),
+        screen.frame, screen.pyramid, screen.tables, screen.nodes, parts_, mapUpload_, cl_uint(maps_.size()),
+        pyramid_, images.out, screen.counters);
 }
 
 }  // namespace pel

@@ -162,7 +162,8 @@ std::vector<cl::ProgramKey> ScreenScatter::programs(const ScatterImages& images)
                              {"PEL_FORMAT_OUT", code(images.out)},
                              {"PEL_FORMAT_MEAN_CURVATURE", code(images.curvature)},
                              {"PEL_HIDDEN", int(fillsHidden())}}};
-    cl::ProgramKey classify{{"diffusion/classify_scatter.cl"}, {{"PEL_WIDTH", 1}}};
+    cl::ProgramKey classify{{"diffusion/classify_scatter.cl"},
+                            {{"PEL_WIDTH", 1}, {"PEL_TILE_IS_GROUP", lanes == 1}}};
     if (images.radii) {
         pyramids.defines["PEL_FORMAT_RADIUS"] = code(images.radii);
         pyramids.defines["PEL_RADIUS_COMPONENT"] = images.radiusComponent;
@@ -199,8 +200,8 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
         blocks += size_t(frame_.level[k].width) * frame_.level[k].height;
     if (!byLevels) launch(PYRAMIDS, "surface_differences", itemRange(*device_, blocks), pyramid_);
     const size_t tiles = size_t(frame_.tilesX) * frame_.tilesY;
-    launch(CLASSIFY, "classify_scatter", groupRange(*device_, tiles), pyramid_, tables_, nodes_, tiles_,
-           counters_);
+    launch(CLASSIFY, "classify_scatter", byLevels ? itemRange(*device_, tiles) : groupRange(*device_, tiles),
+           pyramid_, tables_, nodes_, tiles_, counters_);
     if (!light_.empty()) light_.enqueuePyramids(images, screen, events);
     // With the texels only, the screen's last step just copies.
     const bool alone = !light_.empty() && lights_.alone;

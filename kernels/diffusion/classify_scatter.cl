@@ -7,7 +7,8 @@
 // Below half of it a tile is left as it is; between half and all of it the scattered light is blended in,
 // so that slowly changing pictures show no step. Single pixels are left out where they contribute little.
 //
-// Input: the pyramid. Output: packed flags per tile (shared/diffusion.h). One work-group: one tile.
+// Input: the pyramid. Output: packed flags per tile (shared/diffusion.h). One work-item: one tile; on a
+// device of one lane (PEL_TILE_IS_GROUP): one work-group.
 #undef PEL_WIDTH
 #define PEL_WIDTH 1
 #include "lib/diffusion/item.clh"
@@ -18,21 +19,34 @@
 #define LEFT_ALONE 0.5f   // of the tolerance: error of a tile that is left as it is
 #define MIN_LIGHT 0.002f  // share of the light below which coarser levels are left out
 
-// The largest second difference between blocks of level k in and around a tile, of every `items`-th of them.
+// Work-items that share a tile, which they all go through, and their number.
+#if PEL_TILE_IS_GROUP
+#define ITEMS PEL_GROUP
+#define ITEM ((int)get_local_id(0))
+#define SYNCHRONIZE() barrier(CLK_LOCAL_MEM_FENCE)
+#else
+#define ITEMS 1
+#define ITEM 0
+#define SYNCHRONIZE()
+#endif
+#define COLUMNS (ITEMS < 16 ? ITEMS : 16)
+
+// The largest second difference between blocks of level k in and around a tile, of those that are this
+// work-item's.
 static inline float maxDifference2(__global const PelDiffusionFrame* frame, __global const float* pyramid,
-                                   uint tileX, uint tileY, int k, int item, int items) {
+                                   uint tileX, uint tileY, int k) {
     __global const PelPyramidLevel* level = &frame->level[k + 1];
     const int shift = PEL_TILE_LEVEL - (k + 1), dilate = 2;  // as far as the ring of level k reaches
-    const int side = shift >= 0 ? 1 << shift : 1, across = side + 2 * dilate;
     const int x0 = (shift >= 0 ? (int)tileX << shift : (int)(tileX >> -shift)) - dilate,
-              y0 = (shift >= 0 ? (int)tileY << shift : (int)(tileY >> -shift)) - dilate;
+              y0 = (shift >= 0 ? (int)tileY << shift : (int)(tileY >> -shift)) - dilate,
+              side = (shift >= 0 ? 1 << shift : 1) + 2 * dilate;
     float difference2 = 0.0f;
-    for (int i = item; i < across * across; i += items) {
-        const int x = x0 + i % across, y = y0 + i / across;
-        if (x < 0 || y < 0 || x >= (int)level->width || y >= (int)level->height) continue;
-        __global const float* block = pyramid + pyramidRow(level, y) + x;
-        if (block[PEL_PLANE_AREA * level->stride] > 0.0f)
-            difference2 = fmax(difference2, block[PEL_PLANE_DIFFERENCE2 * level->stride]);
+    for (int y = y0 + ITEM / COLUMNS; y < min(y0 + side, (int)level->height); y += ITEMS / COLUMNS) {
+        if (y < 0) continue;
+        __global const float* row = pyramid + pyramidRow(level, y);
+        for (int x = x0 + ITEM % COLUMNS; x < min(x0 + side, (int)level->width); x += COLUMNS)
+            if (x >= 0 && row[x + PEL_PLANE_AREA * level->stride] > 0.0f)
+                difference2 = fmax(difference2, row[x + PEL_PLANE_DIFFERENCE2 * level->stride]);
     }
     return difference2;
 }
@@ -57,20 +71,34 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void classify_sc
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global uint* tiles, __global uint* restrict counters) {
-    // Of levels; differences as bits, which are ordered as floats are that are not negative.
+    // Of levels; differences as bits, which are ordered as floats are that are not negative. In local memory:
+    // private memory that is indexed lies in global memory on GPUs.
+#if PEL_TILE_IS_GROUP
     __local uint differences[PEL_PYRAMID_LEVELS];
     __local float beyond[PEL_PYRAMID_LEVELS];
-    const uint tile = get_group_id(0), item = get_local_id(0), levelCount = frame->levels;
-    const uint tileX = tile % frame->tilesX, tileY = tile / frame->tilesX;
+    const uint tile = get_group_id(0);
+#else
+    uint differences[PEL_PYRAMID_LEVELS];
+    float beyond[PEL_PYRAMID_LEVELS];
+    const uint tile = itemOfFolded();
+    if (tile >= frame->tilesX * frame->tilesY) return;
+#endif
+    const uint levelCount = frame->levels, tileX = tile % frame->tilesX, tileY = tile / frame->tilesX;
     __global const PelPyramidLevel* own = &frame->level[PEL_TILE_LEVEL];
+    // No return before the barriers, though it would be the same for all: PoCL 3.1 then runs the end of the
+    // kernel for every work-item.
     const bool covered = pyramid[pyramidRow(own, (int)tileY) + tileX + PEL_PLANE_AREA * own->stride] > 0.0f;
-    for (uint k = item; k < levelCount; k += PEL_GROUP) differences[k] = 0;
-    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint k = ITEM; k < levelCount; k += ITEMS) differences[k] = 0;
+    SYNCHRONIZE();
     for (uint k = 0; covered && k + 1 < levelCount; ++k) {
-        const float most = maxDifference2(frame, pyramid, tileX, tileY, (int)k, (int)item, PEL_GROUP);
+        const float most = maxDifference2(frame, pyramid, tileX, tileY, (int)k);
+#if PEL_TILE_IS_GROUP
         if (most > 0.0f) atomic_max(&differences[k], as_uint(most));
+#else
+        differences[k] = as_uint(most);
+#endif
     }
-    barrier(CLK_LOCAL_MEM_FENCE);
+    SYNCHRONIZE();
     const float size = covered ? minSize(own, pyramid, tileX, tileY) : 0.0f,
                 widest = covered ? maxRadius(frame, pyramid, tileX, tileY) : 0.0f;
     uint levels = 0;
@@ -78,28 +106,29 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void classify_sc
     float greatest = 0.0f;
     for (uint t = 0; t < frame->tables; ++t) {
         const PelProfileTable table = atRadius(tables[t], widest);
-        for (uint k = item; covered && k < levelCount; k += PEL_GROUP) {
+        for (uint k = ITEM; covered && k < levelCount; k += ITEMS) {
             // Beyond the pixel, or beyond the blocks that a level leaves to finer ones.
             const float half_ = k ? 1.6f * (float)(1 << k) : 0.56f;
             const Vec3w within = profileShare(nodes, table, half_ * half_ * size);
             beyond[k] = 1.0f - fmin(within.x, fmin(within.y, within.z));
+            if (ITEMS == 1 && beyond[k] < MIN_LIGHT) break;
         }
-        barrier(CLK_LOCAL_MEM_FENCE);
+        SYNCHRONIZE();
         float error = 0.0f, errorOfPixels = 0.0f;
         uint end = 1;
-        for (uint k = 0; covered && item == 0 && k < levelCount && !(beyond[k] < MIN_LIGHT); ++k) {
+        for (uint k = 0; covered && k < levelCount && !(beyond[k] < MIN_LIGHT); ++k) {
             end = k + 1;
             // the coarsest level has no coarser blocks
             error += PEL_ERROR_PER_DIFFERENCE2 * beyond[k] * as_float(differences[min(k, levelCount - 2)]);
             if (k == 0) errorOfPixels = error;
         }
-        barrier(CLK_LOCAL_MEM_FENCE);
+        SYNCHRONIZE();
         if (!(error > LEFT_ALONE * frame->tolerance) && !frame->everyTile) continue;
         near |= frame->everyTile || errorOfPixels > fmin(PEL_LEFT_OF_PIXELS * frame->tolerance, 0.5f * error);
         greatest = fmax(greatest, error);
         levels = max(levels, max(end, PEL_MIN_LEVELS));
     }
-    if (item > 0) return;
+    if (ITEM > 0) return;
     const float weight = frame->everyTile ? 1.0f : weightOfTile(greatest, LEFT_ALONE * frame->tolerance);
     tiles[tile] = covered && levels ? (near ? PEL_TILE_NEAR : 0) | levels << 8 | packedWeight(weight) : 0;
     if (covered) atomic_inc(&counters[PEL_COUNT_TILES_COVERED]);
