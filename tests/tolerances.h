@@ -171,7 +171,6 @@ constexpr double litSphere = 1e-3;          // area and flux of a sphere's facet
 constexpr double sampleRandomField = 0.15;  // relative: a sum of 100 waves over a few hundred wavelengths
 constexpr double sampleAlbedoMean = 0.03;   // the mean of few, wide random blotches
 constexpr double sampleWaves = 1e-4;        // single-precision sines with phases up to 100
-constexpr double sampleQuadrature = 1e-5;   // a midpoint rule of 4000 steps over a square root's end
 
 // --- what the search of bench/stability may find beyond the ranges of the tests ---
 constexpr double stretchedNormals = 5e-5;  // as normalComponent, triangles 50 times longer than wide

@@ -115,13 +115,14 @@ std::vector<DemoViewRequest> requests(const Arguments& a) {
     key.name = "key";
     key.framing.azimuth = 25;
     key.lights = {{"Key", 80, 25, {0.98f, 0.90f, 0.81f}},
-                  {"Fill", -5, 5, {0.05f, 0.06f, 0.07f}, false},
+                  {"Fill", -5, 5, {0.05f, 0.06f, 0.07f}, false, false},
                   {"Rim", -125, 15, {0.22f, 0.25f, 0.30f}}};
     key.skyScale = 0.16f;
     back = key;
     back.name = "backlit";
-    back.lights = {{"Key", 150, 10, {2.2f, 2.07f, 1.9f}}, {"Fill", 5, 5, {0.08f, 0.09f, 0.11f}, false}};
-    back.skyScale = 0.12f;
+    back.lights = {{"Key", 150, 10, {2.0f, 1.88f, 1.73f}, true, false},
+                   {"Fill", 5, 5, {0.08f, 0.09f, 0.11f}, false, false}};
+    back.skyScale = 0.08f;
     return {key, back};
 }
 
@@ -130,7 +131,7 @@ std::vector<float> shadeAs(Run& run, Stages& stages, io::LutStore& luts, const D
                            const char* name, const io::SceneFile& scene) {
     std::vector<float> radiance;
     stages.measure(view.name + ": shade, " + name, [&] {
-        io::SceneFrame frame(run.device(), view.gbuffer, scene, luts, view.shadowMaps);
+        io::SceneFrame frame(run.device(), view.gbuffer, scene, luts, view.images);
         frame.shade();
         radiance = frame.radiance();
     });
@@ -152,7 +153,7 @@ std::vector<io::Picture> finePictures(Run& run, io::LutStore& luts, const sample
     const DemoView view = renderDemoView(scene, head, request);
     std::vector<io::Picture> pictures;
     for (const io::SceneFile& shown : scenesOf(view)) {
-        io::SceneFrame frame(run.device(), view.gbuffer, shown, luts, view.shadowMaps);
+        io::SceneFrame frame(run.device(), view.gbuffer, shown, luts, view.images);
         frame.shade();
         pictures.push_back(developed(view, frame.radiance()));
     }
@@ -169,7 +170,7 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
 
     const std::array<io::SceneFile, 3> scenes = scenesOf(view);
     stages.measure(view.name + ": kernels", [&] {
-        for (const io::SceneFile& each : scenes) io::buildPrograms(run.device(), each, luts);
+        for (const io::SceneFile& each : scenes) io::buildPrograms(run.device(), each, luts, view.images);
     });
     ShadedView shaded;
     shaded.lambert = shadeAs(run, stages, luts, view, "Lambert", scenes[0]);
@@ -180,8 +181,8 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
     const std::string& folder = a.output;
     const auto path = [&](const std::string& suffix) { return folder + "/" + view.name + suffix; };
     io::writeExr(path("_gbuffer.exr"), view.gbuffer, io::ExrCompression::Rle);
-    for (const auto& [file, map] : view.shadowMaps)
-        io::writeExr(folder + "/" + file, map, io::ExrCompression::Rle);
+    for (const auto& [file, image] : view.images)
+        io::writeExr(folder + "/" + file, image, io::ExrCompression::Rle);
     io::writeScene(path(".toml"), view.scene);
     io::writeRadiance(path(".exr"), view.gbuffer.width, view.gbuffer.height, shaded.complete);
     shaded.view = std::move(view);
@@ -232,7 +233,7 @@ void run(Arguments a) {
     const DemoView& backlit = views.back().view;
     // By tables, for thickness and transmission are parts of theirs alone.
     io::SceneFrame parts(
-        run.device(), backlit.gbuffer, byTables(backlit.scene), luts, backlit.shadowMaps,
+        run.device(), backlit.gbuffer, byTables(backlit.scene), luts, backlit.images,
         pelShaderOptionsDefaults(),
         {PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER, PEL_SLOT_OUT_SPECULAR, PEL_SLOT_OUT_THICKNESS});
     parts.shade();

@@ -13,7 +13,7 @@ struct DemoView {
     std::string name;
     io::Image gbuffer;
     io::SceneFile scene;
-    io::ShadowMaps shadowMaps;
+    io::ShadowMaps images;  // by the names of their files in the scene: shadow maps, surroundings
     double gbufferMilliseconds = 0, shadowMapMilliseconds = 0;
 };
 
@@ -23,6 +23,7 @@ struct DemoLight {
     double azimuth, elevation;  // degrees, as in sample::headDirection
     float color[3];             // irradiance / pi
     bool shadow = true;         // a soft lamp beside the camera needs none
+    bool box = true;            // it is seen in reflections, as a soft box
 };
 
 struct DemoViewRequest {

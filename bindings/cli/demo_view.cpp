@@ -40,7 +40,10 @@ PelMaterial skin() {
     // The library's own choice, without a profile too.
     const PelProfileInfo info = Profile::named(profileName).info();
     m.shadowFilterWidth = 3 * std::max({info.width[0], info.width[1], info.width[2]});
-    m.specular = 0.35f;
+    // Two lobes, of the skin's relief and of the film of oil on it.
+    m.specularModel = PEL_SPECULAR_GGX;
+    m.specular = 0.6f;
+    m.roughness = 0.35f, m.roughness2 = 0.18f, m.lobeMix = 0.35f;
     return m;
 }
 
@@ -91,9 +94,44 @@ void addShadow(DemoView& view, const sample::Scene& mesh, const DemoLight& lamp,
     light.light.shadowDepthRange = float(map.depthRange);
     light.shadowMapFile = shadowMapFile(view.name, lamp);
     light.shadowMapChannel = "Z";
-    io::Image& depth = view.shadowMaps[light.shadowMapFile];
+    io::Image& depth = view.images[light.shadowMapFile];
     depth.width = depth.height = map.size;
     depth.channels.push_back({"Z", io::ChannelType::Float, map.depth});
+}
+
+// A studio: the sky, soft boxes, and a window to the left of the camera.
+void addSurroundings(DemoView& view, const DemoHead& head, const DemoViewRequest& request) {
+    constexpr int height = 128;
+    constexpr double boxRadiance = 2.4;  // over the lamp's light: 0.3 sr, which add a quarter of that to it
+    sample::Sky sky;
+    sky.up = head.pose.up;
+    sky.scale = request.skyScale;
+    sky.lamp = sample::headDirection(head.pose, request.lights[0].azimuth, request.lights[0].elevation);
+    for (const DemoLight& lamp : request.lights)
+        if (lamp.box)
+            sky.panels.push_back(
+                {sample::headDirection(head.pose, lamp.azimuth, lamp.elevation),
+                 0.22,
+                 0.35,
+                 {boxRadiance * lamp.color[0], boxRadiance * lamp.color[1], boxRadiance * lamp.color[2]}});
+    const double window = 6 * request.skyScale;
+    sky.panels.push_back(
+        {sample::headDirection(head.pose, -35, 30), 0.35, 0.5, {window, 1.04 * window, 1.15 * window}});
+    const std::vector<float> pixels = sample::equirectangular(sky, head.pose.front, height);
+    view.scene.environment = view.name + "_studio.exr";
+    io::Image& image = view.images[view.scene.environment];
+    image.width = 2 * height, image.height = height;
+    for (size_t c = 0; c < 3; ++c) {
+        io::Channel channel{std::string(1, "RGB"[c]), io::ChannelType::Float, {}};
+        for (size_t i = c; i < pixels.size(); i += 3) channel.pixels.push_back(pixels[i]);
+        image.channels.push_back(std::move(channel));
+    }
+    const sample::Vec3 axes[] = {cross(head.pose.up, head.pose.front), head.pose.up, head.pose.front};
+    for (size_t i = 0; i < 3; ++i) {
+        float row[3];
+        copy(row, axes[i]);
+        std::ranges::copy(row, view.scene.environmentAxes + 3 * i);
+    }
 }
 
 std::vector<io::SceneMaterial> materialsOf(const DemoHead& head) {
@@ -177,13 +215,7 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
         view.scene.lights.push_back(light);
     }
 
-    sample::Sky sky;
-    sky.up = head.pose.up;
-    sky.lamp = sample::headDirection(head.pose, request.lights[0].azimuth, request.lights[0].elevation);
-    const sample::Harmonics harmonics = sample::projectIrradiance(sky);
-    for (int i = 0; i < 9; ++i)
-        for (int c = 0; c < 3; ++c)
-            view.scene.ambient.sh[i][c] = float(harmonics[size_t(i)][size_t(c)]) * request.skyScale;
+    addSurroundings(view, head, request);
     copy(view.scene.camera.position, camera.eye);
     std::ranges::copy(camera.inverseViewProjection(aspect).toFloats(),
                       view.scene.camera.inverseViewProjection);

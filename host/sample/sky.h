@@ -1,18 +1,14 @@
-// Light from everywhere, as nine spherical harmonics per channel.
+// A studio sky, as an image that stands for light from all round.
 #pragma once
-#include <functional>
+#include <vector>
 
 #include "sample/vector.h"
 
 namespace pellucid::sample {
 
 using Rgb = std::array<double, 3>;
-// Orders 0 to 2 of the orthonormal real basis: 1; y, z, x; xy, yz, 3z^2-1, xz, x^2-y^2.
-using Harmonics = std::array<Rgb, 9>;
 
-std::array<double, 9> harmonicBasis(Vec3 direction);  // direction: unit
-
-// A studio sky: a gradient from horizon to zenith, a soft lamp in it and a floor that returns some light.
+// A gradient from horizon to zenith, a soft lamp in it and a floor that returns some light.
 struct Sky {
     Vec3 up{0, 0, 1};              // unit
     Rgb zenith{0.30, 0.38, 0.52};  // radiance
@@ -21,16 +17,21 @@ struct Sky {
     Vec3 lamp{0.5, -0.7, 0.5};  // towards the lamp; need not be unit
     Rgb lampRadiance{0.9, 0.82, 0.7};
     double lampSharpness = 8;  // exponent of the cosine to the lamp
+    double scale = 1;          // of all of the above
+
+    // A soft box: a bright rectangle upright before the sky.
+    struct Panel {
+        Vec3 direction;                // towards its middle, not along `up`; need not be unit
+        double halfWidth, halfHeight;  // at a distance of 1
+        Rgb radiance;
+    };
+    std::vector<Panel> panels;
 
     Rgb radiance(Vec3 direction) const;
 };
 
-// Projects irradiance / pi of an environment: a sky of radiance 1 all round gives 1 for every normal. The
-// integral is a product rule, Gauss-Legendre in the cosine to z and uniform round z, exact up to degree 127.
-// The cosine's weights per order are pi, 2 pi / 3, pi / 4 [Ramamoorthi and Hanrahan, SIGGRAPH 2001].
-Harmonics projectIrradiance(const std::function<Rgb(Vec3)>& radiance);
-Harmonics projectIrradiance(const Sky& sky);
-
-Rgb evaluate(const Harmonics& harmonics, Vec3 normal);  // normal: unit
+// The sky as PelEnvironment wants it: equirectangular, 2 `height` x `height` pixels of RGB. `front`: a unit
+// vector across `up`, in the middle of the image.
+std::vector<float> equirectangular(const Sky& sky, Vec3 front, int height);
 
 }  // namespace pellucid::sample

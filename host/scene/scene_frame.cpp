@@ -262,13 +262,17 @@ void SceneFrame::setLights(const SceneFile& scene) {
     }
 }
 
+const Image* SceneFrame::givenImage(const std::string& file) const {
+    if (!shadowMaps_) return nullptr;
+    const auto given = shadowMaps_->find(file);
+    return given == shadowMaps_->end() ? nullptr : &given->second;
+}
+
 PelImageDesc SceneFrame::mapOf(const std::string& file, const std::string& channel,
                                const std::string& second) {
     const std::vector<std::string> key{file, channel, second};
     if (const auto kept = maps_.find(key); kept != maps_.end()) return kept->second;
-    const Image* known = nullptr;
-    if (shadowMaps_)
-        if (const auto given = shadowMaps_->find(file); given != shadowMaps_->end()) known = &given->second;
+    const Image* const known = givenImage(file);
     const Image read = known ? Image() : readMap(file, channel, second);
     const Image& map = known ? *known : read;
     std::vector<std::string> channels{channel.empty() && map.channels.size() == 1 ? map.channels[0].name
@@ -384,7 +388,9 @@ Profile SceneFrame::profileOf(const std::string& nameOrPath) {
 
 PelImageDesc SceneFrame::colorImage(const std::string& file, const char* need) {
     if (const auto kept = images_.find({file}); kept != images_.end()) return kept->second;
-    const Image image = readImage(file);
+    const Image* const given = givenImage(file);
+    const Image read = given ? Image() : readImage(file);
+    const Image& image = given ? *given : read;
     return images_[{file}] = upload(image, colorChannels(file, image, need), files_);
 }
 
@@ -478,9 +484,10 @@ SceneFrame prepareFrame(const Device& device, const SceneFile& scene, LutStore& 
     return {device, blankGBuffer(scene), scene, luts, blankMaps(scene), options, outputs, true};
 }
 
-void buildPrograms(const Device& device, const SceneFile& scene, LutStore& luts,
-                   const PelShaderOptions& options, const std::vector<PelImageSlot>& outputs) {
-    prepareFrame(device, scene, luts, options, outputs);
+void buildPrograms(const Device& device, const SceneFile& scene, LutStore& luts, const ShadowMaps& images) {
+    ShadowMaps maps = blankMaps(scene);
+    maps.insert(images.begin(), images.end());
+    SceneFrame(device, blankGBuffer(scene), scene, luts, maps, pelShaderOptionsDefaults(), {}, true);
 }
 
 }  // namespace pellucid::io

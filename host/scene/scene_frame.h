@@ -98,7 +98,8 @@ PelShaderOptions withOptionsOf(const SceneFile& scene, PelShaderOptions options)
 class SceneFrame {
   public:
     // Uploads and sets the images of the scene and commits. `outputs`: slots to write besides radiance.
-    // `shadowMaps`: maps that are already in memory, by their names in the scene; others are read from files.
+    // `shadowMaps`: maps and surroundings that are already in memory, by their names in the scene; others are
+    // read from files.
     // The G-buffer must outlive the last update(). `buildOnly`: builds programs with progress instead of
     // committing; show() must follow (prepareFrame()). Throws FileError if a channel is missing.
     SceneFrame(const Device& device, const Image& gbuffer, const SceneFile& scene, LutStore& luts,
@@ -134,6 +135,7 @@ class SceneFrame {
     void setMaterial(const SceneFile& scene, const SceneMaterial& m, LutStore& luts);
     void setLights(const SceneFile& scene);
     // Images of files are kept by their names, wide shadows by their channels.
+    const Image* givenImage(const std::string& file) const;
     PelImageDesc mapOf(const std::string& file, const std::string& channel, const std::string& second);
     const std::vector<PelImageDesc>& normalMap(const std::string& file);
     const std::vector<PelImageDesc>& normalMapLevels(const std::vector<std::string>& files);
@@ -183,9 +185,8 @@ void writeThickness(const std::string& path, int width, int height, const std::v
 SceneFrame prepareFrame(const Device& device, const SceneFile& scene, LutStore& luts,
                         const PelShaderOptions& options = pelShaderOptionsDefaults(),
                         const std::vector<PelImageSlot>& outputs = {});
-// Fills the driver's cache of programs, and `luts`.
+// Fills the driver's cache of programs, and `luts`. `images`: those of the scene that are in no file yet.
 void buildPrograms(const Device& device, const SceneFile& scene, LutStore& luts,
-                   const PelShaderOptions& options = pelShaderOptionsDefaults(),
-                   const std::vector<PelImageSlot>& outputs = {});
+                   const ShadowMaps& images = {});
 
 }  // namespace pellucid::io

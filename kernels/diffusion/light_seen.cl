@@ -7,8 +7,8 @@
 // texel, set to 0 beforehand: the id of the pixel, or PEL_SEEN_OTHER where the pixel does not scatter.
 // Patches of several work-items meet at a texel, so bytes are merged atomically, and the result does not
 // depend on their order: with PEL_HIDDEN the bits of all ids, since only "not 0" matters, otherwise the
-// smallest id. One work-item: PEL_WIDTH pixels of every other row, one lane: every other pixel of it, in a map.
-// Variants: PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1),
+// smallest id. One work-item: PEL_WIDTH pixels of every other row, one lane: every other pixel of it, in a
+// map. Variants: PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1),
 // PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT, PEL_HIDDEN.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/light_space.clh"

@@ -6,8 +6,8 @@
 // disk. Input: the surface (gather_surface.cl), taps and profiles. Output: an image like the irradiance;
 // pixels that nothing changes keep their value. One work-group takes tiles, one work-item columns of their
 // pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT.
-#include "lib/diffusion/item.clh"
 #include "lib/diffusion/gather.clh"
+#include "lib/diffusion/item.clh"
 #include "lib/image/image.clh"
 
 static inline float4 gatherDisk(__global const PelGatherFrame* frame, __global const float* points,

@@ -7,8 +7,8 @@
 // spreads. Output: filter_rows: irradiance and -, four floats a pixel; filter_columns: an image like the
 // irradiance, with pixels that nothing changes as they were. One work-group takes tiles, one work-item
 // columns of their pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT.
-#include "lib/diffusion/item.clh"
 #include "lib/diffusion/gather.clh"
+#include "lib/diffusion/item.clh"
 #include "lib/image/image.clh"
 
 typedef struct Line {

@@ -78,7 +78,8 @@ Sums sumsOf(const sample::LitMesh& lit) {
 
 TEST(SampleGBuffer, OfASphereIsWhatTheCameraSees) {
     const sample::Camera camera{.eye = {210, -180, 90}, .target = {3, -2, 1}};
-    for (auto [width, height] : {std::pair(160, 120), {161, 97}, {96, 128}}) {
+    for (const auto& size : {std::pair(160, 120), {161, 97}, {96, 128}}) {
+        const int width = size.first, height = size.second;
         const sample::GBuffer g =
             sample::renderGBuffer(sample::Scene(sphere().view()), camera, width, height, plain());
         const double aspect = double(width) / height;
@@ -400,19 +401,36 @@ TEST(SampleShadowMap, EmptyAndTiny) {
     EXPECT_THROW(sample::renderShadowMap(scene, sample::DirectionalLight{}, -1), std::invalid_argument);
 }
 
-TEST(SampleSky, ProjectionOfLowOrdersIsExact) {
-    using sample::Rgb;
-    const sample::Harmonics even = sample::projectIrradiance([](Vec3) { return Rgb{1, 1, 1}; });
-    const sample::Harmonics tilted = sample::projectIrradiance([](Vec3 d) {
-        return Rgb{1 + d.x, 1 + 0.5 * d.y - d.z, 3 * d.z * d.z - 1 + d.x * d.y};
-    });
-    for (const Vec3 d : {Vec3{1, 0, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{1, 2, -3}, Vec3{-1, 1, 1}}) {
-        const Vec3 n = normalize(d);
-        for (double v : sample::evaluate(even, n)) EXPECT_NEAR(v, 1, tolerance::sampleQuadrature);
-        const Rgb e = sample::evaluate(tilted, n);
-        EXPECT_NEAR(e[0], 1 + 2 * n.x / 3, tolerance::sampleQuadrature);
-        EXPECT_NEAR(e[1], 1 + 2 * (0.5 * n.y - n.z) / 3, tolerance::sampleQuadrature);
-        EXPECT_NEAR(e[2], (3 * n.z * n.z - 1 + n.x * n.y) / 4, tolerance::sampleQuadrature);
+// Where directions are in OpenEXR's equirectangular images, and what a rectangle sends to a point: 4 asin(a b
+// / sqrt((1 + a^2)(1 + b^2))) for half sides a and b at a distance of 1.
+TEST(Sky, AnEquirectangularImageHasEachDirectionAtItsPlace) {
+    constexpr int height = 256;
+    constexpr double a = 0.3, b = 0.6, pi = std::numbers::pi;
+    for (const char axis : {'y', 'z'}) {
+        const sample::HeadPose pose = sample::poseWithUp(axis);
+        sample::Sky sky;
+        sky.up = pose.up;
+        sky.lamp = sample::headDirection(pose, 80, 25);
+        const std::vector<float> open = equirectangular(sky, pose.front, height);
+        ASSERT_EQ(open.size(), 6u * height * height);
+        for (const double azimuth : {-170.0, -35.0, 0.0, 90.0})
+            for (const double elevation : {-60.0, 5.0, 80.0}) {
+                // The left ear, azimuth 90, is left of the middle.
+                const auto x = size_t(height * (1 - azimuth / 180)),
+                           y = size_t(height * (0.5 - elevation / 180));
+                const sample::Rgb right = sky.radiance(sample::headDirection(pose, azimuth, elevation));
+                for (size_t c = 0; c < 3; ++c)
+                    EXPECT_NEAR(open[3 * (2 * height * y + x) + c], right[c], 0.04) << azimuth << elevation;
+            }
+        sky.panels.push_back({sample::headDirection(pose, -35, 30), a, b, {2, 4, 8}});
+        const std::vector<float> lit = equirectangular(sky, pose.front, height);
+        double sum[3] = {};
+        for (size_t i = 0; i < lit.size(); ++i)
+            sum[i % 3] += (lit[i] - open[i]) *
+                          std::cos(pi * (0.5 - (double(i / 3 / (2 * height)) + 0.5) / height)) * pi / height *
+                          pi / height;
+        const double solidAngle = 4 * std::asin(a * b / std::sqrt((1 + a * a) * (1 + b * b)));
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], (2 << c) * solidAngle, 0.02 * (2 << c));
     }
 }
 
