@@ -220,8 +220,6 @@ PEL_CALL(cl_int, clEnqueueUnmapMemObject, (cl_command_queue a, cl_mem b, void* c
 PEL_CALL(cl_int, clEnqueueNDRangeKernel,
          (cl_command_queue a, cl_kernel b, cl_uint c, const size_t* d, const size_t* e, const size_t* f,
           PEL_WAITS), (a, b, c, d, e, f, waits, list, event))
-PEL_CALL(cl_int, clSetEventCallback,
-         (cl_event a, cl_int b, void(CL_CALLBACK* c)(cl_event, cl_int, void*), void* d), (a, b, c, d))
 PEL_CALL(cl_int, clEnqueueMarkerWithWaitList, (cl_command_queue a, PEL_WAITS), (a, waits, list, event))
 PEL_CALL(cl_int, clEnqueueBarrierWithWaitList, (cl_command_queue a, PEL_WAITS), (a, waits, list, event))
 // clang-format on

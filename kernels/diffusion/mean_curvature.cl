@@ -57,18 +57,40 @@ static inline Point pointAt(const Images* in, uint x, uint y) {
     return point;
 }
 
-// Whether all pixels of a vector exist.
-static inline bool isInside(const Images* in, int x, int y) {
-    return x >= 0 && y >= 0 && x + PEL_WIDTH <= (int)in->frame->width && y < (int)in->frame->height;
+// The pixels of a vector that exist.
+static inline maskw insideAt(const Images* in, int x, int y) {
+    const intw column = lanesw() + x;
+    return (column >= 0) & (column < (int)in->frame->width) &
+           (intw)(y >= 0 && y < (int)in->frame->height ? -1 : 0);
+}
+
+// Lane k takes the value of lane k - by.
+static inline floatw laterLanes(floatw v, int by) {
+    float lanes[PEL_WIDTH];
+    storew(v, 0, lanes);
+#define LATER(k, s) lanes[max((k)-by, 0)]
+    return PEL_LANES(LATER);
+#undef LATER
+}
+
+// The same of pixels from x on that may be negative, where lanes of it exist.
+static inline Point pointFrom(const Images* in, int x, uint y) {
+    Point point = pointAt(in, (uint)max(x, 0), y);
+    if (PEL_WIDTH == 1 || x >= 0) return point;
+    point.p = vec3(laterLanes(point.p.x, -x), laterLanes(point.p.y, -x), laterLanes(point.p.z, -x));
+    point.n = vec3(laterLanes(point.n.x, -x), laterLanes(point.n.y, -x), laterLanes(point.n.z, -x));
+    point.id = as_uintw(laterLanes(as_floatw(point.id), -x));
+    return point;
 }
 
 // Squared length of the step to the next pixel; FLT_MAX without one of the material.
 static inline floatw stepTo(const Images* in, const Point* here, int x, int y) {
-    if (!isInside(in, x, y)) return (floatw)(FLT_MAX);
+    const maskw inside = insideAt(in, x, y);
+    if (!anyw(inside)) return (floatw)(FLT_MAX);
     const Vec3w d = sub3(positionAt(in, (uint)x, (uint)y), here->p);
     const floatw length2 = dot3(d, d);
     return selectw((floatw)(FLT_MAX), length2,
-                   (idAt(in, (uint)x, (uint)y) == here->id) & finitew(length2) & (length2 > 0.0f));
+                   inside & (idAt(in, (uint)x, (uint)y) == here->id) & finitew(length2) & (length2 > 0.0f));
 }
 
 // Differences of positions and of normals along one axis. Returns where there are any.
@@ -77,10 +99,11 @@ static inline maskw differences(const Images* in, const Point* here, int x, int 
     maskw known = (maskw)(0);
     *positions = *normals = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
     for (int side = -1; side <= 1; side += 2) {
-        if (!isInside(in, x + side * dx, y + side * dy)) continue;
-        const Point there = pointAt(in, (uint)(x + side * dx), (uint)(y + side * dy));
+        const maskw inside = insideAt(in, x + side * dx, y + side * dy);
+        if (!anyw(inside)) continue;
+        const Point there = pointFrom(in, x + side * dx, (uint)(y + side * dy));
         const Vec3w d = sub3(there.p, here->p), turned = sub3(there.n, here->n);
-        const maskw same = (there.id == here->id) & (dot3(d, d) < far2) & finite3(there.n) &
+        const maskw same = inside & (there.id == here->id) & (dot3(d, d) < far2) & finite3(there.n) &
                            (dot3(there.n, here->n) > SAME_SIDE);
         const floatw factor = selectw((floatw)(0.0f), (floatw)((float)side), same);
         const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
