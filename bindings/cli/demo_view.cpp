@@ -102,7 +102,7 @@ void addShadow(DemoView& view, const sample::Scene& mesh, const DemoLight& lamp,
 // A studio: the sky, soft boxes, and a window to the left of the camera.
 void addSurroundings(DemoView& view, const DemoHead& head, const DemoViewRequest& request) {
     constexpr int height = 128;
-    constexpr double boxRadiance = 2.4;  // over the lamp's light: 0.3 sr, which add a quarter of that to it
+    constexpr double boxRadiance = 2.4;  // over the lamp's light: 0.28 sr, which add a fifth of it
     sample::Sky sky;
     sky.up = head.pose.up;
     sky.scale = request.skyScale;

@@ -113,16 +113,9 @@ cl::Memory Device::allocate(size_t bytes, const void* initial, bool zeros) {
     }
     if (!memory) {
         cl_int code = CL_SUCCESS;
-        // NVIDIA's driver crashes when such a buffer is released before the queue gets to what uses it.
-        const bool copies = initial && info_.sharedMemory;
-        const cl_mem_flags flags = CL_MEM_READ_WRITE | (copies ? CL_MEM_COPY_HOST_PTR : 0);
-        memory = cl::Memory(clCreateBuffer(context_.get(), flags, bytes,
-                                           copies ? const_cast<void*>(initial) : nullptr, &code));
+        const cl_mem_flags flags = CL_MEM_READ_WRITE | (initial ? CL_MEM_COPY_HOST_PTR : 0);
+        memory = cl::Memory(clCreateBuffer(context_.get(), flags, bytes, const_cast<void*>(initial), &code));
         if (code != CL_SUCCESS) cl::check(code, text("clCreateBuffer(", bytes, " bytes)").c_str());
-        if (initial && !copies) {
-            exchange(memory.get(), bytes, initial, nullptr);
-            initial = nullptr;  // counted already
-        }
     }
     if (const cl_uchar zero = 0; zeros)
         cl::check(clEnqueueFillBuffer(queue(), memory.get(), &zero, 1, 0, bytes, 0, nullptr, nullptr),
