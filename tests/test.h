@@ -30,12 +30,11 @@ void expectRefused(const char* word, const Call& call) {
     expectRefused(std::vector{word}, call);
 }
 
-// What two programs make of one frame. GPUs' compilers contract multiplications and additions of each in
-// their own way.
+// What two programs make of one frame.
 inline void expectSameBits(const pellucid::Device& device, const std::vector<float>& a,
                            const std::vector<float>& b) {
     ASSERT_EQ(a.size(), b.size());
-    const float most = device.info().type == PEL_DEVICE_CPU ? 0 : 2e-6f;
+    const double most = device.info().type == PEL_DEVICE_CPU ? 0 : tolerance::otherProgram;
     for (size_t i = 0; i < a.size(); ++i)
-        ASSERT_LE(std::abs(a[i] - b[i]), most * std::max(1.0f, std::abs(b[i]))) << i;
+        ASSERT_LE(std::abs(a[i] - b[i]), most * std::max(1.0, std::abs(double(b[i])))) << i;
 }

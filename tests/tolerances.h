@@ -172,6 +172,9 @@ constexpr double sampleRandomField = 0.15;  // relative: a sum of 100 waves over
 constexpr double sampleAlbedoMean = 0.03;   // the mean of few, wide random blotches
 constexpr double sampleWaves = 1e-4;        // single-precision sines with phases up to 100
 
+// --- between two programs of one result on a GPU, whose compiler contracts each in its own way ---
+constexpr double otherProgram = 2e-6;  // relative above 1; an H200: 1e-6. On CPUs they have the same bits
+
 // --- what the search of bench/stability may find beyond the ranges of the tests ---
 constexpr double stretchedNormals = 5e-5;  // as normalComponent, triangles 50 times longer than wide
 // of the largest: normals of neighbours differ by 1/300, float leaves 1e-7 of each

@@ -121,11 +121,7 @@ void addSurroundings(DemoView& view, const DemoHead& head, const DemoViewRequest
     view.scene.environment = view.name + "_studio.exr";
     io::Image& image = view.images[view.scene.environment];
     image.width = 2 * height, image.height = height;
-    for (size_t c = 0; c < 3; ++c) {
-        io::Channel channel{std::string(1, "RGB"[c]), io::ChannelType::Float, {}};
-        for (size_t i = c; i < pixels.size(); i += 3) channel.pixels.push_back(pixels[i]);
-        image.channels.push_back(std::move(channel));
-    }
+    image.addInterleaved(std::array<std::string, 3>{"R", "G", "B"}, pixels);
     const sample::Vec3 axes[] = {cross(head.pose.up, head.pose.front), head.pose.up, head.pose.front};
     for (size_t i = 0; i < 3; ++i) {
         float row[3];

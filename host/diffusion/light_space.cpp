@@ -172,7 +172,7 @@ void LightSpace::enqueueHidden(const ScreenMemory& screen, std::vector<cl::Event
 
 void LightSpace::enqueueSums(const ScatterImages& images, const ScreenMemory& screen,
                              std::vector<cl::Event>& events) {
-    const size_t each = device_->info().mathWidth == 1 ? 1 : 16,  // EACH of the kernel
+    const size_t each = device_->info().mathWidth == 1 ? 1 : 1u << 2 * PEL_PART_LEVEL,  // EACH of the kernel
         items = size_t(screen.tileCount) * PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE / each;
     device_->launch(
         events, screen.program, "scatter_light",

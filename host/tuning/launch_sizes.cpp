@@ -50,8 +50,7 @@ LaunchPolicy allowedPolicy(LaunchPolicy policy, const PelDeviceInfo& device) {
         return std::bit_floor(std::clamp(v, low, std::bit_floor(high)));
     };
     return {within(policy.group, 1, most), within(policy.columns, lanes, 4096),
-            within(policy.tableColumns, lanes, 4096),
-            within(policy.texels, 16, most)};  // a group has the 16 parts of a tile (scatter_light.cl)
+            within(policy.tableColumns, lanes, 4096), within(policy.texels, 16, most)};
 }
 
 std::filesystem::path launchFile(const PelDeviceInfo& device) {

@@ -11,7 +11,6 @@
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/windowed.clh"
 
-#define PART_LEVEL 2
 #define LEFT_ALONE 0.5f  // of the tolerance
 
 #if PEL_WIDTH == 1
@@ -98,7 +97,7 @@ static inline float changeByLight(__global const PelDiffusionFrame* frame, __glo
                                   __global const float* nodes, __global const PelLightMap* maps,
                                   uint mapCount, __global const float* lights, uint* texels,
                                   __local float3* partial, __local uint* partsOfGroup) {
-    const uint side = PEL_DIFFUSION_TILE >> PART_LEVEL;
+    const uint side = PEL_DIFFUSION_TILE >> PEL_PART_LEVEL;
     Receiver receiver;
     receiver.rho = 0.0f;
     receiver.normal = (float3)(0.0f);
@@ -109,8 +108,8 @@ static inline float changeByLight(__global const PelDiffusionFrame* frame, __glo
     uint apart = 0;
     for (uint k = LANE; k < side * side; k += LANES) {
         Receiver part;
-        const int own =
-            wholeBlock(frame, pyramid, PART_LEVEL, tileX * side + k % side, tileY * side + k / side, &part);
+        const int own = wholeBlock(frame, pyramid, PEL_PART_LEVEL, tileX * side + k % side,
+                                   tileY * side + k / side, &part);
         if (own >= 0 && !(own == table && distance(part.p, receiver.p) < receiver.margin)) apart |= 1u << k;
     }
     apart = bitsOfGroup(apart, partsOfGroup);
@@ -124,7 +123,7 @@ static inline float changeByLight(__global const PelDiffusionFrame* frame, __glo
         if (!apart) return change;
         const uint k = 31 - clz(apart);
         apart ^= 1u << k;
-        table = wholeBlock(frame, pyramid, PART_LEVEL, tileX * side + k % side, tileY * side + k / side,
+        table = wholeBlock(frame, pyramid, PEL_PART_LEVEL, tileX * side + k % side, tileY * side + k / side,
                            &receiver);
     }
 }
@@ -133,9 +132,10 @@ static inline float changeByLight(__global const PelDiffusionFrame* frame, __glo
 static inline float curvatureOfBlock(__global const PelDiffusionFrame* frame, __global const float* pyramid,
                                      uint x, uint y) {
     __global const PelPyramidLevel* pixels = &frame->level[0];
-    const uint middle = 1u << (PART_LEVEL - 1);
-    return pyramid[pyramidRow(pixels, (int)min((y << PART_LEVEL) + middle, frame->height - 1)) +
-                   min((x << PART_LEVEL) + middle, frame->width - 1) + PEL_PLANE_CURVATURE * pixels->stride];
+    const uint middle = 1u << (PEL_PART_LEVEL - 1);
+    return pyramid[pyramidRow(pixels, (int)min((y << PEL_PART_LEVEL) + middle, frame->height - 1)) +
+                   min((x << PEL_PART_LEVEL) + middle, frame->width - 1) +
+                   PEL_PLANE_CURVATURE * pixels->stride];
 }
 
 static inline bool lightMatters(__global const PelDiffusionFrame* frame, __global const float* block,
@@ -148,7 +148,7 @@ static inline bool lightMatters(__global const PelDiffusionFrame* frame, __globa
     if (number < 0) return false;
     if (tapped) return true;
     const PelProfileTable table = tableAt(tables + number, block, stride);
-    receiver.rho = 2.0f * maxStep(block, stride, PART_LEVEL);
+    receiver.rho = 2.0f * maxStep(block, stride, PEL_PART_LEVEL);
     receiver.margin = 0.0f;
     receiver.directed = table.directed;
     receiver.normal = outwardNormal(frame, block, stride);
@@ -169,14 +169,13 @@ __kernel __attribute__((reqd_work_group_size(PEL_SUM_GROUP, 1, 1))) void light_c
     __global const float* restrict lights, __global uint* parts, __global uint* restrict counters) {
 #if PEL_WIDTH == 1
     __local float3 partial[LANES];
-    __local uint texelsOfGroup, partsOfGroup;
     const uint tile = get_group_id(0);
 #else
     __local float3* const partial = 0;
-    __local uint partsOfGroup;
     const uint tile = itemOfFolded();
     if (tile >= frame->tilesX * frame->tilesY) return;
 #endif
+    __local uint texelsOfGroup, partsOfGroup;
     const uint tileX = tile % frame->tilesX, tileY = tile / frame->tilesX;
     uint texels = 0;
 #if PEL_HIDDEN
@@ -190,9 +189,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_SUM_GROUP, 1, 1))) void light_c
                       max(word >> 24 << 24, packedWeight(weightOfTile(change, least)));
     if (LANE == 0) parts[tile] = as_uint(change);
 #else
-    const uint side = PEL_DIFFUSION_TILE >> PART_LEVEL;
+    const uint side = PEL_DIFFUSION_TILE >> PEL_PART_LEVEL;
     uint reached = 0;
-    __global const PelPyramidLevel* level = &frame->level[PART_LEVEL];
+    __global const PelPyramidLevel* level = &frame->level[PEL_PART_LEVEL];
     for (uint j = 0; j < side; ++j)
         for (uint i = 0; i < side; ++i) {
             const uint x = tileX * side + i, y = tileY * side + j;
@@ -204,12 +203,6 @@ __kernel __attribute__((reqd_work_group_size(PEL_SUM_GROUP, 1, 1))) void light_c
         }
     if (LANE == 0) parts[tile] = reached;
 #endif
-    if (LANE == 0) {
-        if (reached) atomic_inc(&counters[PEL_COUNT_LIGHT_TILES]);
-    }
-#if PEL_WIDTH == 1
-    addOfGroup(&counters[PEL_COUNT_LIGHT_TEXELS], texels, &texelsOfGroup);
-#else
-    if (texels) atomic_add(&counters[PEL_COUNT_LIGHT_TEXELS], texels);
-#endif
+    if (reached && LANE == 0) atomic_inc(&counters[PEL_COUNT_LIGHT_TILES]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_TEXELS], texels, &texelsOfGroup);
 }

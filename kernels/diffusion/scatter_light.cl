@@ -11,7 +11,7 @@
 #include "lib/diffusion/windowed.clh"
 #include "lib/shading/material_id.clh"
 
-#define PART 4                             // pixels along a side
+#define PART (1 << PEL_PART_LEVEL)         // pixels along a side
 #define PARTS (PEL_DIFFUSION_TILE / PART)  // along a side of a tile
 // Pixels of a work-item: with several lanes a part, which takes a CPU 0.8 of the time.
 #if PEL_WIDTH == 1

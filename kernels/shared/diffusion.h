@@ -44,6 +44,7 @@
 #define PEL_TILE_HIDDEN (1u << 16)  // occluded light may come in
 #define PEL_DIFFUSION_TILE 16       // pixels along a side: blocks of level 4
 #define PEL_TILE_LEVEL 4
+#define PEL_PART_LEVEL 2  // blocks of the parts of a tile that light from texels may change
 #define PEL_DIFFUSION_IDS 256
 #define PEL_MAX_IRRADIANCE 1e15f  // larger values count as invalid: sums over areas would overflow
 

@@ -302,11 +302,13 @@ TEST(LutProperties, MoreDistancesOnTheSameLinesChangeNothing) {
     distances.push_back(corners.back());
     values.insert(values.end(), {0, 0, 0});
     const Profile few = Profile::table(corners, R), many = Profile::table(distances, values);
+    const double most =
+        tolerance::lutTexelOther * (Device("").info().type == PEL_DEVICE_CPU ? 1 : 1.1);  // an H200: 1.002
     for (const auto& [form, trueForm] : forms) {
         const auto one = texelsOf(curvatureTable(few, form, 33, sized(560u, 1u), 0.05, 1000)),
                    other = texelsOf(curvatureTable(many, form, 33, sized(560u, 1u), 0.05, 1000));
         for (size_t i = 0; i < one.size(); ++i)
-            ASSERT_NEAR(one[i], other[i], 1.1 * tolerance::lutTexelOther) << "form " << int(form) << " " << i;
+            ASSERT_NEAR(one[i], other[i], most) << "form " << int(form) << " " << i;
     }
 }
 

@@ -103,7 +103,9 @@ TEST(Textures, GiveTheBitsOfBuffers) {
         std::vector<float> colors;
         for (size_t i = 0; i < texels.size(); ++i) {
             if (i % 4 < 3) colors.push_back(texels[i]);
-            if (i % 4 == 3) EXPECT_EQ(texels[i], texels[3]);
+            if (i % 4 == 3) {
+                EXPECT_EQ(texels[i], texels[3]);
+            }
         }
         expectSameBits(device(), colors, target.readAll<float>());
     };
