@@ -203,6 +203,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_SUM_GROUP, 1, 1))) void light_c
         }
     if (LANE == 0) parts[tile] = reached;
 #endif
-    if (reached && LANE == 0) atomic_inc(&counters[PEL_COUNT_LIGHT_TILES]);
+    if (LANE == 0) {  // not by &&: Clang warns where LANE is a constant
+        if (reached) atomic_inc(&counters[PEL_COUNT_LIGHT_TILES]);
+    }
     PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_TEXELS], texels, &texelsOfGroup);
 }
