@@ -224,17 +224,20 @@ class Methods {
     void measureFrames() {
         const FrozenScene& scene = frozenScenes()[0];
         std::optional<Stage> stage;
-        using Frame = std::tuple<const char*, int, int>;
+        // `fill`: height of the head over that of the picture; with 4 only skin is seen.
+        using Frame = std::tuple<const char*, int, int, double>;
         const std::vector<Frame> frames = request_.quick
-                                              ? std::vector<Frame>{{"270p", 480, 270}}
-                                              : std::vector<Frame>{{"1080p", 1920, 1080}, {"4K", 3840, 2160}};
-        for (const auto& [name, width, height] : frames) {
+                                              ? std::vector<Frame>{{"270p", 480, 270, scene.request.fill}}
+                                              : std::vector<Frame>{{"1080p", 1920, 1080, scene.request.fill},
+                                                                   {"4K", 3840, 2160, scene.request.fill},
+                                                                   {"1080p, all skin", 1920, 1080, 4}};
+        for (const auto& [name, width, height, fill] : frames) {
             if (!anyLeft(name)) continue;
-            attempt(name, "frames", [&, name = name, width = width, height = height] {
+            attempt(name, "frames", [&, name = name, width = width, height = height, fill = fill] {
                 say(std::string(name) + ": the scene is made");
                 if (!stage) stage.emplace(device_, scene.body(headFile()), 1);
                 SceneRequest request = scene.request;
-                request.width = width, request.size = height;
+                request.width = width, request.size = height, request.fill = fill;
                 const LitScene s = stage->look(request, profile_);
                 double plain = NAN;
                 for (const Setting& setting : keptSettings(s))

@@ -49,6 +49,7 @@ class Launch {
 
     // Nothing is launched, and the event is empty, if a dimension has no items.
     Event enqueue(cl_command_queue queue, const Range& range);
+    const Kernel& kernel() const { return kernel_; }
 
   private:
     Launch& raw(const void* value, size_t bytes);

@@ -87,10 +87,8 @@ cl::Event Device::launch(cl::Launch& launch, const cl::Range& range, cl_command_
     if (!event) return event;
     std::lock_guard lock(mutex_);
     ++stats_.launches;
-    if (profiling_) {
-        pending_.push_back(event);
-        if (pending_.size() > 512) foldEvents();
-    }
+    pending_.push_back({event, launch.kernel()});
+    if (pending_.size() > 512) foldPending();
     return event;
 }
 
@@ -205,7 +203,7 @@ void Device::fill(cl_mem memory, size_t offset, size_t bytes, uint32_t word) {
 PelDeviceStats Device::stats() {
     finish();
     std::lock_guard lock(mutex_);
-    foldEvents();  // except launches that other threads submitted meanwhile
+    foldPending();  // except launches that other threads submitted meanwhile
     PelDeviceStats result = stats_;
     const cl::ProgramCache::Counts programs = programs_.counts();
     result.programsBuilt = programs.built;
@@ -216,17 +214,13 @@ PelDeviceStats Device::stats() {
 }
 
 // Adds the time of finished launches to the total and forgets them. Unfinished ones are kept.
-void Device::foldEvents() {
-    std::vector<cl::Event> kept;
-    for (cl::Event& event : pending_) {
-        cl_int status = CL_QUEUED;
-        clGetEventInfo(event.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr);
-        if (status > CL_COMPLETE)
-            kept.push_back(event);
-        else
-            stats_.kernelMilliseconds += eventMilliseconds(event);
-    }
-    pending_ = std::move(kept);
+void Device::foldPending() {
+    std::erase_if(pending_, [&](const Pending& launched) {
+        const cl_event event = launched.event.get();
+        if (cl::info<cl_int>(event, CL_EVENT_COMMAND_EXECUTION_STATUS) > CL_COMPLETE) return false;
+        stats_.kernelMilliseconds += eventMilliseconds(launched.event);
+        return true;
+    });
 }
 
 void Device::setProgress(PelProgressCallback callback, void* user) {

@@ -96,7 +96,7 @@ class Device final : public Object {
 
   private:
     ~Device() override;
-    void foldEvents();
+    void foldPending();
     cl::Memory hostsMemory(size_t bytes) const;
     void exchange(cl_mem memory, size_t bytes, const void* source, void* destination);
 
@@ -112,7 +112,13 @@ class Device final : public Object {
 
     std::mutex mutex_;  // guards the rest
     std::map<std::string, cl::Memory> constants_;
-    std::vector<cl::Event> pending_;
+    // Of launches that may be queued still. NVIDIA's driver (580) uses a kernel that is released before its
+    // launch starts.
+    struct Pending {
+        cl::Event event;
+        cl::Kernel kernel;
+    };
+    std::vector<Pending> pending_;
     struct Write {
         cl::Event event;
         std::vector<unsigned char> bytes;
