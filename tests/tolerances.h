@@ -267,6 +267,7 @@ constexpr double headByMapBlue = 23;                  // irradiance alone, from 
 // taps that round to another pixel, where the profile's table ends a node further out
 constexpr double scatterTapsRms = 2e-3;
 constexpr double scatterTapsMost = 4e-2;  // the same, of the worst pixel
+constexpr double scatterHalfRate = 2e-2;  // a pattern of single pixels, of 0.6 in the mean, between samples
 constexpr double scatterManyTaps = 6e-3;  // 256 taps on a disk against every pixel
 constexpr double textureEdge = 1e-2;      // Gaussians sampled at half a sigma, of a step one texel wide
 constexpr double texturePlane = 4.5e-3;   // the narrowest Gaussians are below a texel there

@@ -65,6 +65,9 @@ std::vector<Setting> settings() {
         s.request.scatterTaps = taps;
         s.quick = taps == 8 || taps == 32, s.shown = taps == 32;
     }
+    add("separable", "2 x 25 taps, half rate", PEL_SCATTERING_SEPARABLE).request.halfRate = true;
+    Setting& half = add("disk", "32 taps, half rate", PEL_SCATTERING_SCREEN);
+    half.request.scatterTaps = 32, half.request.halfRate = true;
     for (const double target : {0.0, 5e-4, 2e-3, 5e-3, 1e-2, 2e-2}) {
         Setting& s = add("auto", "error " + text(target, "of white"), PEL_SCATTERING_AUTO);
         s.request.targetError = float(target);
@@ -77,6 +80,7 @@ std::vector<Setting> settings() {
     Setting& light = add("light", "map of 2048 texels", PEL_SCATTERING_LIGHT);
     light.quick = light.shown = true;
     light.tunes = "light";
+    add("light", "half rate", PEL_SCATTERING_LIGHT).request.halfRate = true;
     for (const int size : {512, 1024})
         add("light", "map of " + text(size, "texels"), PEL_SCATTERING_LIGHT).mapSize = size;
     for (const int size : {1024, 2048})

@@ -18,12 +18,14 @@ class GatherPass final : public Pass {
     }
 
     // Neighbours may be as far away as the profile reaches.
-    PassScratch scratch(const ShaderPlan&) const override {
-        return {3 * sizeof(float) + GatherScatter::pixelBytes(form), 0, 0, true};
+    PassScratch scratch(const ShaderPlan& plan) const override {
+        const bool half = plan.state.options.halfRate != 0;
+        return {3 * sizeof(float) + GatherScatter::pixelBytes(form, half), 0, 0, true};
     }
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
-        images_ = {takeIrradiance(plan, device, out_), plan.state.images[PEL_SLOT_SCATTER_WEIGHT]};
+        images_ = {takeIrradiance(plan, device, out_), plan.state.images[PEL_SLOT_SCATTER_WEIGHT],
+                   plan.state.options.halfRate != 0};
         addRadii(plan, images_.of);
         if (!scatter_) scatter_.emplace(device, form);
         materials_.clear();

@@ -117,6 +117,8 @@ void GatherScatter::prepare(const std::map<uint32_t, Material>& materials, const
     const size_t pixels = size_t(frame_.width) * frame_.height;
     points_.resize(*device_, pixels * PEL_GATHER_FLOATS * sizeof(float));
     if (form_ == Form::lines) rows_.resize(*device_, pixels * 4 * sizeof(float));
+    const size_t samples = images.half ? size_t((frame_.width + 1) / 2) * ((frame_.height + 1) / 2) : 0;
+    samples_.resize(*device_, samples * 4 * sizeof(float));
     tiles_.resize(*device_, size_t(frame_.tilesX) * frame_.tilesY * sizeof(cl_uint));
     if (!counters_) counters_ = device_->allocate(PEL_DIFFUSION_COUNTERS * sizeof(cl_uint));
     constants_.send(*device_, frame_);
@@ -135,6 +137,7 @@ std::vector<cl::ProgramKey> GatherScatter::programs(const GatherImages& images) 
               {"PEL_RADIUS_COMPONENT", of.radiusComponent}}},
             {{form_ == Form::disk ? "diffusion/scatter_disk.cl" : "diffusion/scatter_separable.cl"},
              {{"PEL_WIDTH", 1},
+              {"PEL_HALF", int(images.half)},
               {"PEL_FORMAT_IRRADIANCE", formatCode(of.irradiance, 1)},
               {"PEL_FORMAT_OUT", formatCode(of.out, 1)}}}};
 }
@@ -155,9 +158,13 @@ void GatherScatter::enqueue(const GatherImages& images, std::vector<cl::Event>& 
         device_->launch(events, programs[GATHER], kernel, groupRange(*device_, groupsFor(*device_, tiles)),
                         constants_, points_, described_, taps_, nodes_, tiles_, arguments..., counters_);
     };
-    if (form_ == Form::disk) return gather("scatter_disk", of.irradiance, of.out);
+    if (form_ == Form::disk) {
+        if (images.half) gather("sample_disk", samples_);
+        return gather("scatter_disk", samples_, of.irradiance, of.out);
+    }
     gather("filter_rows", rows_);
-    gather("filter_columns", rows_, of.irradiance, of.out);
+    if (images.half) gather("sample_columns", rows_, samples_);
+    gather("filter_columns", rows_, samples_, of.irradiance, of.out);
 }
 
 ScatterCounts GatherScatter::counts() {

@@ -10,7 +10,8 @@ namespace pel {
 
 struct GatherImages {
     ScatterImages of;
-    ImageView weight;  // may be empty
+    ImageView weight;   // may be empty
+    bool half = false;  // gathered at every second pixel of both directions
 };
 
 class GatherScatter {
@@ -37,10 +38,12 @@ class GatherScatter {
     // Programs come from the device's cache.
     void enqueue(const GatherImages& images, std::vector<cl::Event>& events);
     ScatterCounts counts();
-    size_t bytes() const { return points_.bytes() + rows_.bytes() + tableBytes_ + tiles_.bytes(); }
+    size_t bytes() const {
+        return points_.bytes() + rows_.bytes() + tableBytes_ + tiles_.bytes() + samples_.bytes();
+    }
     // Memory of a picture, beside tables.
-    static uint64_t pixelBytes(Form form) {
-        return (PEL_GATHER_FLOATS + (form == Form::lines ? 4 : 0)) * sizeof(float);
+    static uint64_t pixelBytes(Form form, bool half) {
+        return (PEL_GATHER_FLOATS + (form == Form::lines ? 4 : 0) + (half ? 1 : 0)) * sizeof(float);
     }
 
   private:
@@ -52,7 +55,7 @@ class GatherScatter {
     PelGatherFrame frame_{};
     SentConstants<PelGatherFrame> constants_;
     cl::Memory described_, taps_, nodes_, counters_;
-    SizedMemory points_, rows_, tiles_;
+    SizedMemory points_, rows_, samples_, tiles_;
     size_t tableBytes_ = 0;
 };
 

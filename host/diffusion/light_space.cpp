@@ -74,8 +74,8 @@ void LightSpace::describeLevels() {
     sent_ = std::move(now);
 }
 
-void LightSpace::announce(const std::vector<ShaderLight>& lights, bool hidden) {
-    hidden_ = hidden;
+void LightSpace::announce(const std::vector<ShaderLight>& lights, bool hidden, bool half) {
+    hidden_ = hidden, half_ = half && !hidden;
     empty_ = true;
     mapFormat_ = content_ = 0;
     for (const ShaderLight& light : lights) {
@@ -104,6 +104,8 @@ void LightSpace::prepare(const std::vector<ShaderLight>& lights, const float ori
     describeLevels();
     hiddenSums_.resize(*device_, hidden_ ? blocks * sizeof(float) : 0, true);
     parts_.resize(*device_, tileCount * sizeof(cl_uint));
+    constexpr size_t samplesOfTile = size_t(PEL_DIFFUSION_TILE) * PEL_DIFFUSION_TILE / 4;
+    samples_.resize(*device_, half_ ? tileCount * samplesOfTile * 4 * sizeof(float) : 0);
 }
 
 void LightSpace::addFiles(cl::ProgramKey& program) const {
@@ -112,6 +114,7 @@ void LightSpace::addFiles(cl::ProgramKey& program) const {
     program.files.push_back(hidden_ ? "diffusion/light_hidden.cl" : "diffusion/scatter_light.cl");
     program.defines["PEL_SUM_GROUP"] = summingGroup(*device_);
     program.defines["PEL_HIDDEN"] = int(hidden_);
+    program.defines["PEL_HALF"] = int(half_);
     program.defines["PEL_FORMAT_SHADOW_MAP"] = mapFormat_;
     program.defines["PEL_SHADOW_CONTENT"] = content_;
 }
@@ -172,13 +175,20 @@ void LightSpace::enqueueHidden(const ScreenMemory& screen, std::vector<cl::Event
 
 void LightSpace::enqueueSums(const ScatterImages& images, const ScreenMemory& screen,
                              std::vector<cl::Event>& events) {
-    const size_t each = device_->info().mathWidth == 1 ? 1 : 1u << 2 * PEL_PART_LEVEL,  // EACH of the kernel
-        items = size_t(screen.tileCount) * PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE / each;
-    device_->launch(
-        events, screen.program, "scatter_light",
-        groupRange(*device_, groupsFor(*device_, (items - 1) / launchPolicy(*device_).texels + 1)),
-        screen.frame, screen.pyramid, screen.tables, screen.nodes, parts_, mapUpload_, cl_uint(maps_.size()),
-        pyramid_, images.out, screen.counters);
+    const size_t pixels = screen.tileCount * PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE,
+                 group = launchPolicy(*device_).texels;
+    constexpr size_t partsOfTile =
+        (PEL_DIFFUSION_TILE >> PEL_PART_LEVEL) * (PEL_DIFFUSION_TILE >> PEL_PART_LEVEL);
+    const auto launch = [&](const char* kernel, size_t items, const auto&... out) {
+        // EACH of the kernels: with several lanes a work-item takes a part.
+        const size_t each = device_->info().mathWidth == 1 ? 1 : items / (screen.tileCount * partsOfTile);
+        device_->launch(events, screen.program, kernel,
+                        groupRange(*device_, groupsFor(*device_, (items / each - 1) / group + 1)),
+                        screen.frame, screen.pyramid, screen.tables, screen.nodes, parts_, mapUpload_,
+                        cl_uint(maps_.size()), pyramid_, out..., screen.counters);
+    };
+    if (half_) launch("sample_light", pixels / 4, samples_);
+    launch("scatter_light", pixels, samples_, images.out);
 }
 
 }  // namespace pel

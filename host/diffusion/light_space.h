@@ -20,9 +20,9 @@ class LightSpace {
     explicit LightSpace(Ref<Device> device) : device_(std::move(device)) {}
 
     // Sets the variant of the program. `hidden`: occluded texels fill missing weight of the screen;
-    // otherwise all texels are the far part of the sum. All maps have one format and one content. Without a
-    // map nothing is done.
-    void announce(const std::vector<ShaderLight>& lights, bool hidden);
+    // otherwise all texels are the far part of the sum, `half`: at every second pixel of both directions. All
+    // maps have one format and one content. Without a map nothing is done.
+    void announce(const std::vector<ShaderLight>& lights, bool hidden, bool half);
     // `narrowest`: smallest reach of the profiles, length. `blocks`: floats for the occluded light of the
     // screen's blocks.
     void prepare(const std::vector<ShaderLight>& lights, const float origin[3], double narrowest,
@@ -41,8 +41,8 @@ class LightSpace {
     void enqueueSums(const ScatterImages& images, const ScreenMemory& screen, std::vector<cl::Event>& events);
     static uint64_t bytesFor(const std::vector<ShaderLight>& lights, bool hidden);
     size_t bytes() const {
-        return pyramid_.bytes() + seen_.bytes() + hiddenSums_.bytes() + 2 * cells_[0].bytes() +
-               maps_.size() * sizeof(PelLightMap);
+        return pyramid_.bytes() + seen_.bytes() + hiddenSums_.bytes() + samples_.bytes() +
+               2 * cells_[0].bytes() + maps_.size() * sizeof(PelLightMap);
     }
 
   private:
@@ -52,13 +52,13 @@ class LightSpace {
     Ref<Device> device_;
     std::vector<LightMap> maps_;
     std::vector<PelLightMap> sent_;
-    bool empty_ = true, hidden_ = true;
+    bool empty_ = true, hidden_ = true, half_ = false;
     bool known_ = false;        // whether cells_[0] says what the pyramid holds, and seen_ is 0
     uint32_t frameNumber_ = 0;  // of those that were enqueued
     uint32_t mapFormat_ = 0, content_ = 0;
     CachedUpload mapUpload_;
     std::vector<cl::Memory> images_;  // distinct memory of the maps: PelLightMap.buffer
-    SizedMemory pyramid_, seen_, parts_, hiddenSums_;
+    SizedMemory pyramid_, seen_, parts_, hiddenSums_, samples_;
     SizedMemory cells_[2];  // which have flux: before this frame, now
 };
 

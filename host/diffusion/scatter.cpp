@@ -242,7 +242,7 @@ void Scatter::run(const PelScatterParams& params, const ScatterImages& images,
                             PelScattering scattering) {
         if (materials.empty()) return;
         target();
-        const GatherImages all{now, plan.weight};
+        const GatherImages all{now, plan.weight, params.halfRate != 0};
         step(method, all, [&] {
             method.prepare(materials, plan.sources, all, view, params.frameIndex);
             method.enqueue(all, events_);

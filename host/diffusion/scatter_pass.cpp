@@ -34,7 +34,8 @@ class ScatterPass final : public Pass {
     // Neighbours may be as far away as the profile reaches.
     PassScratch scratch(const ShaderPlan& plan) const override {
         const ImageView& frame = plan.state.images[PEL_SLOT_RADIANCE];
-        return {isOwn(plan) ? 0 : 3 * sizeof(float),
+        const bool half = alone && plan.state.options.halfRate;
+        return {(isOwn(plan) ? 0 : 3 * sizeof(float)) + (half ? sizeof(float) : 0),
                 ScreenScatter::bytesFor(frame.width, frame.height, hasRadii(plan)) +
                     LightSpace::bytesFor(plan.state.lights, !alone),
                 0, true};
@@ -44,7 +45,7 @@ class ScatterPass final : public Pass {
         images_ = takeIrradiance(plan, device, out_, isOwn(plan));
         addRadii(plan, images_);
         if (!scatter_) scatter_.emplace(device);
-        scatter_->announce({plan.state.lights, alone});
+        scatter_->announce({plan.state.lights, alone, plan.state.options.halfRate != 0});
         materials_.clear();
         for (const auto& [id, material] : plan.state.materials)
             if (scatters(plan.state, material, alone) && material.params.diffusionRadius > 0) {

@@ -104,7 +104,7 @@ void ScreenScatter::describeLevels(uint32_t width, uint32_t height, bool radii) 
 
 void ScreenScatter::announce(const ScatterLights& lights) {
     lights_ = lights;
-    light_.announce(lights.lights, !lights.alone);
+    light_.announce(lights.lights, !lights.alone, lights.half);
 }
 
 ScreenMemory ScreenScatter::memory(const cl::Program& program) const {

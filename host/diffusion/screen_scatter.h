@@ -22,6 +22,7 @@ bool samePixels(const ImageView& a, const ImageView& b);
 struct ScatterLights {
     std::vector<ShaderLight> lights;
     bool alone = false;  // true: texels are all of the far part; false: only occluded texels are added
+    bool half = false;   // texels alone: summed at every second pixel of both directions
 };
 
 struct ScatterCounts {

@@ -169,6 +169,7 @@ PelShaderOptions withOptionsOf(const SceneFile& scene, PelShaderOptions options)
     options.blurNormals |= own.blurNormals;
     options.rotateTaps |= own.rotateTaps;
     options.everyPixel |= own.everyPixel;
+    options.halfRate |= own.halfRate;
     options.buildInBackground |= own.buildInBackground;
     options.targetError = own.targetError;
     if (options.timeBudget == 0) options.timeBudget = own.timeBudget;

@@ -5,7 +5,8 @@
 // light, times R at its true distance over R on the disk, times the surface of its pixel over that of the
 // disk. Input: the surface (gather_surface.cl), taps and profiles. Output: an image like the irradiance;
 // pixels that nothing changes keep their value. One work-group takes tiles, one work-item columns of their
-// pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT.
+// pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT; PEL_HALF: sample_disk gathers at every second pixel
+// of both directions before, and scatter_disk at those without a sample beside them.
 #include "lib/diffusion/gather.clh"
 #include "lib/diffusion/item.clh"
 #include "lib/image/image.clh"
@@ -18,9 +19,10 @@ static inline float4 gatherDisk(__global const PelGatherFrame* frame, __global c
                  pixel = gathered(points, here, PEL_GATHER_PIXEL);
     const uint id = as_uint(e.w);
     const PelProfileTable table = m->table;
-    const float turn = 6.28318531f * turnOf(x, y, frame->frameIndex);
+    const uint column = x >> PEL_HALF, row = y >> PEL_HALF;  // of the pixels that gather
+    const float turn = 6.28318531f * turnOf(column, row, frame->frameIndex);
     const float cosine = cos(turn), sine = sin(turn);
-    const uint set = ((x & 1u) + 2u * (y & 1u) + frame->frameIndex) % PEL_GATHER_TURNS;
+    const uint set = ((column & 1u) + 2u * (row & 1u) + frame->frameIndex) % PEL_GATHER_TURNS;
     const float perX = 1.0f / pixel.x, perY = 1.0f / pixel.y, perArea = perX * perY;
     float4 light = (float4)(0.0f), weight = (float4)(0.0f), missing = (float4)(0.0f);
     for (uint i = m->firstTap + set * m->taps, end = i + m->taps; i < end; ++i) {
@@ -50,15 +52,45 @@ static inline float4 gatherDisk(__global const PelGatherFrame* frame, __global c
         if (!(flows.x + flows.y + flows.z > 0.0f)) missing += share;
     }
     light += missing * e, weight += missing;
-    const float4 scattered = select(light / weight, e, isless(weight, (float4)(1e-6f)));
-    return e + pixel.w * (scattered - e);
+    return select(light / weight, e, isless(weight, (float4)(1e-6f)));
 }
+
+#if PEL_HALF
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void sample_disk(
+    __global const PelGatherFrame* restrict frame, __global const float* restrict points,
+    __global const PelGatherMaterial* restrict materials, __global const PelGatherTap* restrict taps,
+    __global const float* restrict nodes, __global const uint* restrict tiles, __global float* samples,
+    __global uint* restrict counters) {
+    const uint count = frame->tilesX * frame->tilesY;
+    uint pixels = 0, taken = 0;
+    for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
+        if (!(tiles[tile] & PEL_TILE_GATHERS)) continue;
+        for (uint item = get_local_id(0); item < PEL_TILE_SAMPLES; item += PEL_GROUP) {
+            const uint x = sampleColumn(frame, tile, item), y = sampleRow(frame, tile, item);
+            if (x >= frame->width || y >= frame->height) continue;
+            const size_t at = (size_t)y * frame->width + x;
+            const float4 light = gathered(points, at, PEL_GATHER_LIGHT),
+                         pixel = gathered(points, at, PEL_GATHER_PIXEL);
+            const uint material = frame->materialOf[as_uint(light.w)];
+            if (!material || !(pixel.z > 0.0f)) continue;
+            __global const PelGatherMaterial* m = &materials[material - 1];
+            const float4 s = gatherDisk(frame, points, m, taps, nodes, x, y, &taken);
+            PEL_STORE4(s - ownShare(nodes, m->table, pixel) * light, samples + sampleOf(frame, x, y));
+            ++pixels;
+        }
+    }
+    __local uint sumsOfGroup[2];
+    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_TAPPED], pixels, &sumsOfGroup[0]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taken, &sumsOfGroup[1]);
+}
+#endif
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_disk(
     __global const PelGatherFrame* restrict frame, __global const float* restrict points,
     __global const PelGatherMaterial* restrict materials, __global const PelGatherTap* restrict taps,
-    __global const float* restrict nodes, __global const uint* restrict tiles, __global uchar* irradiance,
-    __global uchar* out, __global uint* restrict counters) {
+    __global const float* restrict nodes, __global const uint* restrict tiles,
+    __global const float* restrict samples, __global uchar* irradiance, __global uchar* out,
+    __global uint* restrict counters) {
     const uint count = frame->tilesX * frame->tilesY;
     uint pixels = 0, taken = 0;
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
@@ -67,15 +99,22 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_dis
         for (uint item = get_local_id(0); item < PEL_TILE_ITEMS; item += PEL_GROUP) {
             const uint x = columnOf(frame, tile, item), y = rowOf(frame, tile, item);
             if (x >= frame->width || y >= frame->height) continue;
-            const size_t at = PEL_GATHER_FLOATS * ((size_t)y * frame->width + x);
-            const uint id = gathers ? as_uint(points[at + PEL_GATHER_LIGHT + 3]) : 0;
-            const uint material = frame->materialOf[id];
+            const size_t at = (size_t)y * frame->width + x;
+            const float4 light = gathered(points, at, PEL_GATHER_LIGHT),
+                         pixel = gathered(points, at, PEL_GATHER_PIXEL);
+            const uint material = gathers ? frame->materialOf[as_uint(light.w)] : 0;
             const Span to = imageSpan(out, &frame->out, x, y);
-            if (material && points[at + PEL_GATHER_PIXEL + 2] > 0.0f) {
-                const float4 s =
-                    gatherDisk(frame, points, &materials[material - 1], taps, nodes, x, y, &taken);
-                storeColor(PEL_FORMAT_OUT, to, vec3(s.x, s.y, s.z), 1);
-                ++pixels;
+            if (material && pixel.z > 0.0f) {
+                __global const PelGatherMaterial* m = &materials[material - 1];
+                float4 s;
+#if PEL_HALF
+                if (meanOfSamples(frame, points, samples, x, y, &s))
+                    s += ownShare(nodes, m->table, pixel) * light;
+                else
+#endif
+                    s = gatherDisk(frame, points, m, taps, nodes, x, y, &taken), ++pixels;
+                const float4 mixed = light + pixel.w * (s - light);
+                storeColor(PEL_FORMAT_OUT, to, vec3(mixed.x, mixed.y, mixed.z), 1);
             } else if (!frame->inPlace) {
                 storeColor(PEL_FORMAT_OUT, to,
                            loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y)),

@@ -5,7 +5,8 @@
 // weights, is blended in where it is the more reliable one. At the receiver itself irradiance is known.
 // Input: both pyramids, the flags of light_classify. Output: the flagged parts, in an image like the
 // irradiance; other pixels keep their value. One work-item: one pixel, with several lanes a part of
-// a tile. Variants: PEL_HIDDEN is 0, PEL_FORMAT_OUT.
+// a tile. Variants: PEL_HIDDEN is 0, PEL_FORMAT_OUT; PEL_HALF: sample_light sums at every second pixel of both
+// directions before, and scatter_light at those without a sample beside them.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/lit_surface.clh"
 #include "lib/diffusion/windowed.clh"
@@ -14,11 +15,9 @@
 #define PART (1 << PEL_PART_LEVEL)         // pixels along a side
 #define PARTS (PEL_DIFFUSION_TILE / PART)  // along a side of a tile
 // Pixels of a work-item: with several lanes a part, which takes a CPU 0.8 of the time.
-#if PEL_WIDTH == 1
-#define EACH 1
-#else
-#define EACH (PART * PART)
-#endif
+#define EACH(pixelsOfPart) (PEL_WIDTH == 1 ? 1 : (pixelsOfPart))
+#define SAMPLES_ALIKE \
+    16.0f  // squared distance over the area of a pixel; farther: another part of the surface
 // Radii of two windows: of the irradiance of the pixel itself, in points of a texel, and of the camera's
 // samples, in texels. Both are lengths on a surface that faces the light at this cosine or a larger one:
 // points lie closer together along the slope, and the ring of texels that are summed as points ends
@@ -194,31 +193,122 @@ static inline bool scatterPixel(__global const PelDiffusionFrame* frame, __globa
     return true;
 }
 
+// Of pixel `at` of a tile, part by part: one of `across` along a side of a part, `step` apart.
+static inline uint2 pixelOfTile(__global const PelDiffusionFrame* frame, uint tile, uint at, uint across) {
+    const uint part = at / (across * across), step = PART / across;
+    return (uint2)(tile % frame->tilesX * PEL_DIFFUSION_TILE + part % PARTS * PART + at % across * step,
+                   tile / frame->tilesX * PEL_DIFFUSION_TILE + part / PARTS * PART +
+                       at / across % across * step);
+}
+
+#if PEL_HALF
+#define SAMPLES (PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE / 4)  // of a tile
+
+static inline Pixel pixelIn(__global const PelDiffusionFrame* frame, __global const float* pyramid, uint x,
+                            uint y) {
+    return pixelAt(pyramid + pyramidRow(&frame->level[0], (int)y) + x, frame->level[0].stride);
+}
+
+// Light of the pixel itself, which samples leave out.
+static inline float3 ownLightOf(__global const PelDiffusionFrame* frame, __global const float* pyramid,
+                                __global const PelProfileTable* tables, __global const float* nodes, uint x,
+                                uint y, const Pixel* here) {
+    const PelProfileTable table =
+        tableAt(tables + frame->tableOf[here->id] - 1, pyramid + pyramidRow(&frame->level[0], (int)y) + x,
+                frame->level[0].stride);
+    return shareOfPixel(nodes, table, here->area) * here->e;
+}
+
+// The mean of the samples round a pixel that are on its surface. Returns false if there are none.
+static inline bool meanOfLight(__global const PelDiffusionFrame* frame, __global const float* pyramid,
+                               __global const uint* parts, __global const float* samples, uint x, uint y,
+                               const Pixel* here, float3* mean) {
+    float4 sum = (float4)(0.0f);
+    for (uint sy = y & ~1u; sy <= y + (y & 1) && sy < frame->height; sy += 2)
+        for (uint sx = x & ~1u; sx <= x + (x & 1) && sx < frame->width; sx += 2) {
+            const uint tile = sy / PEL_DIFFUSION_TILE * frame->tilesX + sx / PEL_DIFFUSION_TILE,
+                       inX = sx % PEL_DIFFUSION_TILE, inY = sy % PEL_DIFFUSION_TILE;
+            if (!(parts[tile] >> (inY / PART * PARTS + inX / PART) & 1)) continue;
+            const Pixel there = pixelIn(frame, pyramid, sx, sy);
+            const float3 d = there.p - here->p;
+            if (there.id == here->id && there.area > 0.0f &&
+                dot(d, d) <= SAMPLES_ALIKE * fmax(there.area, here->area))
+                sum += vload4(tile * SAMPLES + inY / 2 * (PEL_DIFFUSION_TILE / 2) + inX / 2, samples);
+        }
+    if (sum.w > 0.0f) *mean = sum.xyz / sum.w;
+    return sum.w > 0.0f;
+}
+
+// Writes light from beyond the pixel, and 1; 0 where the pixel keeps its irradiance.
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void sample_light(
+    __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
+    __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
+    __global const uint* restrict parts, __global const PelLightMap* restrict maps, uint mapCount,
+    __global const float* restrict lights, __global float* samples, __global uint* restrict counters) {
+    const uint each = EACH(PART * PART / 4), runs = max(SAMPLES / (PEL_GROUP * each), 1u),
+               count = frame->tilesX * frame->tilesY * runs;
+    uint pixels = 0, blocks = 0, texels = 0;
+    for (uint run = get_group_id(0); run < count; run += get_num_groups(0)) {
+        const uint tile = run / runs, first = (run % runs * PEL_GROUP + get_local_id(0)) * each;
+        if (first >= SAMPLES || !(parts[tile] >> first / (PART * PART / 4) & 1)) continue;
+        for (uint at = first; at < first + each; ++at) {
+            const uint2 place = pixelOfTile(frame, tile, at, PART / 2);
+            const uint x = place.x, y = place.y;
+            if (x >= frame->width || y >= frame->height) continue;
+            const Pixel here = pixelIn(frame, pyramid, x, y);
+            float3 s;
+            float4 sample = (float4)(0.0f);
+            if (here.area > 0.0f && scatterPixel(frame, pyramid, tables, nodes, maps, mapCount, lights,
+                                                 (int)x, (int)y, &here, &blocks, &texels, &s)) {
+                sample =
+                    (float4)(fmax(s, (float3)(0.0f)) - ownLightOf(frame, pyramid, tables, nodes, x, y, &here),
+                             1.0f);
+                ++pixels;
+            }
+            const uint inTile =
+                y % PEL_DIFFUSION_TILE / 2 * (PEL_DIFFUSION_TILE / 2) + x % PEL_DIFFUSION_TILE / 2;
+            vstore4(sample, tile * SAMPLES + inTile, samples);
+        }
+    }
+    __local uint sumsOfGroup[2];
+    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_PIXELS], pixels, &sumsOfGroup[0]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_TEXELS], texels, &sumsOfGroup[1]);
+}
+#endif
+
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_light(
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global const uint* restrict parts, __global const PelLightMap* restrict maps, uint mapCount,
-    __global const float* restrict lights, __global uchar* out, __global uint* restrict counters) {
+    __global const float* restrict lights, __global const float* restrict samples, __global uchar* out,
+    __global uint* restrict counters) {
     // Tiles, part by part, in runs of as many work-items as a group has.
-    const uint size = PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE, runs = max(size / (PEL_GROUP * EACH), 1u),
-               count = frame->tilesX * frame->tilesY * runs;
+    const uint size = PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE, each = EACH(PART * PART),
+               runs = max(size / (PEL_GROUP * each), 1u), count = frame->tilesX * frame->tilesY * runs;
     uint pixels = 0, blocks = 0, texels = 0;
     for (uint run = get_group_id(0); run < count; run += get_num_groups(0)) {
-        const uint tile = run / runs, first = (run % runs * PEL_GROUP + get_local_id(0)) * EACH,
-                   part = first / (PART * PART);
-        if (first >= size || !(parts[tile] >> part & 1)) continue;
-        for (uint at = first; at < first + EACH; ++at) {
-            const uint x = tile % frame->tilesX * PEL_DIFFUSION_TILE + part % PARTS * PART + at % PART,
-                       y = tile / frame->tilesX * PEL_DIFFUSION_TILE + part / PARTS * PART + at / PART % PART;
+        const uint tile = run / runs, first = (run % runs * PEL_GROUP + get_local_id(0)) * each;
+        if (first >= size || !(parts[tile] >> first / (PART * PART) & 1)) continue;
+        for (uint at = first; at < first + each; ++at) {
+            const uint2 place = pixelOfTile(frame, tile, at, PART);
+            const uint x = place.x, y = place.y;
             if (x >= frame->width || y >= frame->height) continue;
             const Pixel here =
                 pixelAt(pyramid + pyramidRow(&frame->level[0], (int)y) + x, frame->level[0].stride);
+            if (!(here.area > 0.0f)) continue;
             float3 s;
-            if (!(here.area > 0.0f) || !scatterPixel(frame, pyramid, tables, nodes, maps, mapCount, lights,
-                                                     (int)x, (int)y, &here, &blocks, &texels, &s))
-                continue;
+#if PEL_HALF
+            if (meanOfLight(frame, pyramid, parts, samples, x, y, &here, &s)) {
+                s += ownLightOf(frame, pyramid, tables, nodes, x, y, &here);
+            } else
+#endif
+            {
+                if (!scatterPixel(frame, pyramid, tables, nodes, maps, mapCount, lights, (int)x, (int)y,
+                                  &here, &blocks, &texels, &s))
+                    continue;
+                ++pixels;
+            }
             s = fmax(s, (float3)(0.0f));
-            ++pixels;
             // One lane of the vector that holds the pixel.
             const uint start = vectorStart(x, frame->width);
             const maskw mine = lanesw() + (int)start == (intw)((int)x);

@@ -6,7 +6,9 @@
 // weighted by the line spread at its true distance. Input: the surface (gather_surface.cl), pieces and line
 // spreads. Output: filter_rows: irradiance and -, four floats a pixel; filter_columns: an image like the
 // irradiance, with pixels that nothing changes as they were. One work-group takes tiles, one work-item
-// columns of their pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT.
+// columns of their pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT; PEL_HALF: rows are filtered at even
+// columns alone, sample_columns filters at every second pixel of both directions, and filter_columns at those
+// without a sample beside them.
 #include "lib/diffusion/gather.clh"
 #include "lib/diffusion/item.clh"
 #include "lib/image/image.clh"
@@ -117,7 +119,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void filter_rows
             const uint material = frame->materialOf[as_uint(light.w)];
             const float4 pixel = gathered(points, at, PEL_GATHER_PIXEL);
             // Pixels that do not scatter are written too, since the other filter reads them.
-            if (material && pixel.x > 0.0f && pixel.z != 0.0f)
+            const bool kept = PEL_HALF & x & 1;
+            if (material && pixel.x > 0.0f && pixel.z != 0.0f && !kept)
                 light = filterPixel(frame, points, points + PEL_GATHER_LIGHT, PEL_GATHER_FLOATS,
                                     &materials[material - 1], taps, nodes, x, y, false, &taken);
             PEL_STORE4(light, rows + 4 * at);
@@ -127,11 +130,42 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void filter_rows
     PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taken, &sumsOfGroup[0]);
 }
 
+#if PEL_HALF
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void sample_columns(
+    __global const PelGatherFrame* restrict frame, __global const float* restrict points,
+    __global const PelGatherMaterial* restrict materials, __global const PelGatherTap* restrict taps,
+    __global const float* restrict nodes, __global const uint* restrict tiles, __global const float* rows,
+    __global float* samples, __global uint* restrict counters) {
+    const uint count = frame->tilesX * frame->tilesY;
+    uint pixels = 0, taken = 0;
+    for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
+        if (!(tiles[tile] & PEL_TILE_GATHERS)) continue;
+        for (uint item = get_local_id(0); item < PEL_TILE_SAMPLES; item += PEL_GROUP) {
+            const uint x = sampleColumn(frame, tile, item), y = sampleRow(frame, tile, item);
+            if (x >= frame->width || y >= frame->height) continue;
+            const size_t at = (size_t)y * frame->width + x;
+            const float4 light = gathered(points, at, PEL_GATHER_LIGHT),
+                         pixel = gathered(points, at, PEL_GATHER_PIXEL);
+            const uint material = frame->materialOf[as_uint(light.w)];
+            if (!material || !(pixel.z > 0.0f)) continue;
+            __global const PelGatherMaterial* m = &materials[material - 1];
+            const float4 s = filterPixel(frame, points, rows, 4, m, taps, nodes, x, y, true, &taken);
+            PEL_STORE4(s - ownShare(nodes, m->table, pixel) * light, samples + sampleOf(frame, x, y));
+            ++pixels;
+        }
+    }
+    __local uint sumsOfGroup[2];
+    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_TAPPED], pixels, &sumsOfGroup[0]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taken, &sumsOfGroup[1]);
+}
+#endif
+
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void filter_columns(
     __global const PelGatherFrame* restrict frame, __global const float* restrict points,
     __global const PelGatherMaterial* restrict materials, __global const PelGatherTap* restrict taps,
     __global const float* restrict nodes, __global const uint* restrict tiles, __global const float* rows,
-    __global uchar* irradiance, __global uchar* out, __global uint* restrict counters) {
+    __global const float* restrict samples, __global uchar* irradiance, __global uchar* out,
+    __global uint* restrict counters) {
     const uint count = frame->tilesX * frame->tilesY;
     uint pixels = 0, taken = 0;
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
@@ -146,11 +180,16 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void filter_colu
             const float4 pixel = gathered(points, at, PEL_GATHER_PIXEL);
             const Span to = imageSpan(out, &frame->out, x, y);
             if (material && pixel.z > 0.0f) {
-                const float4 s = filterPixel(frame, points, rows, 4, &materials[material - 1], taps, nodes, x,
-                                             y, true, &taken);
+                __global const PelGatherMaterial* m = &materials[material - 1];
+                float4 s;
+#if PEL_HALF
+                if (meanOfSamples(frame, points, samples, x, y, &s))
+                    s += ownShare(nodes, m->table, pixel) * light;
+                else
+#endif
+                    s = filterPixel(frame, points, rows, 4, m, taps, nodes, x, y, true, &taken), ++pixels;
                 const float4 mixed = light + pixel.w * (s - light);
                 storeColor(PEL_FORMAT_OUT, to, vec3(mixed.x, mixed.y, mixed.z), 1);
-                ++pixels;
             } else if (!frame->inPlace) {
                 storeColor(PEL_FORMAT_OUT, to,
                            loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y)),

@@ -241,7 +241,7 @@ struct ShadeRequest {
     bool faceworks = false;  // tables and filter as FaceWorks makes them, of the profile; with a tableSize
     uint32_t materials = 1;  // ids that have the material, from 1
     bool count = true;       // PelShaderOptions.countPixels
-    bool everyPixel = false;
+    bool everyPixel = false, halfRate = false;
     float timeBudget = 0;
     std::vector<float> texture = {};  // a scattered one, square; the body has texture coordinates
 };
@@ -274,6 +274,7 @@ inline Shot shoot(const Device& device, const LitScene& s, const Profile& profil
     if (request.curvature) f.images[PEL_SLOT_CURVATURE] = s.gbuffer.curvature.data;
     f.options.millimetresPerUnit = float(s.unit);
     f.options.targetError = request.targetError;
+    f.options.halfRate = request.halfRate;
     f.options.timeBudget = request.timeBudget;
     f.texture = request.texture;
     for (size_t i = 0; !f.texture.empty() && i < s.covered.size(); ++i)

@@ -76,7 +76,7 @@ TEST(Scatter, TapsAreThoseOfTheOracle) {
     Picture p = scene();
     p.params.frameIndex = 3;
     p.params.everywhere = 1;
-    reference::TapScene s{p.exact(), 0, 3, {}, {}, {}};
+    reference::TapScene s{p.exact(), 0, 3, 1, {}, {}, {}};
     std::vector<float> weights;
     for (size_t i = 0; i < p.pixels(); ++i) {
         s.weights.push_back(0.25 + 0.75 * double(i % 7) / 6);
@@ -95,6 +95,72 @@ TEST(Scatter, TapsAreThoseOfTheOracle) {
                         double(border), d.rms, d.most);
             EXPECT_LT(d.rms, tolerance::scatterTapsRms);
             EXPECT_LT(d.most, tolerance::scatterTapsMost);
+        }
+}
+
+// Each pixel of an even column and row is a sample; others lie between those of their surface, and gather
+// where there are none.
+TEST(Scatter, HalfRateIsThatOfTheOracle) {
+    Picture p = scene();
+    p.params.frameIndex = 3;
+    p.params.everywhere = 1;
+    for (size_t i = 0; i < p.pixels(); ++i)  // a line of one pixel, in an odd column
+        if (i % p.width % 16 == 4 || i % p.width % 16 == 6) p.ids[i] = 0;
+    reference::TapScene s{p.exact(), 0, 3, 2, {}, {}, {}};
+    std::vector<float> radii;
+    for (size_t i = 0; i < p.pixels(); ++i) {
+        s.radii.push_back(i % 96 < 40 ? 1 : 0.5);
+        radii.insert(radii.end(), {1.0f, float(s.radii[i])});
+    }
+    for (const auto& [method, taps] : {std::pair{separable, 25u}, {screen, 16u}}) {
+        s.taps = int(taps);
+        const auto gathered = method == screen ? reference::scatterOnDisk(s, *reference::skinProfile())
+                                               : reference::scatterSeparably(s, *reference::skinProfile());
+        const auto between = reference::betweenSamples(s, *reference::skinProfile(), gathered);
+        p.params.halfRate = 0;
+        const Result whole = scatterBy(p, 1, controlsOf(method, taps), radii);
+        p.params.halfRate = 1;
+        const Result half = scatterBy(p, 1, controlsOf(method, taps), radii);
+        std::vector<Vec3> exact = gathered;
+        Picture compared = p;
+        size_t alone = 0;
+        for (size_t i = 0; i < p.pixels(); ++i) {
+            if (between[i]) exact[i] = *between[i];
+            alone += p.ids[i] && !between[i];
+            // Lines of pixels without a sample are filtered along their columns alone.
+            if (!between[i] && method == separable) compared.ids[i] = 0;
+        }
+        EXPECT_GT(alone, 50u);
+        const Difference d = difference(compared, half.scattered, exact);
+        std::printf("method %d, half rate: rms %.1e, most %.1e\n", int(method), d.rms, d.most);
+        EXPECT_LT(d.rms, tolerance::scatterTapsRms);
+        EXPECT_LT(d.most, tolerance::scatterTapsMost);
+        EXPECT_LT(half.stats.taps, whole.stats.taps * (method == screen ? 0.35 : 0.5));
+        EXPECT_LT(half.stats.pixelsTapped, 0.35 * double(whole.stats.pixelsTapped));
+        EXPECT_GT(half.stats.pixelsTapped, alone);
+    }
+}
+
+// Edges of light and a pattern of a few pixels stay nearly as sharp as they are at full rate, and even light
+// keeps its value.
+TEST(Scatter, HalfRateKeepsDetail) {
+    for (const auto& [method, taps] : {std::pair{separable, 25u}, {screen, 64u}})
+        for (float scale : {0.03f, 0.1f, 0.3f, 1.0f, 3.0f}) {
+            Picture p = plane(97, 61, 0.2, [](double x, double y) {
+                const double e = 0.5 + (x > 9 ? 0.2 : -0.2) + 0.2 * std::sin(x * 5.2) * std::sin(y * 6.1);
+                return Vec3{e, e, e};
+            });
+            p.params.everywhere = 1;
+            const auto whole = scatterBy(p, scale, controlsOf(method, taps)).scattered;
+            p.params.halfRate = 1;
+            const Difference d =
+                difference(p, scatterBy(p, scale, controlsOf(method, taps)).scattered, whole);
+            std::printf("method %d, scale %g: rms %.1e, most %.1e of %.1e\n", int(method), double(scale),
+                        d.rms, d.most, difference(p, p.irradiance, whole).rms);
+            EXPECT_LT(d.rms, tolerance::scatterHalfRate) << int(method) << ", " << scale;
+            for (float& e : p.irradiance) e = 0.7f;
+            const auto even = scatterBy(p, scale, controlsOf(method, taps)).scattered;
+            EXPECT_LE(difference(p, even, p.irradiance).most, 4e-6);
         }
 }
 

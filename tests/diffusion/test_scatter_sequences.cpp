@@ -37,6 +37,8 @@ struct Step {
 std::vector<Step> steps() {
     Picture everywhere = stripes(60, 44, 3, 2);
     everywhere.params.everywhere = 1;
+    Picture halfRate = stripes(61, 43, 4, 2);
+    halfRate.params.halfRate = 1;
     const auto half = [](double edge, Vec3 lit, Vec3 dark) {
         return [=](double x, double) { return x < edge ? lit : dark; };
     };
@@ -52,6 +54,8 @@ std::vector<Step> steps() {
             {"another scale", small, gaussian(1), 0.3f},
             {"weights", small, gaussian(1), 0.3f, true},
             {"every tile", everywhere, gaussian(0.4f), 2},
+            {"half rate", halfRate, gaussian(0.4f), 2},
+            {"half rate with weights", halfRate, gaussian(0.4f), 1, true},
             {"another profile", stripes(60, 44, 3, 2), Profile::skin(), 1},
             {"a ball", ball(50, 10, 0.42, normalized(Vec3{1, 0.3, 0.2})), Profile::skin(), 1}};
 }
@@ -117,6 +121,7 @@ TEST(ScatterSequences, EachFrameEqualsThatOfANewShader) {
                               frame % 3 ? Profile::skin() : gaussian(0.5f));
             Picture& p = f.picture;
             f.materials = 2;
+            f.options.halfRate = frame % 5 < 2;
             for (size_t i = 0; i < p.pixels(); ++i) {
                 const bool left = i % p.width < p.width / 2;
                 if (p.ids[i] && !left) p.ids[i] = frame % 4 == 3 ? 0 : frame % 3 == 1 ? 2 : 1;
@@ -131,6 +136,22 @@ TEST(ScatterSequences, EachFrameEqualsThatOfANewShader) {
                        "frame " + std::to_string(frame) + ", method " + std::to_string(int(method)));
             ++frame;
         }
+}
+
+TEST(ScatterSequences, AShaderTakesHalfRate) {
+    for (PelScattering method : {separable, byLight}) {
+        Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{0.8, 0.2, 0.1}), 128)}, 48, method, 1,
+                          Profile::skin());
+        const auto whole = f.shade();
+        f.options.halfRate = 1;
+        const auto half = f.shade();
+        EXPECT_LT(double(half.stats.pixelsScattered), 0.4 * double(whole.stats.pixelsScattered));
+        const Difference d = difference(f.picture, half.light, whole.light),
+                         all = difference(f.picture, f.picture.irradiance, whole.light);
+        std::printf("method %d: rms %.1e of %.1e\n", int(method), d.rms, all.rms);
+        EXPECT_LT(d.rms, tolerance::scatterHalfRate);
+        EXPECT_GT(d.rms, 1e-5);
+    }
 }
 
 // A texture with two islands, whose mesh moves: lights, profiles, scales, Gaussians and albedo that follow

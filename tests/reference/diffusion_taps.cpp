@@ -5,7 +5,7 @@
 namespace reference {
 namespace {
 
-constexpr double mostGain = 8, leastCosine = 0.25;
+constexpr double mostGain = 8, leastCosine = 0.25, alike = 16;
 
 // A rising function as a table, with its inverse by bisection.
 class Rising {
@@ -60,6 +60,13 @@ double at(const std::vector<double>& values, size_t i) {
     return values.empty() ? 1 : values[i];
 }
 
+// Light on a plane from within a distance, of that from within the reach.
+Rising enclosedLight(const Profile& profile) {
+    return Rising(scatterReach(profile), [&](double a, double b) {
+        return enclosedEnergy(profile, b) - (a > 0 ? enclosedEnergy(profile, a) : Rgb{});
+    });
+}
+
 Rgb ratio(Rgb a, Rgb b, double gain) {
     Rgb r;
     for (int c = 0; c < 3; ++c) r[c] = b[c] > 0 ? std::min(a[c] / b[c], mostGain) * gain : 0;
@@ -79,9 +86,7 @@ Rgb mixed(const TapScene& s, size_t i, Rgb light, Rgb weight) {
 std::vector<Rgb> scatterOnDisk(const TapScene& s, const Profile& profile) {
     const ScatterPicture& picture = s.picture;
     const double reach = scatterReach(profile);
-    const Rising light(reach, [&](double a, double b) {
-        return enclosedEnergy(profile, b) - (a > 0 ? enclosedEnergy(profile, a) : Rgb{});
-    });
+    const Rising light = enclosedLight(profile);
     const auto quantile = [&](double part) {
         return bisected(0, reach, [&](double r) {
             const Rgb v = light.value(r);
@@ -98,13 +103,14 @@ std::vector<Rgb> scatterOnDisk(const TapScene& s, const Profile& profile) {
         for (int i = 0; i < s.taps; ++i) radii.push_back(quantile((i + (set + 0.5) / 4) / s.taps));
         for (int y = 0; y < picture.height; ++y)
             for (int x = 0; x < picture.width; ++x) {
-                if ((x % 2 + 2 * (y % 2) + s.frame) % 4 != set) continue;
+                const int column = x / s.rate, row = y / s.rate;
+                if ((column % 2 + 2 * (row % 2) + s.frame) % 4 != set) continue;
                 const size_t here = picture.at(x, y);
                 const Surface& own = all[here];
                 const double wide = at(s.radii, here);
                 if (!own.there || !(own.pixel > 0) || !(wide > 0)) continue;
-                const uint32_t turn =
-                    uint32_t(x) * 3242174889u + uint32_t(y) * 2447445414u + uint32_t(s.frame) * 2654435769u;
+                const uint32_t turn = uint32_t(column) * 3242174889u + uint32_t(row) * 2447445414u +
+                                      uint32_t(s.frame) * 2654435769u;
                 Rgb sum{}, weights{};
                 for (int i = 0; i < s.taps; ++i) {
                     const double angle = pi * (3 - std::sqrt(5.0)) * i + 2 * pi * turn / 4294967296.0;
@@ -133,6 +139,39 @@ std::vector<Rgb> scatterOnDisk(const TapScene& s, const Profile& profile) {
                 result[here] = mixed(s, here, sum, weights);
             }
     }
+    return result;
+}
+
+std::vector<std::optional<Rgb>> betweenSamples(const TapScene& s, const Profile& profile,
+                                               const std::vector<Rgb>& gathered) {
+    const ScatterPicture& picture = s.picture;
+    const Rising light = enclosedLight(profile);
+    const std::vector<Surface> all = surfaces(picture);
+    const auto gathers = [&](size_t i) {
+        return all[i].there && all[i].pixel > 0 && at(s.radii, i) > 0 && at(s.weights, i) > 0;
+    };
+    const auto ownLight = [&](size_t i) {
+        return light.value(all[i].pixel / std::sqrt(pi) / at(s.radii, i)) * picture.irradiance[i];
+    };
+    std::vector<std::optional<Rgb>> result(all.size());
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) {
+            const size_t here = picture.at(x, y);
+            if (!gathers(here)) continue;
+            Rgb sum{};
+            int count = 0;
+            for (int v = std::max(y - 1, 0); v <= std::min(y + 1, picture.height - 1); ++v)
+                for (int u = std::max(x - 1, 0); u <= std::min(x + 1, picture.width - 1); ++u) {
+                    const size_t there = picture.at(u, v);
+                    const bool own = (x % 2 || u == x) && (y % 2 || v == y);
+                    if (u % 2 || v % 2 || !own || !gathers(there) || picture.ids[there] != picture.ids[here])
+                        continue;
+                    const double apart = length(all[there].p - all[here].p);
+                    if (apart * apart > alike * std::max(all[here].area, all[there].area)) continue;
+                    sum = sum + gathered[there] - ownLight(there), ++count;
+                }
+            if (count) result[here] = sum / double(count) + ownLight(here);
+        }
     return result;
 }
 

@@ -150,6 +150,9 @@
       "between others ([shading.md](shading.md#between-pixels))") \
     X(FREE_UINT, frameIndex, 0, 0, PEL_FINITE, PEL_NONE, "", "frame_index", PEL_NO_SLIDER, \
       "each number gives another random placement of scattering taps, for hosts that average frames") \
+    X(FREE_UINT, halfRate, 0, 0, 1, PEL_NONE, "", "half_rate", PEL_NO_SLIDER, \
+      "1: `light`, `separable`, and `screen` with taps compute every second pixel along both axes " \
+      "([shading.md](shading.md#half-rate))") \
     X(FREE_UINT, buildInBackground, 0, 0, 1, PEL_NONE, "", "build_in_background", PEL_NO_SLIDER, \
       "1: programs that show frame after frame do not wait for kernels that must be built, and shade by " \
       "\"none\" until then ([devices.md](devices.md#the-first-picture)); those that write a picture wait") \
