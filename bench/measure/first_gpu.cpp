@@ -76,10 +76,13 @@ void predict(Json& pass, const Json& row, const Json& device, const Json& warps)
     const Json& methods = warps.at("methods");
     std::string method = row.at("method");
     pass["predicted_ms"] = nullptr;
+    // Counted at full rate.
+    const std::string name = pass.at("name"), setting = row.at("setting");
+    if (name.starts_with("scatter_") && setting.ends_with("half rate")) return;
     if (method == "Lambert") method = "none";
     // Tables stand in for what `shade` reads elsewhere; passes before it are the same for all methods.
     if (!methods.contains(method)) {
-        if (pass.at("name") == "shade" || pass.at("name") == "irradiance") return;
+        if (name == "shade" || name == "irradiance") return;
         method = "auto";
     }
     int width = 0, height = 0;
@@ -87,7 +90,7 @@ void predict(Json& pass, const Json& row, const Json& device, const Json& warps)
     const double pixels = row.at("items").get<double>() / (double(width) * height);
     double bytes = 0, slots = 0;
     for (const auto& [kernel, counted] : methods.at(method).items()) {
-        if (passOf(kernel, method) != pass.at("name")) continue;
+        if (passOf(kernel, method) != name) continue;
         const double work = workOf(kernel, pixels, warps.at("map").get<double>());
         bytes += work * counted.at("moved").get<double>();
         slots += work * counted.at("slots").get<double>();

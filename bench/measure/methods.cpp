@@ -244,7 +244,7 @@ class Methods {
                 request.width = width, request.size = height, request.fill = fill;
                 const LitScene s = stage->look(request, profile_);
                 double plain = NAN;
-                for (const Setting& setting : keptSettings(s))
+                for (const Setting& setting : frameSettings(s))
                     attemptAlone(name, setting, "frames", [&] {
                         std::vector<Contender> one;
                         one.push_back(contenderOf(setting, scene, s, 1));
@@ -266,6 +266,13 @@ class Methods {
             return !one.shown && (one.texture != 1024 || s.gbuffer.uv.data.empty());
         });
         return kept;
+    }
+    // These, and those at half rate.
+    static std::vector<Setting> frameSettings(const LitScene& s) {
+        std::vector<Setting> timed = keptSettings(s);
+        std::ranges::copy_if(settings(), std::back_inserter(timed),
+                             [](const Setting& one) { return one.request.halfRate; });
+        return timed;
     }
     static const FrozenScene& sceneOf(const std::string& name) {
         return *std::ranges::find(frozenScenes(), name, [](const FrozenScene& s) { return s.name; });

@@ -5,8 +5,8 @@
 // light, times R at its true distance over R on the disk, times the surface of its pixel over that of the
 // disk. Input: the surface (gather_surface.cl), taps and profiles. Output: an image like the irradiance;
 // pixels that nothing changes keep their value. One work-group takes tiles, one work-item columns of their
-// pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT; PEL_HALF: sample_disk gathers at every second pixel
-// of both directions before, and scatter_disk at those without a sample beside them.
+// pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT; PEL_HALF: sample_disk gathers at every second
+// pixel of both directions before, and scatter_disk at those without a sample beside them.
 #include "lib/diffusion/gather.clh"
 #include "lib/diffusion/item.clh"
 #include "lib/image/image.clh"

@@ -5,8 +5,8 @@
 // weights, is blended in where it is the more reliable one. At the receiver itself irradiance is known.
 // Input: both pyramids, the flags of light_classify. Output: the flagged parts, in an image like the
 // irradiance; other pixels keep their value. One work-item: one pixel, with several lanes a part of
-// a tile. Variants: PEL_HIDDEN is 0, PEL_FORMAT_OUT; PEL_HALF: sample_light sums at every second pixel of both
-// directions before, and scatter_light at those without a sample beside them.
+// a tile. Variants: PEL_HIDDEN is 0, PEL_FORMAT_OUT; PEL_HALF: sample_light sums at every second pixel of
+// both directions before, and scatter_light at those without a sample beside them.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/lit_surface.clh"
 #include "lib/diffusion/windowed.clh"

@@ -6,9 +6,9 @@
 // weighted by the line spread at its true distance. Input: the surface (gather_surface.cl), pieces and line
 // spreads. Output: filter_rows: irradiance and -, four floats a pixel; filter_columns: an image like the
 // irradiance, with pixels that nothing changes as they were. One work-group takes tiles, one work-item
-// columns of their pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT; PEL_HALF: rows are filtered at even
-// columns alone, sample_columns filters at every second pixel of both directions, and filter_columns at those
-// without a sample beside them.
+// columns of their pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT; PEL_HALF: rows are filtered at
+// even columns alone, sample_columns filters at every second pixel of both directions, and filter_columns at
+// those without a sample beside them.
 #include "lib/diffusion/gather.clh"
 #include "lib/diffusion/item.clh"
 #include "lib/image/image.clh"

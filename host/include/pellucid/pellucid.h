@@ -1271,10 +1271,10 @@ typedef struct PelShaderOptions {
     /* gives scattering taps with random places other places in each frame, for hosts that average frames. The
      * same number gives the same bits; 0 */
     uint32_t frameIndex;
-    /* 1: PEL_SCATTERING_LIGHT, PEL_SCATTERING_SEPARABLE, and PEL_SCATTERING_SCREEN with scatterTaps compute every
-     * second pixel along both axes. Between them light from beyond a pixel is interpolated on the same surface,
-     * and that of the pixel itself is its own (docs/guide/shading.md, "Half rate"). A fourth of the taps, for an
-     * error below that of the methods; 0 */
+    /* 1: PEL_SCATTERING_LIGHT, PEL_SCATTERING_SEPARABLE, and PEL_SCATTERING_SCREEN with scatterTaps compute
+     * every second pixel along both axes. Between them light from beyond a pixel is interpolated on the same
+     * surface, and that of the pixel itself is its own: a fourth of the taps (docs/guide/shading.md, "Half
+     * rate"); 0 */
     uint32_t halfRate;
     /* 1: wide shadows that the shader filters, and thickness by taps, are computed at every pixel. 0, the
      * default: shadows at every second one along both axes, and between them interpolated where material,
