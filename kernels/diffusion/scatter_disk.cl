@@ -11,9 +11,9 @@
 #include "lib/diffusion/item.clh"
 #include "lib/image/image.clh"
 
-static inline float4 gatherDisk(__global const PelGatherFrame* frame, __global const float* points,
-                                __global const PelGatherMaterial* m, __global const PelGatherTap* taps,
-                                __global const float* nodes, uint x, uint y, uint* taken) {
+static inline __attribute__((always_inline)) float4 gatherDisk(
+    __global const PelGatherFrame* frame, __global const float* points, __global const PelGatherMaterial* m,
+    __global const PelGatherTap* taps, __global const float* nodes, uint x, uint y, uint* taken) {
     const size_t here = (size_t)y * frame->width + x;
     const float4 p = gathered(points, here, PEL_GATHER_POINT), e = gathered(points, here, PEL_GATHER_LIGHT),
                  pixel = gathered(points, here, PEL_GATHER_PIXEL);

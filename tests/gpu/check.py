@@ -48,6 +48,8 @@ def collect_programs(build, scenes, folder):
             calls.append(["shade", gbuffer, "--scene", variant, "-o", out / "o.exr"])
     # light from maps alone, which no scene of the demo has
     calls.append(["bench", "--first-gpu", "--only", "ear-1: light", "-o", out / "bench"])
+    half = (f"ear-1: {method}, half rate" for method in ("light", "disk, 32 taps", "separable, 2 x 25 taps"))
+    calls.append(["bench", *(word for name in half for word in ("--only", name)), "-o", out / "bench"])
     for call in calls:
         code, said = run([build / "bin/pellucid", *call], env=env)
         if code and not list(folder.glob("*.cl")):
