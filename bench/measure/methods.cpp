@@ -487,7 +487,7 @@ class Methods {
                 Shot& shot = contenders.back().shot;
                 Json& row = errors[setting.name()];
                 addErrors(row, valuesAt(shot.light, truth.pixels), truth, s.subsets);
-                row["flip"] = finite(io::flipMean(valuesAt(shot.light, crop.pixels), crop.light, crop.width));
+                row["flip"] = finite(io::flip(valuesAt(shot.light, crop.pixels), crop.light, crop.width));
                 row["flip_noise"] = crop.noise;
                 if (setting.shown && scale > 1) addPicture(name, setting, s, shot.light);
                 shot.light = {};

@@ -225,7 +225,7 @@ Crop readCrop(const std::string& folder, const std::string& name, const LitScene
         readLayers(fileOf(folder, "crop-" + name), 3 * crop.pixels.size());
     for (size_t i = 0; i < halves[0].size(); ++i) crop.light.push_back((halves[0][i] + halves[1][i]) / 2);
     // A half is as far from the mean as the mean is from light.
-    crop.noise = io::flipMean(halves[0], crop.light, cropSide);
+    crop.noise = io::flip(halves[0], crop.light, cropSide);
     return crop;
 }
 

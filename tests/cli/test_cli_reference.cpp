@@ -255,7 +255,7 @@ TEST_F(CliReference, Compare) {
     EXPECT_TRUE(contains(done(compare).out, "penumbra           0 pixels   empty"));
     EXPECT_FALSE(report["all"].contains("flip")) << "the background does not count";
     EXPECT_NEAR(reportOf("compare @b.exr @a.exr")["all"]["flip"].get<double>(),
-                pellucid::io::flipMean(values, a.interleaved(shade_files::colorNames), side), 1e-6);
+                pellucid::io::flip(values, a.interleaved(shade_files::colorNames), side), 1e-6);
     expectKept("d.png", "compare.png", "0.0003");
     // In other formats; exit codes.
     npy("a.npy", {side, side, 3}, values);

@@ -2,6 +2,7 @@
 
 #include <numeric>
 #include <stdexcept>
+#include <vector>
 
 #include "fields/color_difference.h"
 
@@ -156,13 +157,13 @@ Seen see(std::span<const float> rgb, int width) {
 
 }  // namespace
 
-std::vector<float> flip(std::span<const float> a, std::span<const float> b, int width) {
+double flip(std::span<const float> a, std::span<const float> b, int width) {
     if (a.size() != b.size() || width <= 0 || a.size() % (3 * size_t(width)) != 0)
         throw std::invalid_argument("flip: the pictures have different sizes");
     const Seen one = see(a, width), two = see(b, width);
     // The paper's error redistribution: up to 0.4 of the largest distance, that of green and blue, 0 to 0.95.
     const double largest = colorDistance(adjusted({0, 1, 0}), adjusted({0, 0, 1})), knee = 0.4 * largest;
-    std::vector<float> errors;
+    double sum = 0;
     for (size_t i = 0; i < one.colors.size(); ++i) {
         const double distance = colorDistance(one.colors[i], two.colors[i]),
                      color = distance < knee ? 0.95 * distance / knee
@@ -170,14 +171,9 @@ std::vector<float> flip(std::span<const float> a, std::span<const float> b, int 
                      feature = std::sqrt(std::max(std::abs(one.edges[i] - two.edges[i]),
                                                   std::abs(one.points[i] - two.points[i])) /
                                          std::sqrt(2.0));
-        errors.push_back(float(std::pow(color, 1 - feature)));
+        sum += std::pow(color, 1 - feature);
     }
-    return errors;
-}
-
-double flipMean(std::span<const float> a, std::span<const float> b, int width) {
-    const std::vector<float> errors = flip(a, b, width);
-    return std::accumulate(errors.begin(), errors.end(), 0.0) / double(errors.size());
+    return sum / double(one.colors.size());
 }
 
 }  // namespace pellucid::io

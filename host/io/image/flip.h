@@ -3,15 +3,12 @@
 // Interact. Tech. 3(2), article 15].
 #pragma once
 #include <span>
-#include <vector>
 
 namespace pellucid::io {
 
-// Per pixel, 0 (equal) to 1; NaN around a pixel with NaN. `a`, `b`: linear sRGB, interleaved, of `width`
-// columns; values beyond 0 to 1 are clamped. Throws std::invalid_argument for sizes that do not match.
-std::vector<float> flip(std::span<const float> a, std::span<const float> b, int width);
-
-// The mean over all pixels.
-double flipMean(std::span<const float> a, std::span<const float> b, int width);
+// The mean over all pixels, 0 (equal) to 1; NaN for a picture with NaN. `a`, `b`: linear sRGB, interleaved,
+// of `width` columns; values beyond 0 to 1 are clamped. Throws std::invalid_argument for sizes that do not
+// match.
+double flip(std::span<const float> a, std::span<const float> b, int width);
 
 }  // namespace pellucid::io
