@@ -40,6 +40,7 @@ constexpr double walkTheirs = 5e-4;       // of the other walk, smoothed over N.
 constexpr double throughSlab = 0.015;     // light from beyond the profile's reach, in a slab of 12 paths
 constexpr double throughSlabPart = 0.03;  // relative: sums over blocks of texels
 constexpr double publishedDeltaE = 1e-4;  // published to four decimals
+constexpr double flip = 3e-5;  // the authors' program sums in floats, with more digits of sRGB's matrix
 // a cosine from interpolated normals, at a point of a facet beside that of the ball
 constexpr double litFacets = 0.02;
 constexpr double referenceRms = 1e-3;  // RMS on a ball of 57,600 facets at pixels that were brought to it

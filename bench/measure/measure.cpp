@@ -7,6 +7,7 @@
 #include <random>
 #include <thread>
 
+#include "power.h"
 #include "timing.h"
 
 namespace pellucid::bench {
@@ -20,6 +21,7 @@ struct Running {
     int repeats = 1;  // runs per sample, so that a sample is long against the clock
     int rounds = 0;   // that it takes part in: fewer than others where it is slow
     std::vector<double> wall, device;
+    std::optional<double> watts{};
 };
 
 void sample(const Device& device, Running& r) {
@@ -46,6 +48,7 @@ Json summary(const Running& r) {
     e["per_second"] = r.work.items / time * 1e3;
     if (r.work.bytes > 0) e["bytes"] = r.work.bytes;
     if (r.work.operations > 0) e["operations"] = r.work.operations;
+    if (r.watts) e["watts"] = *r.watts;
     return e;
 }
 
@@ -107,6 +110,11 @@ Json measureCases(const Request& request) {
             begin(running[i].entry);
             sample(device, running[i]);
         }
+    }
+    const EnergyMeter joules = energyOf(device, request.powercap);
+    for (Running& r : running) {
+        begin(r.entry);
+        r.watts = meanWatts(joules, r.work.run);
     }
     double bandwidth = 0, peak = 0;
     for (const Running& r : running) {

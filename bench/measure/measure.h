@@ -67,8 +67,9 @@ struct Request {
     std::vector<std::string> only;     // parts of names; empty: every operation
     std::vector<std::string> without;  // names that are left out
     double limitSeconds = 120;         // that a case may take to be prepared, and again for all its runs
-    std::string data;     // folder of the library's data: heads, and the truth of scenes in bench
-    std::string command;  // path of the pellucid command, for processes of their own
+    std::string data;  // folder of the library's data: heads, and the truth of scenes in bench
+    std::string powercap = "/sys/class/powercap";  // folder of the counters of processors' energy
+    std::string command;                           // path of the pellucid command, for processes of their own
     std::function<void(const std::string&)> progress;  // a line now and then
     // What happens, for whoever waits: {"begin": name, "group"}, {"say": text}, {"row": an operation that is
     // done and need not be measured again}

@@ -1,10 +1,12 @@
 // What the methods of scattering cost on the frozen scenes, and how far they are from light.
 
 #include "io/choice_keys.h"
+#include "io/image/flip.h"
 #include "io/image/picture_library.h"
 #include "io/image/tone_map.h"
 #include "io/shortest.h"
 #include "measure.h"
+#include "power.h"
 #include "scenes.h"
 #include "timing.h"
 
@@ -177,6 +179,14 @@ struct Contender {
     std::shared_ptr<InTexture> texture{};
     std::vector<double> device{}, wall{};
     std::map<std::string, std::vector<double>> passes{};  // by name
+    std::optional<double> watts{};
+
+    // Returns milliseconds in the texture.
+    double frame() {
+        const double before = texture ? texture->run() : 0;
+        shot.shader.execute();
+        return before;
+    }
 };
 
 class Methods {
@@ -378,8 +388,7 @@ class Methods {
             std::ranges::shuffle(contenders, random);
             for (Contender& c : contenders) {
                 request_.event({{"begin", scene + ": " + c.setting.name()}, {"group", group}});
-                const double start = milliseconds(), before = c.texture ? c.texture->run() : 0;
-                c.shot.shader.execute();
+                const double start = milliseconds(), before = c.frame();
                 c.wall.push_back(milliseconds() - start);
                 const double own = before + c.shot.shader.stats().deviceMilliseconds;
                 c.device.push_back(own > 0 ? own : c.wall.back());  // of drivers that tell no times
@@ -387,6 +396,12 @@ class Methods {
                 for (const PelPassStats& pass : c.shot.shader.passes())
                     c.passes[pass.name].push_back(pass.milliseconds);
             }
+        }
+        if (group == std::string("shares")) return;
+        for (Contender& c : contenders) {
+            if (!c.setting.shown || !joules_) continue;
+            request_.event({{"begin", scene + ": " + c.setting.name()}, {"group", group}});
+            c.watts = meanWatts(joules_, [&c] { c.frame(); });
         }
     }
 
@@ -419,6 +434,7 @@ class Methods {
                     {"bytes", bytes},
                     {"arithmetic_share", Json()},
                     {"passes", passes}};
+        if (c.watts) row["watts"] = *c.watts;
         if (c.setting.tunes) {
             row["tunes"] = c.setting.tunes;
             row["target_error"] = c.setting.tunes == std::string("auto") ? c.setting.request.targetError : 0;
@@ -460,6 +476,7 @@ class Methods {
         request.profileScale = scale;
         LitScene s = stage.look(request, profile_);
         const Truth truth = readTruth(request_.data + "/bench", name, s);
+        const Crop crop = readCrop(request_.data + "/bench", name, s);
         Json about = {{"name", name},
                       {"title", scene.title},
                       {"scale", scale},
@@ -479,7 +496,10 @@ class Methods {
                 s.lamps = setting.mapSize ? stage.lampsOf(s.lighting, setting.mapSize) : lamps;
                 contenders.push_back(contenderOf(setting, scene, s, scale));
                 Shot& shot = contenders.back().shot;
-                addErrors(errors[setting.name()], valuesAt(shot.light, truth.pixels), truth, s.subsets);
+                Json& row = errors[setting.name()];
+                addErrors(row, valuesAt(shot.light, truth.pixels), truth, s.subsets);
+                row["flip"] = finite(io::flip(valuesAt(shot.light, crop.pixels), crop.light, crop.width));
+                row["flip_noise"] = crop.noise;
                 if (setting.shown && scale > 1) addPicture(name, setting, s, shot.light);
                 shot.light = {};
             });
@@ -609,6 +629,7 @@ class Methods {
     const Request& request_;
     Device device_;
     bool sends_;
+    EnergyMeter joules_ = energyOf(device_, request_.powercap);
     Profile profile_ = usualProfile();
     Json scenes_ = Json::array(), rows_ = Json::array(), pictures_ = Json::array();
 };

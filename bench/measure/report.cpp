@@ -25,7 +25,8 @@ double relativeError(const Json& e) {
 
 // The verdict on one operation; times and errors go to `out`.
 std::string compareOne(Json& out, const Json& before, const Json& after, double machine) {
-    constexpr double minChange = 0.05, standardErrors = 4, errorGrowth = 1.5, errorStep = 1e-7;
+    constexpr double minChange = 0.05, standardErrors = 4, errorGrowth = 1.5, errorStep = 1e-7,
+                     flipGrowth = 0.1;
     if (after.contains("failed")) return before.contains("failed") ? "not compared" : "fails";
     const double ratio = value(after, "median_ms") / value(before, "median_ms");
     // The old run failed, or one of the reports has no times.
@@ -46,6 +47,12 @@ std::string compareOne(Json& out, const Json& before, const Json& after, double 
         out["old_error"] = oldError;
         out["new_error"] = after.value(error, Json());
         if (!(newError <= std::max(errorGrowth * oldError, oldError + errorStep))) return "less accurate";
+    }
+    // Reports of earlier versions have none.
+    const double oldFlip = value(before, "flip"), newFlip = value(after, "flip");
+    if (newFlip - oldFlip > std::max(flipGrowth * oldFlip, value(after, "flip_noise"))) {
+        out["old_error"] = oldFlip, out["new_error"] = newFlip;
+        return "less accurate";
     }
     return std::log(ratio) > noise ? "slower" : std::log(ratio) < -noise ? "faster" : "same";
 }
@@ -187,7 +194,8 @@ namespace {
 struct Summed {
     Json about;
     std::array<double, 3> squares{};
-    std::vector<double> nanoseconds;
+    std::vector<double> nanoseconds, watts;
+    double flip = 0;  // sum; NaN where a row has none
 };
 
 // The row of `group` with this scene, method and setting; null: there is none.
@@ -289,6 +297,8 @@ void summarize(Json& device, const std::vector<double>& budgets, const std::vect
         for (size_t c = 0; c < 3; ++c) found->squares[c] += std::pow(e["rmse"][c].get<double>(), 2);
         found->nanoseconds.push_back(
             std::max(e["added_ms"].get<double>() * 1e6 / e["items"].get<double>(), 0.0));
+        found->flip += value(e, "flip");
+        if (e.contains("watts")) found->watts.push_back(e["watts"]);
     }
     // Settings that fewer scenes have cannot be compared with the others.
     size_t scenes = 0;
@@ -304,6 +314,8 @@ void summarize(Json& device, const std::vector<double>& budgets, const std::vect
             whole += square / double(3 * scenes);
         }
         e["error"] = std::sqrt(whole);
+        if (std::isfinite(s.flip)) e["flip"] = s.flip / double(scenes);
+        if (!s.watts.empty()) e["watts"] = median(s.watts);
         e["ns_per_pixel"] = median(s.nanoseconds);
         e["ns_per_pixel_p90"] = percentile90(s.nanoseconds);
         for (const auto& [frame, height] : {std::pair{"1080p", 1080.0}, {"4K", 2160.0}}) {

@@ -1,5 +1,6 @@
 #include "scenes.h"
 
+#include "io/image/flip.h"
 #include "io/image/image_file.h"
 #include "measure.h"
 #include "sample/random_walk.h"
@@ -10,7 +11,8 @@ namespace {
 using namespace lit_scenes;
 
 constexpr size_t truthPoints = 640, clipPoints = 256;
-constexpr uint32_t truthWalks = 256, clipWalks = 64;  // for each point, channel and half
+constexpr int cropSide = 48;
+constexpr uint32_t truthWalks = 256, clipWalks = 64, cropWalks = 1024;  // for each point, channel and half
 constexpr int pictureSize = 512, clipSize = 256, mapSize = 2048;
 constexpr std::array<double, 3> burleyLengths{0.29205, 0.10902, 0.05411};  // mm
 
@@ -65,20 +67,48 @@ void write(const std::string& path, const std::vector<std::vector<float>>& layer
     const size_t shape[] = {layers.size(), layers[0].size() / 3, 3};
     io::writeNpy(path, shape, all, type);
 }
-// The last layer must be `places`, so that light is compared where it was made.
-std::vector<std::vector<float>> read(const std::string& path, const std::vector<float>& places) {
+std::vector<std::vector<float>> readLayers(const std::string& path, size_t values) {
     const io::NpyArray array = io::readNpy(path);
-    const size_t values = places.size();
     if (array.shape.size() != 3 || array.shape[1] * 3 != values || array.shape[0] < 2)
         throw std::runtime_error(path + " is the truth of another scene");
     std::vector<std::vector<float>> layers;
     for (size_t k = 0; k < array.shape[0]; ++k)
         layers.emplace_back(&array.values[k * values], &array.values[k * values] + values);
-    for (size_t i = 0; i < values; ++i)  // 11 bits of a length
+    return layers;
+}
+// The last layer must be `places`, so that light is compared where it was made.
+std::vector<std::vector<float>> read(const std::string& path, const std::vector<float>& places) {
+    std::vector<std::vector<float>> layers = readLayers(path, places.size());
+    for (size_t i = 0; i < places.size(); ++i)  // 11 bits of a length
         if (!(std::abs(layers.back()[i] - places[i]) <= 1e-3f * std::abs(places[i]) + 0.02f))
             throw std::runtime_error(path + " is the truth of another scene: a point of it is elsewhere");
     layers.pop_back();
     return layers;
+}
+
+// Row by row the pixels of the window, wholly covered, over which unscattered light spreads most: where
+// scattering changes most. Of equal windows the one nearest to the picture's middle.
+std::vector<size_t> croppedPixels(const LitScene& s) {
+    std::vector<size_t> best, window;
+    std::pair<double, int> bestRank{-1, 0};
+    constexpr int step = 4;
+    for (int y = 0; y + cropSide <= s.height; y += step)
+        for (int x = 0; x + cropSide <= s.width; x += step) {
+            window.clear();
+            double sum = 0, squares = 0;
+            for (int k = 0; k < cropSide * cropSide; ++k) {
+                const size_t i = size_t(y + k / cropSide) * size_t(s.width) + size_t(x + k % cropSide);
+                if (!s.covered[i]) break;
+                window.push_back(i);
+                sum += s.irradiance[3 * i], squares += std::pow(s.irradiance[3 * i], 2);
+            }
+            if (window.size() < size_t(cropSide) * cropSide) continue;
+            const std::pair rank{
+                squares - sum * sum / double(window.size()),
+                -std::abs(2 * x + cropSide - s.width) - std::abs(2 * y + cropSide - s.height)};
+            if (rank > bestRank) bestRank = rank, best = window;
+        }
+    return best;
 }
 
 using Say = std::function<void(double)>;
@@ -113,6 +143,13 @@ void makeScene(const Device& device, const std::string& path, const Stage& stage
     std::vector<float> surface = at(few.truth, pixels);
     for (float& v : surface) v *= sceneAlbedo;
     write(path, {light.first, light.second, surface, at(s.positions, pixels)});
+}
+
+void makeCrop(const std::string& path, const Stage& stage, const FrozenScene& scene, double scale,
+              const Say& say) {
+    const LitScene s = stage.look(scene.request, usualProfile());
+    const sample::WalkedLight light = walk(stage, s, croppedPixels(s), scale, cropWalks, say);
+    write(path, {light.first, light.second});
 }
 
 // The pixels of `frame` that show these points; SIZE_MAX: none within a pixel's width.
@@ -182,6 +219,16 @@ Truth readTruth(const std::string& folder, const std::string& name, const LitSce
     return t;
 }
 
+Crop readCrop(const std::string& folder, const std::string& name, const LitScene& scene) {
+    Crop crop{croppedPixels(scene), cropSide, {}, 0};
+    const std::vector<std::vector<float>> halves =
+        readLayers(fileOf(folder, "crop-" + name), 3 * crop.pixels.size());
+    for (size_t i = 0; i < halves[0].size(); ++i) crop.light.push_back((halves[0][i] + halves[1][i]) / 2);
+    // A half is as far from the mean as the mean is from light.
+    crop.noise = io::flip(halves[0], crop.light, cropSide);
+    return crop;
+}
+
 ClipTruth readClip(const std::string& folder, const FrozenClip& clip, const std::vector<LitScene>& frames) {
     ClipTruth t{clipPixels(frames), {}};
     t.light = read(fileOf(folder, clip.name), at(frames[0].positions, t.pixels[0]));
@@ -220,9 +267,13 @@ void makeTruth(const Device& device, const std::string& folder, const std::strin
         std::optional<Stage> stage;
         for (const double scale : radiusScales) {
             const std::string name = scene.name + ("-" + std::to_string(int(scale)));
-            if (std::filesystem::exists(fileOf(folder, name))) continue;
+            const std::string points = fileOf(folder, name), crop = fileOf(folder, "crop-" + name);
+            if (std::filesystem::exists(points) && std::filesystem::exists(crop)) continue;
             if (!stage) stage.emplace(device, scene.body(headFile), 1);
-            makeScene(device, fileOf(folder, name), *stage, scene, scale, progress(name));
+            if (!std::filesystem::exists(points))
+                makeScene(device, points, *stage, scene, scale, progress(name));
+            if (!std::filesystem::exists(crop))
+                makeCrop(crop, *stage, scene, scale, progress(name + ", cropped"));
         }
     }
     const Stage stage(device, frozenScenes()[0].body(headFile), 1);

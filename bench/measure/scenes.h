@@ -40,6 +40,16 @@ struct Truth {
 // Throws std::runtime_error where `folder` has none, or has that of another scene.
 Truth readTruth(const std::string& folder, const std::string& name, const lit_scenes::LitScene& scene);
 
+// Light in a window of a scene's picture, for errors that depend on neighbours.
+struct Crop {
+    std::vector<size_t> pixels;  // row by row
+    int width;
+    std::vector<float> light;  // RGB, in radiance with `sceneAlbedo`
+    double noise;              // FLIP of the light's own noise
+};
+// Throws std::runtime_error where `folder` has none.
+Crop readCrop(const std::string& folder, const std::string& name, const lit_scenes::LitScene& scene);
+
 // What each method made of a scene on PoCL, for an albedo of 1: three values for each of `pixels`.
 struct KeptPictures {
     std::vector<size_t> pixels;

@@ -103,7 +103,8 @@ class Again {
 // `done`: gets what it measured before.
 Json runApart(const Request& request, const char* part, const std::set<std::string>& without, Json& at,
               Json& done, std::string& why) {
-    std::vector<std::string> words{"--events", part, "--limit", std::to_string(request.limitSeconds)};
+    std::vector<std::string> words{
+        "--events", part, "--limit", std::to_string(request.limitSeconds), "--powercap", request.powercap};
     if (request.quick) words.push_back("--quick");
     for (const std::string& name : request.only) words.insert(words.end(), {"--only", name});
     for (const std::string& name : without) words.insert(words.end(), {"--without", name});

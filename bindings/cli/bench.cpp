@@ -23,6 +23,7 @@ struct Arguments {
     std::string output, slower, lessAccurate, truth;
     double limitSeconds = 0, stabilityShare = 0;  // 0: depends on `quick`
     bool quick = false, json = false, firstUse = false, firstGpu = false, stability = false;
+    std::string powercap = bench::Request().powercap;
     std::string events;  // in a child process: what it measures; it prints one JSON object a line
 };
 
@@ -80,6 +81,7 @@ bench::Request requestOf(const Arguments& a, const std::string& device) {
     request.only = a.only;
     request.without = a.without;
     request.data = dataFolder();
+    request.powercap = a.powercap;
     request.limitSeconds = a.limitSeconds > 0 ? a.limitSeconds : a.quick || a.firstGpu ? 60 : 120;
     return request;
 }
@@ -358,6 +360,7 @@ void addBench(CLI::App& app) {
            isPositive());
     option(*command, "--events", a->events, "", hidden);
     option(*command, "--make-truth", a->truth, "", hidden);
+    option(*command, "--powercap", a->powercap, "", hidden);
     option(*command, "--without", a->without, "", oneEach, hidden);
     jsonOption(*command, a->json);
     option(

@@ -4,6 +4,7 @@
 
 #include "command.h"
 #include "io/atomic_file.h"
+#include "io/image/flip.h"
 #include "io/image/image_compare.h"
 #include "io/image/image_file.h"
 #include "io/image/picture.h"
@@ -218,11 +219,16 @@ void run(const Arguments& a) {
             if (!a.json) print(name, d);
         }
     }
+    for (size_t i = 0; i < two.secondHalf.size(); ++i)
+        two.values[i] = (two.values[i] + two.secondHalf[i]) / 2;
+    if (all.pixels == mask.size()) {  // pixels that do not count would change those around them
+        const double visible = io::flip(one.values, two.values, one.width);
+        report["all"]["flip"] = visible;
+        if (!a.json) std::printf("%-11s %8zu pixels   FLIP %.5f\n", "all", all.pixels, visible);
+    }
     report["invalid_pixels"] = invalid;
     if (invalid > 0) std::fprintf(stderr, "warning: %zu pixels with NaN or Inf were left out\n", invalid);
     if (!a.picture.empty()) {
-        for (size_t i = 0; i < two.secondHalf.size(); ++i)
-            two.values[i] = (two.values[i] + two.secondHalf[i]) / 2;
         writePicture(a, one, two, mask, std::max({all.p99[0], all.p99[1], all.p99[2]}));
         report["picture"] = a.picture;
     }
@@ -243,7 +249,7 @@ void run(const Arguments& a) {
 
 void addCompare(CLI::App& app) {
     CLI::App* command =
-        app.add_subcommand("compare", "How far two pictures are apart: RMSE, PSNR, P99, CIEDE2000");
+        app.add_subcommand("compare", "How far two pictures are apart: RMSE, PSNR, P99, CIEDE2000, FLIP");
     auto a = std::make_shared<Arguments>();
     option(*command, "a", a->a, "EXR, NPY, or an 8-bit picture, which is decoded from sRGB", required);
     option(*command, "b", a->b, "reference to compare A with", required);

@@ -1,5 +1,8 @@
 // `pellucid bench`: a report with times, shares and errors, its page, and verdicts on two reports.
+#include <thread>
+
 #include "cli_run.h"
+#include "measure/power.h"
 #include "measure/report.h"
 
 using Json = nlohmann::ordered_json;
@@ -12,11 +15,18 @@ class BenchCommand : public CommandTest {};
 struct Made {
     double median = 10, mad = 0.01, error = 1e-6, copy = 1e10;
     const char* name = "table-arc";
+    double flip = NAN;
 };
 Json report(const Made& made = {}) {
-    const Json operation = {{"name", made.name},      {"group", "tables"},        {"items", 100},
-                            {"samples", 9},           {"median_ms", made.median}, {"mad_ms", made.mad},
-                            {"error_max", made.error}};
+    const Json operation = {{"name", made.name},
+                            {"group", "tables"},
+                            {"items", 100},
+                            {"samples", 9},
+                            {"median_ms", made.median},
+                            {"mad_ms", made.mad},
+                            {"error_max", made.error},
+                            {"flip", made.flip},
+                            {"flip_noise", 0.01}};
     const Json device = {{"name", "D"},
                          {"platform", "P"},
                          {"copy_bytes_per_second", made.copy},
@@ -27,12 +37,87 @@ Json report(const Made& made = {}) {
     return Json::parse(Json{{"host", host}, {"devices", Json::array({device})}}.dump());
 }
 
+// Energy counters as Linux has them, in `folder`.
+struct Powercap {
+    std::filesystem::path folder;
+    void set(const std::string& zone, const std::string& name, uint64_t microjoules) const {
+        std::filesystem::create_directories(folder / zone);
+        std::ofstream(folder / zone / "name") << name << "\n";
+        std::ofstream(folder / zone / "max_energy_range_uj") << 1000000000 << "\n";
+        count(zone, microjoules);
+    }
+    void count(const std::string& zone, uint64_t microjoules) const {
+        std::ofstream(folder / zone / "new") << microjoules << "\n";
+        std::filesystem::rename(folder / zone / "new", folder / zone / "energy_uj");
+    }
+};
+
 }  // namespace
+
+TEST_F(BenchCommand, EnergyOfProcessorsIsThatOfAllPackages) {
+    using pellucid::bench::packageEnergy;
+    const Powercap counters{path("cap")};
+    EXPECT_FALSE(packageEnergy(path("cap"))) << "no folder";
+    counters.set("intel-rapl:2", "psys", 5);
+    EXPECT_FALSE(packageEnergy(path("cap"))) << "no package";
+    counters.set("intel-rapl:0", "package-0", 100);
+    counters.set("intel-rapl:0:0", "core", 0);
+    counters.set("intel-rapl-mmio:0", "package-0", 0);
+    counters.set("intel-rapl:1", "package-1", 999000000);
+    const pellucid::bench::EnergyMeter joules = packageEnergy(path("cap"));
+    const double before = joules();
+    counters.set("intel-rapl:0", "package-0", 2000100);
+    counters.set("intel-rapl:1", "package-1", 500000);  // it began again
+    for (const char* zone : {"intel-rapl:0:0", "intel-rapl:2", "intel-rapl-mmio:0"})
+        counters.set(zone, "", 700000000);
+    EXPECT_NEAR(joules() - before, 2 + 1.5, 1e-9);
+    // As where only administrators may read.
+    std::filesystem::remove(path("cap") + "/intel-rapl:1/energy_uj");
+    EXPECT_TRUE(std::isnan(joules()));
+    EXPECT_FALSE(packageEnergy(path("cap")));
+}
+
+TEST(BenchPower, OfAnNvidiaGpu) {
+    double time = 0;
+    const auto now = [&] { return time; };
+    const auto watts = [&](const char* mode, const char* bus) {
+        ::setenv("NVML_STAND_IN", mode, 1);
+        const auto joules = pellucid::bench::nvidiaEnergy(bus, NVML_STAND_IN, now);
+        return pellucid::bench::meanWatts(
+                   joules, [&] { time += 10; }, now)
+            .value_or(0);
+    };
+    EXPECT_DOUBLE_EQ(watts("energy", "00000000:C1:00.0"), 500);
+    EXPECT_DOUBLE_EQ(watts("two", "00000000:C1:00.0"), 500);
+    EXPECT_DOUBLE_EQ(watts("energy", ""), 300) << "the only one";
+    EXPECT_EQ(watts("two", ""), 0) << "one of two";
+    EXPECT_DOUBLE_EQ(watts("power", ""), 70);
+    EXPECT_EQ(watts("none", ""), 0);
+    EXPECT_FALSE(pellucid::bench::nvidiaEnergy("", "libnvidia-none.so"));
+}
+
+TEST(BenchPower, IsThatBetweenTwoStepsOfACounter) {
+    double time = 0;
+    int reads = 0;
+    const auto watts = [&](double step, double run) {
+        time = 140, reads = 0;
+        const auto joules = [&] { return ++reads, 0.05 * step * std::floor(time / step); };
+        return pellucid::bench::meanWatts(
+            joules, [&] { time += run; }, [&] { return time; });
+    };
+    EXPECT_DOUBLE_EQ(watts(150, 10).value(), 50);
+    EXPECT_DOUBLE_EQ(watts(5, 1).value(), 50);
+    EXPECT_LT(reads, 100) << "reading takes time from short runs";
+    EXPECT_FALSE(watts(1e6, 10)) << "it does not move";
+    EXPECT_FALSE(watts(150, 5000)) << "there is no second step in time";
+    EXPECT_FALSE(pellucid::bench::meanWatts({}, [] { FAIL(); }));
+    EXPECT_FALSE(pellucid::bench::meanWatts([] { return double(NAN); }, [] {}));
+}
 
 TEST_F(BenchCommand, MeasuresTimeShareAndError) {
     const auto said = reportOf(
         "bench --quick --limit 600 --only table-sh --only shade-plain --only shade-no --only curvature-edge "
-        "-o @out");
+        "--powercap @none -o @out");
     expectReport(said);
     EXPECT_EQ(said.at("report"), path("out") + "/bench.json");
     const auto report = nlohmann::json::parse(read(path("out/bench.json")));
@@ -52,6 +137,7 @@ TEST_F(BenchCommand, MeasuresTimeShareAndError) {
         const auto number = [&e](const char* key) { return e.at(key).get<double>(); };
         EXPECT_GT(number("median_ms"), 0.0) << name;
         EXPECT_GE(number("samples"), 5) << name;
+        EXPECT_FALSE(e.contains("watts")) << "there is no counter";
         if (e.at("group") == "device") continue;
         // Right answers, and no faster than the device itself, or not known.
         EXPECT_LT(number("error_max"), tolerance::shadeSum) << name;
@@ -72,14 +158,26 @@ TEST_F(BenchCommand, MeasuresTimeShareAndError) {
 
 // The scene, its truth, the methods on it, and what follows of them.
 TEST_F(BenchCommand, MeasuresMethodsAgainstLight) {
-    done(
-        "bench --quick --limit 600 --only 'ball-4: auto' --only 'ball-4: light' --budget 1e6ms --error 1e-9 "
-        "-o @out");
+    const Powercap counters{path("cap")};
+    counters.set("intel-rapl:0", "package-0", 1);
+    {
+        const std::jthread takes([&](const std::stop_token& stop) {
+            for (uint64_t energy = 1; !stop.stop_requested(); ++energy) {
+                counters.count("intel-rapl:0", energy);
+                std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            }
+        });
+        done(
+            "bench --quick --limit 600 --only 'ball-4: auto' --only 'ball-4: light' --budget 1e6ms --error "
+            "1e-9 --powercap @cap -o @out");
+    }
     const auto device = nlohmann::json::parse(read(path("out/bench.json"))).at("devices").at(0);
     EXPECT_EQ(device.at("scenes").at(0).at("name"), "ball-4");
-    std::map<std::string, double> errors;
+    std::map<std::string, double> errors, flips;
     int budgets = 0;
     for (const auto& e : device.at("operations")) {
+        if (!e.contains("scene") || e.at("setting") == "error 0.002 of white")
+            EXPECT_GT(e.at("watts").get<double>(), 0) << e;
         if (!e.contains("scene")) continue;
         ASSERT_FALSE(e.contains("failed")) << e;
         EXPECT_GE(e.at("passes").size(), 2u);  // how their times add up depends on what else the machine does
@@ -91,6 +189,9 @@ TEST_F(BenchCommand, MeasuresMethodsAgainstLight) {
             continue;
         }
         errors[e.at("method")] = e.at("error_rms");
+        flips[e.at("method")] = e.at("flip");
+        EXPECT_GT(e.at("flip").get<double>(), 1.5 * e.at("flip_noise").get<double>());
+        EXPECT_GT(e.at("flip_noise").get<double>(), 0);
         EXPECT_GT(e.at("median_ms").get<double>(), 0);
         EXPECT_GT(e.at("memory_bytes").get<double>(), 0);
         EXPECT_GT(e.at("subsets").at("terminator").at("pixels").get<int>(), 20);
@@ -100,6 +201,8 @@ TEST_F(BenchCommand, MeasuresMethodsAgainstLight) {
     ASSERT_EQ(errors.size(), 3u) << "Lambert too, for the times beyond it";
     EXPECT_LT(errors["auto"], 0.7 * errors["Lambert"]);
     EXPECT_LT(errors["light"], 0.7 * errors["Lambert"]);
+    EXPECT_LT(flips["auto"], 0.3 * flips["Lambert"]);
+    EXPECT_LT(flips["light"], 0.3 * flips["Lambert"]);
     EXPECT_GT(errors["light"], 1e-4) << "not the truth itself";
     const auto& answers = device.at("answers");
     EXPECT_LE(answers.at(0).at("take").at("error").get<double>(),
@@ -135,9 +238,10 @@ TEST_F(BenchCommand, StabilityNeedsNothingButTheCommand) {
 
 TEST(BenchReport, FrontAndAnswersFollowFromTheRows) {
     const auto row = [](const char* method, double ms, double error) {
-        return Json{{"name", method},   {"group", "methods"}, {"scene", "s"},
-                    {"method", method}, {"setting", "x"},     {"items", 1e6},
-                    {"added_ms", ms},   {"error_rms", error}, {"rmse", {error, error, error}}};
+        return Json{{"name", method},    {"group", "methods"}, {"scene", "s"},
+                    {"method", method},  {"setting", "x"},     {"items", 1e6},
+                    {"added_ms", ms},    {"error_rms", error}, {"rmse", {error, error, error}},
+                    {"flip", 2 * error}, {"watts", 10 * ms}};
     };
     Json device = {
         {"scenes", {{{"name", "s"}, {"pixels", 1000}, {"height", 540}}}},
@@ -147,6 +251,7 @@ TEST(BenchReport, FrontAndAnswersFollowFromTheRows) {
     for (const Json& e : device["summary"]) front[e["method"]] = e["pareto"];
     EXPECT_EQ(front,
               (std::map<std::string, bool>{{"fast", true}, {"slow", true}, {"bad", false}, {"free", true}}));
+    EXPECT_DOUBLE_EQ(device["summary"][1]["flip"].get<double>(), 0.2);
     // 1 ns for each of 4000 pixels at 1080p.
     EXPECT_DOUBLE_EQ(device["summary"][0]["ms"]["1080p"].get<double>(), 0.004);
     EXPECT_EQ(device["summary"][0]["measured"]["1080p"], false);
@@ -154,6 +259,16 @@ TEST(BenchReport, FrontAndAnswersFollowFromTheRows) {
     EXPECT_EQ(device["answers"][1]["take"]["method"], "slow");
     EXPECT_EQ(device["answers"][2]["take"]["method"], "slow");
     EXPECT_FALSE(device["answers"][3].contains("take"));
+    // The mean over the scenes of this method, unless one has none, as in older reports.
+    for (const bool last : {false, true}) {
+        device["operations"].push_back(row("slow", 5, 0.3));
+        device["operations"].back()["watts"] = 70;
+        device["operations"].back()["scene"] = last ? "u" : "t";
+        if (last) device["operations"].back().erase("flip");
+        pellucid::bench::summarize(device, {}, {});
+        EXPECT_EQ(device["summary"][0].value("flip", 0.0), last ? 0.0 : 0.4);
+        EXPECT_EQ(device["summary"][0]["watts"], last ? 70 : 60);
+    }
 }
 
 // A sanitizer's library has to be the first of all.
@@ -278,6 +393,10 @@ TEST_F(BenchCommand, VerdictsSurviveNoise) {
         {"a larger error", {}, {.median = 5, .error = 2e-6}, "less accurate", 1},
         {"an error of rounding", {.error = 1e-8}, {.error = 5e-8}, "same", 0},
         {"an error that became NaN", {}, {.error = NAN}, "less accurate", 1},
+        {"a visible difference", {.flip = 0.05}, {.flip = 0.065}, "less accurate", 1},
+        {"one that the truth's noise hides", {.flip = 0.05}, {.flip = 0.059}, "same", 0},
+        {"a twentieth of it", {.flip = 0.4}, {.flip = 0.42}, "same", 0},
+        {"a report of before it was measured", {}, {.flip = 0.3}, "same", 0},
         {"no time", {}, {.median = NAN}, "not compared", 0},
         {"another operation", {}, {.name = "table-ring"}, "only new", 0},
     };

@@ -1,5 +1,6 @@
 // `pellucid reference` and `pellucid compare` as users run them: a ball whose reference has a closed form.
 #include "cli_shade.h"
+#include "io/image/flip.h"
 #include "reference/random_walk.h"
 #include "reference/surface_integral.h"
 #include "sample/mesh.h"
@@ -252,6 +253,9 @@ TEST_F(CliReference, Compare) {
         EXPECT_TRUE(penumbra[key].is_null()) << key;
     for (const char* key : {"rmse", "mean", "p99", "max"}) EXPECT_TRUE(penumbra[key][2].is_null()) << key;
     EXPECT_TRUE(contains(done(compare).out, "penumbra           0 pixels   empty"));
+    EXPECT_FALSE(report["all"].contains("flip")) << "the background does not count";
+    EXPECT_NEAR(reportOf("compare @b.exr @a.exr")["all"]["flip"].get<double>(),
+                pellucid::io::flip(values, a.interleaved(shade_files::colorNames), side), 1e-6);
     expectKept("d.png", "compare.png", "0.0003");
     // In other formats; exit codes.
     npy("a.npy", {side, side, 3}, values);
