@@ -111,16 +111,18 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void filter_rows
     uint taken = 0;
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
         if (!tiles[tile]) continue;
-        for (uint item = get_local_id(0); item < PEL_TILE_ITEMS; item += PEL_GROUP) {
-            const uint x = columnOf(frame, tile, item), y = rowOf(frame, tile, item);
+        for (uint item = get_local_id(0); item < PEL_TILE_ITEMS >> PEL_HALF; item += PEL_GROUP) {
+            // At half rate a pixel, and the next one of its row.
+            const uint x = columnOf(frame, tile, item << PEL_HALF), y = rowOf(frame, tile, item << PEL_HALF);
             if (x >= frame->width || y >= frame->height) continue;
             const size_t at = (size_t)y * frame->width + x;
             float4 light = gathered(points, at, PEL_GATHER_LIGHT);
             const uint material = frame->materialOf[as_uint(light.w)];
             const float4 pixel = gathered(points, at, PEL_GATHER_PIXEL);
             // Pixels that do not scatter are written too, since the other filter reads them.
-            const bool kept = PEL_HALF & x & 1;
-            if (material && pixel.x > 0.0f && pixel.z != 0.0f && !kept)
+            if (PEL_HALF && x + 1 < frame->width)
+                PEL_STORE4(gathered(points, at + 1, PEL_GATHER_LIGHT), rows + 4 * (at + 1));
+            if (material && pixel.x > 0.0f && pixel.z != 0.0f)
                 light = filterPixel(frame, points, points + PEL_GATHER_LIGHT, PEL_GATHER_FLOATS,
                                     &materials[material - 1], taps, nodes, x, y, false, &taken);
             PEL_STORE4(light, rows + 4 * at);
