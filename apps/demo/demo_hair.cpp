@@ -26,7 +26,7 @@ class Hair {
         constexpr int upper = 80, lower = 40;
         for (int i = 0; i < upper + lower; ++i) {
             const bool above = i < upper;
-            const double along = 1.5 * (above ? i + 0.5 : i - upper + 0.5) / (above ? upper : lower) - 0.5;
+            const double along = 1.38 * (above ? i + 0.5 : i - upper + 0.5) / (above ? upper : lower) - 0.5;
             addLash(eye, side, along, above ? 1 : -1, i);
         }
     }
