@@ -70,10 +70,20 @@ TEST_P(DemoHeads, LipsAreRedderGlossierAndSmootherThanCheeks) {
         return lips.weight(ray.origin + ray.direction * scene.intersect(ray).distance);
     };
     const Vec3 left = head.eyes[0].centre, right = head.eyes[1].centre;
+    // Where the lips meet, what faces down ends and what faces up begins.
+    const auto upwards = [&](double y) {
+        Vec3 normal;
+        scene.firstHit({{0.1, y, 500}, {0, 0, -1}}, INFINITY, normal);
+        return normal.y;
+    };
+    double meeting = 0, sharpest = 0;
+    for (double y = left.y - 1.4 * length(left - right); y < left.y - 0.7 * length(left - right); y += 0.1)
+        if (const double turn = upwards(y) - upwards(y + 0.1); turn > sharpest) sharpest = turn, meeting = y;
+    EXPECT_GT(sharpest, 1);
     for (const double side : {-1.0, 1.0}) {
-        EXPECT_GT(weightAt(0, lips.centre.y + 5 * side), 0.9) << "upper and lower lip";
-        EXPECT_GT(weightAt(14 * side, lips.centre.y), 0.9);
-        EXPECT_EQ(weightAt(0, lips.centre.y + 12 * side), 0);
+        EXPECT_GT(weightAt(0, meeting + 5 * side), 0.9) << "upper and lower lip";
+        EXPECT_GT(weightAt(14 * side, meeting), 0.9);
+        EXPECT_EQ(weightAt(0, meeting + 12 * side), 0);
         EXPECT_EQ(weightAt(0.66 * length(left - right) * side, left.y - 40), 0);
     }
 }
