@@ -34,51 +34,79 @@ Vec3 foremost(const io::MeshData& mesh, double x, double y, double reach) {
     return best;
 }
 
-// Blood shows where skin is thin: lips, cheeks, nose, ears. Places and sizes follow the distance between the
-// eyes, the mouth and the outline; the strength is chosen by eye.
-std::vector<sample::Tint> tintsOf(const io::PartedMesh& head, const Bounds (&eyes)[2], const Bounds& mouth,
-                                  const Bounds& skin) {
+// The height at which the lips meet: just below the edge of the upper teeth.
+double lipLineOf(const Bounds& upperTeeth) {
+    return upperTeeth.low.y - 1.5;
+}
+
+// Blood shows where skin is thin: lips, lids, cheeks, nose, ears. Forehead, nose and chin are oily; lips are
+// moist and have no pores. Places and sizes follow the distance between the eyes, the lips and the outline;
+// the strength is chosen by eye.
+std::vector<sample::SkinZone> zonesOf(const io::PartedMesh& head, const Bounds (&eyes)[2], double lipLine,
+                                      const Bounds& skin) {
     const Vec3 left = eyes[0].centre(), right = eyes[1].centre();
     const double e = std::abs(left.x - right.x);
-    const double lipLine = mouth.centre().y;
-    std::vector<sample::Tint> tints;
-    const auto add = [&](double x, double y, Vec3 radii, LinearColor factor, double edge) {
+    const double noseTip = 0.5 * (left.y + lipLine);
+    std::vector<sample::SkinZone> zones;
+    const auto add = [&](double x, double y, Vec3 radii, LinearColor color, double edge, double specular = 1,
+                         double roughness = 1, double relief = 1) {
         Vec3 centre = foremost(head.mesh, x, y, 0.08 * e);
         centre.z -= 0.3 * radii.z * e;
-        tints.push_back({centre, radii * e, factor, edge});
+        zones.push_back({centre, radii * e, color, edge, specular, roughness, relief});
     };
-    add(0, lipLine + 0.02 * e, {0.42, 0.15, 0.4}, {0.86, 0.56, 0.60}, 0.35);
+    add(0, lipLine - 0.005 * e, {0.39, 0.165, 0.9}, {0.88, 0.58, 0.60}, 0.2, 2.2, 0.55, 0.3);
     for (const double side : {-1.0, 1.0}) {
-        add(side * 0.66 * e, left.y - 0.66 * e, {0.5, 0.42, 0.7}, {1.02, 0.84, 0.84}, 1);
+        add(side * 0.5 * e, left.y, {0.33, 0.2, 0.4}, {0.98, 0.86, 0.84}, 1);
+        add(side * 0.66 * e, left.y - 0.66 * e, {0.5, 0.42, 0.7}, {1.02, 0.84, 0.84}, 1, 1, 1, 2);
         const double x = side > 0 ? skin.high.x : skin.low.x;
-        tints.push_back({{x, left.y - 0.25 * e, skin.centre().z - 0.1 * e},
+        zones.push_back({{x, left.y - 0.25 * e, skin.centre().z - 0.1 * e},
                          Vec3{0.35, 0.75, 0.6} * e,
                          {1.02, 0.80, 0.78},
                          1});
     }
-    add(0, 0.5 * (left.y + lipLine) - 0.02 * e, {0.3, 0.3, 0.5}, {1.02, 0.86, 0.86}, 1);
+    add(0, noseTip, {0.3, 0.3, 0.5}, {1.02, 0.86, 0.86}, 1);
+    const LinearColor same{1, 1, 1};
+    add(0, noseTip + 0.3 * e, {0.35, 0.8, 0.9}, same, 1, 1.8, 0.75, 2.5);
+    add(0, left.y + 0.9 * e, {1, 0.7, 0.9}, same, 1, 1.6, 0.8, 1.7);
+    add(0, lipLine - 0.45 * e, {0.4, 0.3, 0.6}, same, 1, 1.5, 0.85);
     // Brows: an arc over each eye, darkest in the middle, of spots that overlap.
     constexpr int spots = 9;
     for (const double side : {-1.0, 1.0})
         for (int i = 0; i < spots; ++i) {
-            const double s = double(i) / (spots - 1), along = -0.30 + 0.66 * s;
+            const double s = double(i) / (spots - 1), along = -0.25 + 0.6 * s;
             const double x = side * (0.5 * e + along * e), y = left.y + (0.30 + 0.10 * std::sin(2.4 * s)) * e;
-            const double strength = 0.6 + 0.14 * s;
-            add(x, y, {0.09, 0.075 - 0.025 * s, 0.3}, {strength, 0.93 * strength, 0.9 * strength}, 0.9);
+            const double strength = 0.7 + 0.12 * s;
+            add(x, y, {0.09, 0.08 - 0.03 * s, 0.3}, {strength, 0.93 * strength, 0.9 * strength}, 0.9);
         }
-    return tints;
+    return zones;
 }
 
-// The lips are open by a hair, and teeth reach into them: moved back and in, they stay in the mouth's shade.
-void closeMouth(io::PartedMesh& head) {
-    constexpr float back = 4;  // mm
+// The lips are open by a hair: swollen, they meet. Teeth reach into them: moved back and in, they stay in the
+// mouth's shade.
+void closeMouth(io::PartedMesh& head, double lipLine, double eyeDistance) {
+    constexpr float back = 6;    // mm
+    constexpr double swell = 1;  // mm
+    const double e = eyeDistance;
+    const double z = foremost(head.mesh, 0, lipLine, 0.08 * e).z - 0.25 * e;
+    const auto place = [&](double x, double width, double height, double depth) {
+        return sample::SkinZone{{x * e, lipLine, z}, Vec3{width, height, depth} * e, {1, 1, 1}, 0.6};
+    };
+    // The corners gape most.
+    const sample::SkinZone parts[] = {place(0, 0.45, 0.09, 0.4), place(0.35, 0.13, 0.09, 0.25),
+                                      place(-0.35, 0.13, 0.09, 0.25)};
     std::vector<bool> moved(head.mesh.vertexCount());
     for (size_t c = 0; c < head.mesh.triangles.size(); ++c) {
         const std::string& name = head.parts[head.partOf[c / 3]];
         const uint32_t v = head.mesh.triangles[c];
-        if (moved[v] || !(name.starts_with("teeth") || name.starts_with("tongue"))) continue;
+        if (moved[v]) continue;
         moved[v] = true;
-        head.mesh.positions[3 * v + 2] -= back;
+        float* p = &head.mesh.positions[3 * v];
+        if (name.starts_with("teeth") || name.starts_with("tongue")) p[2] -= back;
+        if (name != "skin") continue;
+        double weight = 0;
+        for (const sample::SkinZone& part : parts)
+            weight += (&part == parts ? 1 : 1.5) * part.weight(positionOf(head.mesh, v));
+        p[1] += float(swell * weight) * head.mesh.normals[3 * v + 1];
     }
 }
 
@@ -106,7 +134,10 @@ bool hasHeadParts(const std::string& path) {
 
 DemoHead loadDemoHead(const std::string& path, int levels) {
     io::PartedMesh head = io::loadParts(path, levels);
-    closeMouth(head);
+    const Bounds eyes[2] = {boundsOfPart(head, "eye_left"), boundsOfPart(head, "eye_right")};
+    const Bounds upperTeeth = boundsOfPart(head, "teeth_upper");
+    const bool hasFace = !eyes[0].empty() && !eyes[1].empty() && !upperTeeth.empty();
+    if (hasFace) closeMouth(head, lipLineOf(upperTeeth), length(eyes[0].centre() - eyes[1].centre()));
     // A straight cut in place of the ragged end of the data.
     const Bounds whole = boundsOfPart(head, "skin");
     const float cut = float(whole.low.y + 0.13 * (whole.high.y - whole.low.y));
@@ -131,10 +162,6 @@ DemoHead loadDemoHead(const std::string& path, int levels) {
     out.looks[DEMO_CUT - 1] = {sample::Look::Kind::Plain, {0.02f, 0.02f, 0.02f}};
 
     const Bounds skin = boundsOfPart(head, "skin");
-    const Bounds eyes[2] = {boundsOfPart(head, "eye_left"), boundsOfPart(head, "eye_right")};
-    Bounds mouth = boundsOfPart(head, "teeth_upper");
-    const Bounds lower = boundsOfPart(head, "teeth_lower");
-    for (int i = 0; i < 8 && !lower.empty(); ++i) mouth.add(lower.corner(i));
     for (const Bounds& ball : eyes) {
         if (ball.empty()) continue;
         sample::EyeLook eye;
@@ -146,7 +173,7 @@ DemoHead loadDemoHead(const std::string& path, int levels) {
         out.eyes.push_back(eye);
         out.eyeModels.push_back(modelOf(eye, &ball == eyes ? DEMO_EYES : DEMO_RIGHT_EYE));
     }
-    if (!eyes[0].empty() && !eyes[1].empty() && !mouth.empty()) out.tints = tintsOf(head, eyes, mouth, skin);
+    if (hasFace) out.zones = zonesOf(head, eyes, lipLineOf(upperTeeth), skin);
     out.frame = skin;
     out.mesh = std::move(head.mesh);
     out.cornerUvs = std::move(head.cornerUvs);

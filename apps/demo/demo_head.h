@@ -17,12 +17,19 @@ enum DemoMaterial : uint32_t {
     DEMO_RIGHT_EYE = 6
 };
 
+// A hair: points from root to tip, mm, and the radius at the root, from which it tapers.
+struct Strand {
+    std::vector<sample::Vec3> points;
+    double radius;
+};
+
 struct DemoHead {
     io::MeshData mesh;                    // mm
     std::vector<float> cornerUvs;         // u, v per corner of the triangles, which io::splitAtSeams takes
     std::vector<uint32_t> materials;      // DemoMaterial per triangle; empty: all skin
     std::vector<sample::Look> looks;      // of the ids 1, 2, ...
-    std::vector<sample::Tint> tints;      // lips, cheeks, ears
+    std::vector<sample::SkinZone> zones;  // lips, cheeks, ears, nose
+    std::vector<Strand> strands;          // brows and lashes, by strandsOf in demo_hair.h
     std::vector<sample::EyeLook> eyes;    // painted, for renderers without models
     std::vector<io::SceneEye> eyeModels;  // the same as PelEye, around DEMO_EYES and DEMO_RIGHT_EYE
     sample::HeadPose pose;

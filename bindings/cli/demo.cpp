@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "demo.h"
+#include "demo/demo_hair.h"
 #include "io/atomic_file.h"
 #include "mesh_curvature.h"
 #include "system/process.h"
@@ -116,7 +117,7 @@ std::vector<DemoViewRequest> requests(const Arguments& a) {
     key.framing.azimuth = 25;
     key.lights = {{"Key", 80, 25, {0.98f, 0.90f, 0.81f}},
                   {"Fill", -5, 5, {0.05f, 0.06f, 0.07f}, false, false},
-                  {"Rim", -125, 15, {0.22f, 0.25f, 0.30f}}};
+                  {"Rim", -132, 25, {0.22f, 0.25f, 0.30f}}};
     key.skyScale = 0.16f;
     back = key;
     back.name = "backlit";
@@ -219,13 +220,15 @@ void run(Arguments a) {
 
     const sample::Scene scene(sample::MeshView{mesh.positions, mesh.normals, mesh.uvs, curvature.values,
                                                mesh.triangles, head.materials});
+    head.strands = demo::strandsOf(scene, head.eyes);
     std::vector<ShadedView> views;
     for (const DemoViewRequest& request : wanted)
         views.push_back(shadeView(run, stages, luts, scene, head, request, a));
-    std::vector<ShadedPicture> materials;
+    std::vector<io::Tile> materials;
     for (const auto& m : demoMaterials) {
         const DemoView made = madeOf(views.front().view, m.profile, m.tint);
-        materials.push_back({m.profile, shadeAs(run, stages, luts, made, m.profile, made.scene)});
+        materials.push_back(
+            {m.profile, developed(made, shadeAs(run, stages, luts, made, m.profile, made.scene))});
     }
 
     nlohmann::ordered_json& files = run.report["pictures"];

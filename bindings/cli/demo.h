@@ -2,7 +2,7 @@
 #pragma once
 #include "demo/demo_head.h"
 #include "io/image/picture.h"
-#include "sample/scene.h"
+#include "sample/gbuffer.h"
 #include "scene/scene_frame.h"
 
 namespace pellucid::cli {
@@ -14,6 +14,7 @@ struct DemoView {
     io::Image gbuffer;
     io::SceneFile scene;
     io::ShadowMaps images;  // by the names of their files in the scene: shadow maps, surroundings
+    sample::Image hair;     // the share of each pixel that brows and lashes cover; they are drawn afterwards
     double gbufferMilliseconds = 0, shadowMapMilliseconds = 0;
 };
 
@@ -43,13 +44,9 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
 // The same scene shaded plainly, by Lambert, or by tables.
 io::SceneFile withoutScattering(io::SceneFile scene);
 io::SceneFile byTables(io::SceneFile scene);
-// The view with its skin made of another material of the library, and its albedo multiplied by a tint.
+// The view with its skin made of another material of the library, and its albedo multiplied by a tint. A
+// material that is no skin makes a bust: without eyes, hair and colours.
 DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3]);
-
-struct ShadedPicture {
-    std::string title;
-    std::vector<float> radiance;  // RGB per pixel
-};
 
 struct ShadedView {
     DemoView view;
@@ -58,7 +55,7 @@ struct ShadedView {
     std::vector<io::Picture> fine;
 };
 
-// Before a dark backdrop that is lighter in the middle.
+// With brows and lashes, before a dark backdrop that is lighter in the middle.
 io::Picture developed(const DemoView& view, std::vector<float> radiance);
 
 // The complete picture of a view, NAME.png in `folder`, and NAME_lambert.png without scattering. Returns the
@@ -67,8 +64,7 @@ std::string writePicture(const std::string& folder, const ShadedView& view);
 
 // The contact sheet, demo.png: a row per view, where light comes through most, tables, and `materials`.
 std::string writeSheet(const std::string& folder, const std::vector<ShadedView>& views,
-                       const std::vector<ShadedPicture>& materials, const Lut& curvatureLut,
-                       const Lut& shadowLut);
+                       const std::vector<io::Tile>& materials, const Lut& curvatureLut, const Lut& shadowLut);
 
 // The parts of a view's radiance, and its thickness: NAME_parts.png. `frame`: shaded with all outputs.
 std::string writeParts(const std::string& folder, const DemoView& view, const io::SceneFrame& frame);

@@ -11,6 +11,8 @@ io::Picture developed(const DemoView& view, std::vector<float> radiance) {
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const size_t i = size_t(y) * width + x;
+            // Dark brown, lit about as what it covers.
+            for (size_t c = 0; c < 3; ++c) radiance[3 * i + c] *= 1 - (0.86f + 0.04f * c) * view.hair.data[i];
             if (material[i] > 0) continue;
             const float r = std::hypot(x - 0.5f * width, y - 0.45f * height) / height;
             const float grey = 0.012f + 0.03f * std::exp(-3 * r * r);
@@ -152,7 +154,7 @@ std::string writePicture(const std::string& folder, const ShadedView& view) {
 }
 
 std::string writeSheet(const std::string& folder, const std::vector<ShadedView>& views,
-                       const std::vector<ShadedPicture>& materials, const Lut& curvatureLut,
+                       const std::vector<io::Tile>& materials, const Lut& curvatureLut,
                        const Lut& shadowLut) {
     constexpr size_t columns = 4;
     std::vector<io::Tile> tiles;
@@ -185,10 +187,9 @@ std::string writeSheet(const std::string& folder, const std::vector<ShadedView>&
     tiles.push_back({"curvature LUT: N.L across", lutPicture(curvatureLut)});
     tiles.push_back({"shadow LUT: shadow across", lutPicture(shadowLut)});
     fill();
-    for (const ShadedPicture& m : materials)
-        tiles.push_back({m.title, io::shrunk(cropped(developed(views.front().view, m.radiance),
-                                                     coveredPart(views.front().view)),
-                                             sheetShrink)});
+    for (const io::Tile& m : materials)
+        tiles.push_back(
+            {m.label, io::shrunk(cropped(m.picture, coveredPart(views.front().view)), sheetShrink)});
     return write(folder + "/demo.png", io::contactSheet(tiles, int(columns)));
 }
 

@@ -1,6 +1,7 @@
 #include "demo.h"
 
 #include "command.h"
+#include "demo/demo_hair.h"
 #include "sample/occlusion.h"
 #include "sample/shadow_map.h"
 #include "sample/sky.h"
@@ -9,7 +10,8 @@ namespace pellucid::cli {
 namespace {
 
 constexpr const char *profileName = "skin", *curvatureLutName = "skin", *shadowLutName = "skin edges";
-constexpr int shadowMapSize = 2048;  // texels a side: 0.15 mm each for a head
+constexpr float skinRoughness = 0.4f;  // of the broad lobe
+constexpr int shadowMapSize = 2048;    // texels a side: 0.15 mm each for a head
 
 // Adds an image's planes as channels "NAME.X" and so on, and names them in the scene for `slot`.
 void addChannels(DemoView& view, const std::string& name, const std::string& components, const float* planes,
@@ -42,8 +44,8 @@ PelMaterial skin() {
     m.shadowFilterWidth = 3 * std::max({info.width[0], info.width[1], info.width[2]});
     // Two lobes, of the skin's relief and of the film of oil on it.
     m.specularModel = PEL_SPECULAR_GGX;
-    m.specular = 0.6f;
-    m.roughness = 0.35f, m.roughness2 = 0.18f, m.lobeMix = 0.35f;
+    m.specular = 0.4f;
+    m.roughness = skinRoughness, m.roughness2 = 0.2f, m.lobeMix = 0.3f;
     return m;
 }
 
@@ -170,19 +172,21 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     view.scene.materials = materialsOf(head);
 
     sample::GBufferOptions look;
-    look.looks = head.looks, look.tints = head.tints, look.eyes = head.eyes;
+    look.looks = head.looks, look.zones = head.zones, look.eyes = head.eyes;
+    look.detail.roughness = skinRoughness;
     for (sample::EyeLook& eye : look.eyes)
         eye.irisRadius = eye.pupilRadius = 1e-3;  // the models have their own
     view.scene.eyes = head.eyeModels;
-    if (!head.looks.empty()) {  // a young face: fine pores, hardly a fold; the tints are enough
+    if (!head.looks.empty()) {  // a young face: fine pores, hardly a fold; the zones are enough
         look.detail.blotchAmount = 0.02;
         look.detail.poreWavelength = 0.6;
-        look.detail.poreSlope = 0.1;
-        look.detail.foldSlope = 0.012;
+        look.detail.poreSlope = 0.045;
+        look.detail.foldSlope = 0.008;
     }
     sample::GBuffer g;
     view.gbufferMilliseconds =
         milliseconds([&] { g = sample::renderGBuffer(mesh, camera, width, height, look); });
+    view.hair = demo::coverageOf(head.strands, camera, g);
     view.gbuffer.width = width;
     view.gbuffer.height = height;
     addChannels(view, "Position", "XYZ", g.position.data.data(), PEL_SLOT_POSITION);
@@ -191,6 +195,8 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     addChannels(view, "NormalBlurred", "XYZ", g.blurredNormal.data.data(), PEL_SLOT_NORMAL_BLURRED);
     addChannels(view, "Curvature", "V", g.curvature.data.data(), PEL_SLOT_CURVATURE);
     addChannels(view, "Albedo", "RGB", g.albedo.data.data(), PEL_SLOT_ALBEDO);
+    addChannels(view, "Roughness", "V", g.roughness.data.data(), PEL_SLOT_ROUGHNESS);
+    addChannels(view, "Specular", "V", g.specular.data.data(), PEL_SLOT_SPECULAR);
     addChannels(view, "AmbientOcclusion", "V", sample::ambientOcclusion(mesh, g).data.data(),
                 PEL_SLOT_AMBIENT_OCCLUSION);
     const std::vector<float> ids(g.material.begin(), g.material.end());
@@ -224,16 +230,28 @@ io::SceneFile byTables(io::SceneFile scene) {
 }
 
 DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3]) {
+    const bool skin = profile.starts_with("skin");
     view.scene.materials[0].profile = profile;
     view.scene.materials[0].material.shadowFilterWidth = 0;  // the profile's own
-    const std::vector<float> ids = view.gbuffer.channel("Material.I").pixels;
-    for (io::Channel& channel : view.gbuffer.channels)
-        for (size_t c = 0; c < 3; ++c) {
-            if (channel.name != view.scene.channels[PEL_SLOT_ALBEDO][c]) continue;
-            for (size_t i = 0; i < ids.size(); ++i)
-                if (ids[i] == float(demo::DEMO_SKIN))
-                    channel.pixels[i] = std::min(1.0f, channel.pixels[i] * tint[c]);
-        }
+    const auto pixelsOf = [&](PelImageSlot slot, size_t component) -> std::vector<float>& {
+        return std::ranges::find(view.gbuffer.channels, view.scene.channels[slot][component],
+                                 &io::Channel::name)
+            ->pixels;
+    };
+    std::vector<float>& ids = pixelsOf(PEL_SLOT_MATERIAL, 0);
+    if (!skin) {
+        view.scene.eyes.clear();
+        view.scene.channels[PEL_SLOT_WETNESS].clear();
+        std::ranges::fill(view.hair.data, 0.0f);
+        for (float& id : ids)
+            if (id == float(demo::DEMO_EYES) || id == float(demo::DEMO_RIGHT_EYE)) id = demo::DEMO_SKIN;
+    }
+    for (size_t c = 0; c < 3; ++c) {
+        std::vector<float>& albedo = pixelsOf(PEL_SLOT_ALBEDO, c);
+        for (size_t i = 0; i < ids.size(); ++i)
+            if (ids[i] == float(demo::DEMO_SKIN))
+                albedo[i] = std::min(1.0f, (skin ? albedo[i] : sample::Look().albedo[c]) * tint[c]);
+    }
     return view;
 }
 

@@ -117,11 +117,17 @@ class Renderer {
         const Look look = id - 1 < options_.looks.size() ? options_.looks[id - 1] : Look();
         Vec3 shading = geometric, blurred = geometric;
         Vec3 albedo{look.albedo[0], look.albedo[1], look.albedo[2]};
+        double specular = 1, roughness = 1, relief = 1;
         if (look.kind == Look::Kind::Eye) albedo = eyeColor(position);
         if (look.kind == Look::Kind::Skin) {
-            for (const Tint& tint : options_.tints) {
-                const LinearColor factor = tint.at(position);
+            for (const SkinZone& zone : options_.zones) {
+                const double weight = zone.weight(position);
+                if (weight <= 0) continue;
+                const LinearColor factor = zone.colorAt(position);
                 albedo = {albedo.x * factor[0], albedo.y * factor[1], albedo.z * factor[2]};
+                specular *= 1 + weight * (zone.specular - 1);
+                roughness *= 1 + weight * (zone.roughness - 1);
+                relief *= 1 + weight * (zone.relief - 1);
             }
         }
         if (detail_ && look.kind == Look::Kind::Skin) {
@@ -133,11 +139,14 @@ class Renderer {
             const Footprint blur{geometric, std::hypot(pixel.sigma, 0.5 * options_.diffusionRadius)};
             const Footprint both[2] = {pixel, blur};
             Vec3 pores[2], folds[2];
-            detail_->pores.slope(position, both, 2, pores);
+            const double lost = detail_->pores.slope(position, both, 2, pores);
             detail_->folds.slope(position, both, 2, folds);
             const SkinDetail& s = detail_->settings;
-            shading = normalize(geometric - pores[0] * s.poreSlope - folds[0] * s.foldSlope);
-            blurred = normalize(geometric - pores[1] * s.poreSlope - folds[1] * s.foldSlope);
+            const double poreSlope = relief * s.poreSlope, width = roughness * s.roughness;
+            shading = normalize(geometric - pores[0] * poreSlope - folds[0] * s.foldSlope);
+            blurred = normalize(geometric - pores[1] * poreSlope - folds[1] * s.foldSlope);
+            // The squared roughness is the mean square slope of a surface's facets.
+            roughness *= std::sqrt(1 + poreSlope * poreSlope * lost / (width * width));
             // Blood takes green and blue, pigment takes blue most and red least.
             const double blood = s.blotchAmount * detail_->blood.value(position, pixel);
             const double pigment = s.blotchAmount * detail_->pigment.value(position, pixel);
@@ -149,6 +158,8 @@ class Renderer {
         store(out_.shadingNormal, x, y, shading);
         store(out_.blurredNormal, x, y, blurred);
         store(out_.albedo, x, y, albedo);
+        out_.specular.at(0, x, y) = float(specular);
+        out_.roughness.at(0, x, y) = float(roughness);
     }
 
     const Mesh& mesh_;
@@ -172,8 +183,8 @@ GBuffer renderGBuffer(const Scene& scene, const Camera& camera, int width, int h
     for (Image* image :
          {&out.position, &out.geometricNormal, &out.shadingNormal, &out.blurredNormal, &out.albedo})
         *image = Image(width, height, 3);
-    out.curvature = Image(width, height, 1);
-    out.coverage = Image(width, height, 1);
+    for (Image* image : {&out.curvature, &out.coverage, &out.specular, &out.roughness})
+        *image = Image(width, height, 1);
     if (!scene.mesh().uvs.empty()) out.uv = Image(width, height, 2);
     out.viewDepth = Image(width, height, 1, backgroundDepth);
     out.deviceDepth = Image(width, height, 1, 1);

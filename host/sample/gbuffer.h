@@ -29,6 +29,7 @@ struct SkinDetail {
     bool enabled = true;
     double poreWavelength = 1.2;  // mm
     double poreSlope = 0.12;      // root mean square of the slope
+    double roughness = 0.35;      // of the material: slopes too fine for a pixel add to it
     double foldWavelength = 9;    // mm: what is left in the blurred normal
     double foldSlope = 0.05;
     double blotchWavelength = 14;  // mm, of pigment and blood
@@ -40,7 +41,7 @@ struct GBufferOptions {
     SkinDetail detail;
     double diffusionRadius = 2.7;  // mm: what the blurred normal is blurred over
     std::vector<Look> looks;       // of material ids 1, 2, ...; ids beyond are skin
-    std::vector<Tint> tints;       // on skin
+    std::vector<SkinZone> zones;   // of skin
     std::vector<EyeLook> eyes;     // an eye's pixel belongs to the nearest
 };
 
@@ -57,6 +58,8 @@ struct GBuffer {
                           // diffusion radius wide (box and tent: rho^2/12 + rho^2/6 = (rho/2)^2)
     Image curvature;      // 1, 1/mm, interpolated from the vertices
     Image albedo;         // 3, linear
+    Image specular;       // 1, factor of the material's specular, 1 but for zones of skin
+    Image roughness;      // 1, factor of the material's roughness: zones, and relief that the pixel blurs
     Image uv;             // 2, or empty when the mesh has none
     Image viewDepth;      // 1, mm along the camera's axis; backgroundDepth where nothing was hit
     Image deviceDepth;    // 1, z / w of Camera::projection, 0 near to 1 far and background

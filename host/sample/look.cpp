@@ -13,10 +13,13 @@ static LinearColor mix(const LinearColor& a, const LinearColor& b, double t) {
     return {a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t, a[2] + (b[2] - a[2]) * t};
 }
 
-LinearColor Tint::at(Vec3 p) const {
+double SkinZone::weight(Vec3 p) const {
     const Vec3 d = p - centre;
-    const double reach = std::hypot(d.x / radii.x, d.y / radii.y, d.z / radii.z);
-    return mix({1, 1, 1}, factor, 1 - smoothstep(1 - edge, 1, reach));
+    return 1 - smoothstep(1 - edge, 1, std::hypot(d.x / radii.x, d.y / radii.y, d.z / radii.z));
+}
+
+LinearColor SkinZone::colorAt(Vec3 p) const {
+    return mix({1, 1, 1}, color, weight(p));
 }
 
 LinearColor EyeLook::at(Vec3 p) const {

@@ -1,4 +1,4 @@
-// What colour the surfaces of the sample renderer have: skin with redder places, eyes, teeth.
+// What the surfaces of the sample renderer look like: skin with zones of its own, eyes, teeth.
 #pragma once
 
 #include "sample/vector.h"
@@ -7,12 +7,16 @@ namespace pellucid::sample {
 
 using LinearColor = std::array<double, 3>;
 
-// A place where the colour differs: lips, cheeks, ears. An ellipsoid along the axes.
-struct Tint {
-    Vec3 centre, radii;  // mm
-    LinearColor factor;  // of the albedo, in the middle
-    double edge = 1;     // share of the radii over which the factor fades to 1: 1 soft, 0.2 a line
-    LinearColor at(Vec3 p) const;
+// A place where skin differs: lips, cheeks, a forehead with more oil. An ellipsoid along the axes.
+struct SkinZone {
+    Vec3 centre, radii;           // mm
+    LinearColor color{1, 1, 1};   // factor of the albedo, in the middle, as are the next three
+    double edge = 1;              // share of the radii over which factors fade to 1: 1 soft, 0.2 a line
+    double specular = 1;          // of the material's
+    double roughness = 1;         // of the material's: below 1 is oil, or a wet film
+    double relief = 1;            // of the slope of pores
+    double weight(Vec3 p) const;  // 1 in the middle, 0 outside
+    LinearColor colorAt(Vec3 p) const;
 };
 
 // An eyeball whose iris and pupil are painted on.

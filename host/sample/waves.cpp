@@ -53,20 +53,24 @@ double WaveField::value(Vec3 p, const Footprint& footprint) const {
     return sum * std::sqrt(2.0 / double(waves_.size()));
 }
 
-void WaveField::slope(Vec3 p, const Footprint* footprints, int count, Vec3* out) const {
+double WaveField::slope(Vec3 p, const Footprint* footprints, int count, Vec3* out) const {
     for (int i = 0; i < count; ++i) out[i] = {};
+    double lost = 0;  // squared slopes that the first footprint blurs
     for (const Wave& wave : waves_) {
         float sine = 2;  // not computed yet
         for (int i = 0; i < count; ++i) {
             const float weaker = attenuation(wave.k, footprints[i]);
-            if (weaker <= negligible) continue;
+            const Vec3 n = footprints[i].normal;
+            const double kn = dot(wave.k, n), share = weaker > negligible ? std::exp(weaker) : 0;
+            if (i == 0) lost += (1 - kn * kn / dot(wave.k, wave.k)) * (1 - share * share);
+            if (share == 0) continue;
             if (sine > 1) sine = std::sin(float(dot(wave.k, p) + wave.phase));
-            const Vec3 n = footprints[i].normal, tangential = wave.k - n * dot(wave.k, n);
-            out[i] = out[i] - tangential * (sine * std::exp(weaker) / length(wave.k));
+            out[i] = out[i] - (wave.k - n * kn) * (sine * share / length(wave.k));
         }
     }
     // sin^2 averages 1/2, the tangential part of a random direction 2/3.
     for (int i = 0; i < count; ++i) out[i] = out[i] * std::sqrt(3.0 / double(waves_.size()));
+    return 1.5 * lost / double(waves_.size());
 }
 
 }  // namespace pellucid::sample

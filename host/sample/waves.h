@@ -27,7 +27,8 @@ class WaveField {
     // Height of mean square 1 over a surface, blurred over the footprint.
     double value(Vec3 p, const Footprint& footprint) const;
     // Slope along the tangent plane, of mean square 1, blurred over each footprint; out[i] for footprints[i].
-    void slope(Vec3 p, const Footprint* footprints, int count, Vec3* out) const;
+    // Returns the mean square that the blur over the first footprint takes away.
+    double slope(Vec3 p, const Footprint* footprints, int count, Vec3* out) const;
 
   private:
     struct Wave {

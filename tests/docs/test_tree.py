@@ -41,6 +41,7 @@ LAYERS = {
     "apps/batch": f"{API} host/system host/io bindings/cli",
     "apps/demo": "host/io host/sample",
     "apps/gltf": f"{API} host/io host/sample bindings/cli",
+    "apps/demo/tests": "host/sample apps/demo tests",
     "apps/batch/tests": f"{API} host/io apps/batch tests",
     "apps/gltf/tests": f"{API} host/io apps/gltf tests",
     "bindings/cli": f"host/fields {API} host/system host/tuning host/io host/scene host/profile_fit "

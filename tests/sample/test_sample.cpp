@@ -199,6 +199,55 @@ TEST(SampleDetail, ShadingDiffersFromGeometricAsAsked) {
     EXPECT_EQ(off.blurredNormal.data, off.geometricNormal.data);
 }
 
+// Slopes that the pixel blurs away are in the roughness: the sum of both is the same from near and from afar.
+TEST(SampleDetail, ReliefFinerThanAPixelBecomesRoughness) {
+    const sample::Scene scene(sample::makeRectangle(-2000, 2000, -2000, 2000, 0).view());
+    sample::GBufferOptions options;
+    options.detail.foldSlope = 0;
+    const double slope2 = std::pow(options.detail.poreSlope, 2),
+                 width2 = std::pow(options.detail.roughness, 2);
+    double before = 0;
+    for (const double distance : {150.0, 450.0, 900.0, 3000.0}) {
+        const sample::Camera camera{.eye = {0, 0, distance}, .up = {0, 1, 0}, .nearPlane = 10};
+        const sample::GBuffer g = sample::renderGBuffer(scene, camera, 200, 200, options);
+        double kept = 0, added = 0;
+        for (size_t i = 0; i < g.albedo.planeSize(); ++i) {
+            const double z = g.shadingNormal.plane(2)[i];
+            kept += (1 - z * z) / (z * z);
+            added += (std::pow(g.roughness.data[i], 2) - 1) * width2;
+        }
+        const double pixels = double(g.albedo.planeSize());
+        EXPECT_NEAR((kept + added) / pixels, slope2, tolerance::sampleRandomField * slope2) << distance;
+        EXPECT_GT(added, before);
+        before = added;
+    }
+    EXPECT_NEAR(before / 40000, slope2, 0.02 * slope2) << "all of it, from afar";
+}
+
+TEST(SampleDetail, ZonesOfSkinHaveTheirOwnColourGlossAndRelief) {
+    const sample::Scene scene(sample::makeRectangle(-50, 50, -50, 50, 0).view());
+    const sample::Camera camera{.eye = {0, 0, 200}, .up = {0, 1, 0}, .nearPlane = 10};
+    sample::GBufferOptions options;
+    options.detail.foldSlope = options.detail.blotchAmount = 0;
+    options.zones = {{{0, 0, 0}, {20, 20, 20}, {0.5, 0.25, 0.125}, 0.2, 1.5, 0.75, 0}};
+    const sample::GBuffer g = sample::renderGBuffer(scene, camera, 101, 101, options);
+    const std::array<float, 3> mean = sample::Look().albedo;
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(g.albedo.at(c, 50, 50), std::ldexp(mean[size_t(c)], -1 - c), 1e-6);
+        EXPECT_NEAR(g.albedo.at(c, 2, 2), mean[size_t(c)], 1e-6);
+    }
+    EXPECT_EQ(g.specular.at(0, 50, 50), 1.5f);
+    EXPECT_EQ(g.specular.at(0, 2, 2), 1);
+    EXPECT_EQ(g.roughness.at(0, 50, 50), 0.75f);
+    EXPECT_GE(g.roughness.at(0, 2, 2), 1);
+    EXPECT_EQ(g.shadingNormal.at(2, 50, 50), 1) << "no pores in the zone";
+    EXPECT_LT(g.shadingNormal.at(2, 2, 2), 1);
+    // Half way through the edge: from 16 to 20 mm.
+    const sample::SkinZone& zone = options.zones[0];
+    EXPECT_NEAR(zone.weight({0, 18, 0}), 0.5, 1e-12);
+    EXPECT_NEAR(zone.colorAt({0, 18, 0})[0], 0.75, 1e-12);
+}
+
 TEST(SampleDetail, AlbedoVariesAboutItsMean) {
     const sample::Scene scene(sphere().view());
     sample::GBufferOptions options;

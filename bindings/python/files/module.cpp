@@ -50,7 +50,7 @@ py::dict loadMesh(const std::string& path, int levels) {
     return toDict(mesh);
 }
 
-// One of the project's heads, or None for a mesh without its parts. A vertex's albedo has look and tints.
+// One of the project's heads, or None for a mesh without its parts. A vertex's albedo has look and zones.
 py::object loadHead(const std::string& path, int levels) {
     demo::DemoHead head;
     std::vector<float> albedo;
@@ -67,9 +67,9 @@ py::object loadHead(const std::string& path, int levels) {
             const sample::Look& look = head.looks[ids[v] - 1];
             sample::LinearColor color{look.albedo[0], look.albedo[1], look.albedo[2]};
             if (look.kind == sample::Look::Kind::Skin)
-                for (const sample::Tint& tint : head.tints) {
+                for (const sample::SkinZone& zone : head.zones) {
                     const float* p = &head.mesh.positions[3 * v];
-                    const sample::LinearColor factor = tint.at({p[0], p[1], p[2]});
+                    const sample::LinearColor factor = zone.colorAt({p[0], p[1], p[2]});
                     for (int c = 0; c < 3; ++c) color[c] *= factor[c];
                 }
             albedo.insert(albedo.end(), {float(color[0]), float(color[1]), float(color[2])});
