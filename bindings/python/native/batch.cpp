@@ -5,6 +5,7 @@
 #include "batch/batch_manifest.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
+#include "io/image/flip.h"
 #include "io/image/image_compare.h"
 #include "io/lut/lut_exr.h"
 
@@ -111,6 +112,11 @@ void bindBatch(py::module_& module) {
                         "rmse_all"_a = d.rmseAll, "psnr"_a = d.psnr, "mean"_a = d.mean, "p99"_a = d.p99,
                         "max"_a = d.max, "delta_e_mean"_a = d.deltaEMean, "delta_e_p99"_a = d.deltaE99,
                         "delta_e_max"_a = d.deltaEMax);
+    });
+    module.def("flip", [](uintptr_t a, uintptr_t b, size_t values, int width) {
+        const WithoutGil free;
+        return pellucid::io::flip({static_cast<const float*>(pointer(a)), values},
+                                  {static_cast<const float*>(pointer(b)), values}, width);
     });
 }
 

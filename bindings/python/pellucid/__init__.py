@@ -20,7 +20,7 @@ from .device import Buffer, Device, Event, devices, set_error_callback, set_log_
 from .lut import Lut
 from .mesh import LiveMesh, MeshTopology, orient_mesh, screen_curvature, submit_screen_curvature
 from .profile import Profile
-from .scatter import Scatter, TextureScatter, compare, submit_surface_integral, surface_integral
+from .scatter import Scatter, TextureScatter, compare, flip, submit_surface_integral, surface_integral
 from .scene import Scene, Shaded, load_scene, shade
 from .shader import Shader, warm_up_programs
 from .skin import skin_albedo, skin_from_albedo, skin_info, skin_reflectance
@@ -53,8 +53,8 @@ __version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"
 
 __all__ = [  # noqa: PLE0604
     "Buffer", "Device", "Event", "Image", "LiveMesh", "Lut", "MeshTopology", "PellucidError", "Profile",
-    "Scatter", "Scene", "Shaded", "Shader", "TextureScatter", "Vertices", "compare", "devices", "load_scene",
-    "orient_mesh", "screen_curvature", "set_error_callback", "set_log_callback", "shade",
+    "Scatter", "Scene", "Shaded", "Shader", "TextureScatter", "Vertices", "compare", "devices", "flip",
+    "load_scene", "orient_mesh", "screen_curvature", "set_error_callback", "set_log_callback", "shade",
     "skin_albedo", "skin_from_albedo", "skin_info", "skin_reflectance",
     "submit_screen_curvature", "submit_surface_integral", "surface_integral",
     "warm_up_programs", *_type_names]

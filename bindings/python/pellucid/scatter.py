@@ -263,6 +263,13 @@ def submit_surface_integral(device: Device, positions: Any, triangles: Any, irra
         diffusion_radius, millimetres_per_unit, list(cut), tolerance, x, s, w)))
 
 
+def _pictures(a: Any, b: Any) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    one, two = (np.ascontiguousarray(x, np.float32) for x in (a, b))
+    if one.shape != two.shape or one.ndim < 1 or one.shape[-1] != 3:
+        raise ValueError(f"a has shape {one.shape}, b {two.shape}; both need the same, ending in 3 channels")
+    return one, two
+
+
 def compare(a: Any, b: Any, mask: Any = None) -> dict[str, Any]:
     """How far two pictures of linear RGB are apart.
 
@@ -280,11 +287,24 @@ def compare(a: Any, b: Any, mask: Any = None) -> dict[str, Any]:
         the last two of its size), rmse_all, psnr in dB of a white of 1, and CIEDE2000 [Sharma et al. 2005]
         as delta_e_mean, delta_e_p99, delta_e_max. All but the counts are NaN when no pixel was compared.
     """
-    one, two = (np.ascontiguousarray(x, np.float32) for x in (a, b))
-    if one.shape != two.shape or one.ndim < 1 or one.shape[-1] != 3:
-        raise ValueError(f"a has shape {one.shape}, b {two.shape}; both need the same, ending in 3 channels")
+    one, two = _pictures(a, b)
     within = None if mask is None else np.ascontiguousarray(np.asarray(mask) != 0, np.uint8)
     if within is not None and within.shape != one.shape[:-1]:
         raise ValueError(f"mask has shape {within.shape}; {one.shape[:-1]} is needed")
     return _native.compare_images(one.ctypes.data, two.ctypes.data, one.size // 3,
                                   0 if within is None else within.ctypes.data)
+
+
+def flip(a: Any, b: Any) -> float:
+    """How visible the difference of two pictures is: the mean of LDR-FLIP [Andersson et al. 2020] at
+    67 pixels per degree, 0 (none) to 1.
+
+    Parameters
+    ----------
+    a, b : (height, width, 3) floats
+        Linear RGB, cut at 0 and 1. A NaN makes the result NaN.
+    """
+    one, two = _pictures(a, b)
+    if one.ndim != 3 or one.size == 0:
+        raise ValueError(f"the pictures have shape {one.shape}; (height, width, 3) is needed")
+    return _native.flip(one.ctypes.data, two.ctypes.data, one.size, one.shape[1])

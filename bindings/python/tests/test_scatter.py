@@ -135,6 +135,19 @@ def test_surface_integral_of_an_evenly_lit_sheet(device):
         pel.surface_integral(device, positions, triangles, np.zeros_like(positions), points, tolerance=0)
 
 
+def test_flip():
+    y, x, c = np.mgrid[:32, :40, :3]
+    plain = 0.5 + 0.4 * np.sin(0.3 * x + 0.2 * y + c)
+    # flip-evaluator 1.7: 0.0631269 (tests/io/test_flip.cpp has more)
+    assert pel.flip(plain, 0.98 * plain) == pytest.approx(0.0631269, abs=3e-5)
+    assert pel.flip(plain, plain) == 0
+    for wrong in (plain[0], plain[:0]):
+        with pytest.raises(ValueError, match="height, width, 3"):
+            pel.flip(wrong, wrong)
+    with pytest.raises(ValueError, match="shape"):
+        pel.flip(plain, plain[:3])
+
+
 def test_compare():
     a = np.zeros((4, 5, 3), np.float32)
     b = a.copy()
