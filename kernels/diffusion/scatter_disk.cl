@@ -75,7 +75,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void sample_disk
             if (!material || !(pixel.z > 0.0f)) continue;
             __global const PelGatherMaterial* m = &materials[material - 1];
             const float4 s = gatherDisk(frame, points, m, taps, nodes, x, y, &taken);
-            PEL_STORE4(s - ownShare(nodes, m->table, pixel) * light, samples + sampleOf(frame, x, y));
+            PEL_STORE4(fmax(s - ownShare(nodes, m->table, pixel) * light, (float4)(0.0f)),
+                       samples + sampleOf(frame, x, y));
             ++pixels;
         }
     }

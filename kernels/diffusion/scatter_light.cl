@@ -261,9 +261,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void sample_ligh
             float4 sample = (float4)(0.0f);
             if (here.area > 0.0f && scatterPixel(frame, pyramid, tables, nodes, maps, mapCount, lights,
                                                  (int)x, (int)y, &here, &blocks, &texels, &s)) {
-                sample =
-                    (float4)(fmax(s, (float3)(0.0f)) - ownLightOf(frame, pyramid, tables, nodes, x, y, &here),
-                             1.0f);
+                s -= ownLightOf(frame, pyramid, tables, nodes, x, y, &here);
+                sample = (float4)(fmax(s, (float3)(0.0f)), 1.0f);
                 ++pixels;
             }
             const uint inTile =

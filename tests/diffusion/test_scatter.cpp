@@ -164,6 +164,21 @@ TEST(Scatter, HalfRateKeepsDetail) {
         }
 }
 
+// Beside highlights of a single pixel, where the share of a pixel in its light is not that of taps.
+TEST(Scatter, HalfRateLeavesNoLightBelowZero) {
+    for (const auto& [method, taps] : byTaps)
+        for (float scale : {0.03f, 0.1f, 0.3f}) {
+            Picture p = plane(64, 48, 0.2, [](double x, double y) {
+                const bool bright = std::lround(x / 0.2) % 8 == 0 && std::lround(y / 0.2) % 8 == 0;
+                return bright ? Vec3{1e3, 1e3, 1e3} : Vec3{0.01, 0.01, 0.01};
+            });
+            p.params.everywhere = p.params.halfRate = 1;
+            const auto scattered = scatterBy(p, scale, controlsOf(method, taps)).scattered;
+            EXPECT_GE(*std::ranges::min_element(scattered), 0.0f) << int(method) << ", " << scale;
+            EXPECT_LE(*std::ranges::max_element(scattered), 1.001e3f) << int(method) << ", " << scale;
+        }
+}
+
 // And hosts that average frames, whose taps are turned, get what more taps give.
 TEST(Scatter, ManyTapsOrFramesAreTheWholeProfile) {
     Picture p = scene(false);

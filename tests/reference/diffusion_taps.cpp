@@ -168,7 +168,9 @@ std::vector<std::optional<Rgb>> betweenSamples(const TapScene& s, const Profile&
                         continue;
                     const double apart = length(all[there].p - all[here].p);
                     if (apart * apart > alike * std::max(all[here].area, all[there].area)) continue;
-                    sum = sum + gathered[there] - ownLight(there), ++count;
+                    const Rgb beyond = gathered[there] - ownLight(there);
+                    for (int c = 0; c < 3; ++c) sum[c] += std::max(beyond[c], 0.0);
+                    ++count;
                 }
             if (count) result[here] = sum / double(count) + ownLight(here);
         }
