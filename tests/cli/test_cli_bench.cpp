@@ -176,13 +176,16 @@ TEST_F(BenchCommand, MeasuresMethodsAgainstLight) {
     std::map<std::string, double> errors, flips;
     int budgets = 0;
     for (const auto& e : device.at("operations")) {
-        if (!e.contains("scene") || e.at("setting") == "error 0.002 of white")
+        if (!e.contains("scene") || e.at("setting") == "error 0.002 of white") {
             EXPECT_GT(e.at("watts").get<double>(), 0) << e;
+        }
         if (!e.contains("scene")) continue;
         ASSERT_FALSE(e.contains("failed")) << e;
         EXPECT_GE(e.at("passes").size(), 2u);  // how their times add up depends on what else the machine does
         for (const auto& pass : e.at("passes")) EXPECT_GT(pass.at("ms").get<double>(), 0) << pass;
-        if (e.at("bandwidth_share").is_number()) EXPECT_LE(e.at("bandwidth_share").get<double>(), 1);
+        if (e.at("bandwidth_share").is_number()) {
+            EXPECT_LE(e.at("bandwidth_share").get<double>(), 1);
+        }
         if (e.at("group") == "budgets") {
             EXPECT_TRUE(e.at("expected_error").get<double>() > 0 && e.at("front_ratio").get<double>() >= 1);
             ++budgets;
@@ -217,10 +220,11 @@ TEST_F(BenchCommand, MeasuresMethodsAgainstLight) {
          "PELLUCID_TUNING=" + path("out/tuning.txt"));
     const auto again = nlohmann::json::parse(read(path("again/bench.json"))).at("devices").at(0);
     for (const auto& e : again.at("operations"))
-        if (e.at("group") == "budgets")
+        if (e.at("group") == "budgets") {
             EXPECT_NEAR(e.at("expected_error"),
                         errors[e.at("took") == "none" ? "Lambert" : e.at("took").get<std::string>()],
                         e.at("took") == "auto" ? 0.05 * errors["auto"] : 1e-4);
+        }
 }
 
 TEST_F(BenchCommand, StabilityNeedsNothingButTheCommand) {

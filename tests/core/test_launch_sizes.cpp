@@ -94,7 +94,7 @@ TEST_F(LaunchSizes, DamagedFilesAreIgnoredWithTheReason) {
 TEST_F(LaunchSizes, NoSizeChangesABit) {
     using namespace lit_scenes;
     const std::map<int, std::vector<LaunchPolicy>> others{
-        {1, {{16, 2, 4, 256}}}, {pellucid::Device("").info().mathWidth, {{4, 16, 128, 64}}}};
+        {1, {{16, 2, 4, 256}}}, {int(pellucid::Device("").info().mathWidth), {{4, 16, 128, 64}}}};
     struct Made {
         std::vector<std::vector<float>> values;
         std::string warnings;

@@ -167,7 +167,7 @@ TEST(LutApi, TablesOfAStackAreThoseOfTheirOwn) {
         EXPECT_TRUE(texels == expected) << encoding;
     };
     PelLutInfo info = pelLutInfoDefaults();
-    for (const auto [width, height] : {std::pair(1u, 1u), {33, 18}, {90, 70}})
+    for (const auto& [width, height] : {std::pair(1u, 1u), {33, 18}, {90, 70}})
         for (PelLutAxis axis : {PEL_AXIS_LINEAR, PEL_AXIS_ROOT}) {
             SCOPED_TRACE(testing::Message() << width << " x " << height << ", axis " << axis);
             std::vector<PelLutInfo> curvature, shadow;
