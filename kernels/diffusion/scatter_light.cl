@@ -202,12 +202,17 @@ static inline uint2 pixelOfTile(__global const PelDiffusionFrame* frame, uint ti
                        at / across % across * step);
 }
 
-#if PEL_HALF
-#define SAMPLES (PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE / 4)  // of a tile
-
 static inline Pixel pixelIn(__global const PelDiffusionFrame* frame, __global const float* pyramid, uint x,
                             uint y) {
     return pixelAt(pyramid + pyramidRow(&frame->level[0], (int)y) + x, frame->level[0].stride);
+}
+
+#if PEL_HALF
+#define SAMPLES (PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE / 4)  // of a tile
+
+// Number of a sample in a tile.
+static inline uint sampleInTile(uint x, uint y) {
+    return y % PEL_DIFFUSION_TILE / 2 * (PEL_DIFFUSION_TILE / 2) + x % PEL_DIFFUSION_TILE / 2;
 }
 
 // Light of the pixel itself, which samples leave out.
@@ -228,13 +233,13 @@ static inline bool meanOfLight(__global const PelDiffusionFrame* frame, __global
     for (uint sy = y & ~1u; sy <= y + (y & 1) && sy < frame->height; sy += 2)
         for (uint sx = x & ~1u; sx <= x + (x & 1) && sx < frame->width; sx += 2) {
             const uint tile = sy / PEL_DIFFUSION_TILE * frame->tilesX + sx / PEL_DIFFUSION_TILE,
-                       inX = sx % PEL_DIFFUSION_TILE, inY = sy % PEL_DIFFUSION_TILE;
-            if (!(parts[tile] >> (inY / PART * PARTS + inX / PART) & 1)) continue;
+                       part = sy % PEL_DIFFUSION_TILE / PART * PARTS + sx % PEL_DIFFUSION_TILE / PART;
+            if (!(parts[tile] >> part & 1)) continue;
             const Pixel there = pixelIn(frame, pyramid, sx, sy);
             const float3 d = there.p - here->p;
             if (there.id == here->id && there.area > 0.0f &&
                 dot(d, d) <= SAMPLES_ALIKE * fmax(there.area, here->area))
-                sum += vload4(tile * SAMPLES + inY / 2 * (PEL_DIFFUSION_TILE / 2) + inX / 2, samples);
+                sum += vload4(tile * SAMPLES + sampleInTile(sx, sy), samples);
         }
     if (sum.w > 0.0f) *mean = sum.xyz / sum.w;
     return sum.w > 0.0f;
@@ -265,9 +270,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void sample_ligh
                 sample = (float4)(fmax(s, (float3)(0.0f)), 1.0f);
                 ++pixels;
             }
-            const uint inTile =
-                y % PEL_DIFFUSION_TILE / 2 * (PEL_DIFFUSION_TILE / 2) + x % PEL_DIFFUSION_TILE / 2;
-            vstore4(sample, tile * SAMPLES + inTile, samples);
+            vstore4(sample, tile * SAMPLES + sampleInTile(x, y), samples);
         }
     }
     __local uint sumsOfGroup[2];
@@ -293,8 +296,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_lig
             const uint2 place = pixelOfTile(frame, tile, at, PART);
             const uint x = place.x, y = place.y;
             if (x >= frame->width || y >= frame->height) continue;
-            const Pixel here =
-                pixelAt(pyramid + pyramidRow(&frame->level[0], (int)y) + x, frame->level[0].stride);
+            const Pixel here = pixelIn(frame, pyramid, x, y);
             if (!(here.area > 0.0f)) continue;
             float3 s;
 #if PEL_HALF

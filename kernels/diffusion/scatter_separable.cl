@@ -143,17 +143,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void sample_colu
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
         if (!(tiles[tile] & PEL_TILE_GATHERS)) continue;
         for (uint item = get_local_id(0); item < PEL_TILE_SAMPLES; item += PEL_GROUP) {
-            const uint x = sampleColumn(frame, tile, item), y = sampleRow(frame, tile, item);
-            if (x >= frame->width || y >= frame->height) continue;
-            const size_t at = (size_t)y * frame->width + x;
-            const float4 light = gathered(points, at, PEL_GATHER_LIGHT),
-                         pixel = gathered(points, at, PEL_GATHER_PIXEL);
-            const uint material = frame->materialOf[as_uint(light.w)];
-            if (!material || !(pixel.z > 0.0f)) continue;
-            __global const PelGatherMaterial* m = &materials[material - 1];
-            const float4 s = filterPixel(frame, points, rows, 4, m, taps, nodes, x, y, true, &taken);
-            PEL_STORE4(fmax(s - ownShare(nodes, m->table, pixel) * light, (float4)(0.0f)),
-                       samples + sampleOf(frame, x, y));
+            GatherPixel p;
+            if (!loadSample(frame, points, materials, tile, item, &p)) continue;
+            storeSample(frame, points, nodes, &p,
+                        filterPixel(frame, points, rows, 4, p.material, taps, nodes, p.x, p.y, true, &taken),
+                        samples);
             ++pixels;
         }
     }
@@ -172,31 +166,25 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void filter_colu
     const uint count = frame->tilesX * frame->tilesY;
     uint pixels = 0, taken = 0;
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
-        const bool gathers = tiles[tile] & PEL_TILE_GATHERS;
-        if (!gathers && frame->inPlace) continue;
+        if (!(tiles[tile] & PEL_TILE_GATHERS) && frame->inPlace) continue;
         for (uint item = get_local_id(0); item < PEL_TILE_ITEMS; item += PEL_GROUP) {
-            const uint x = columnOf(frame, tile, item), y = rowOf(frame, tile, item);
-            if (x >= frame->width || y >= frame->height) continue;
-            const size_t at = (size_t)y * frame->width + x;
-            const float4 light = gathered(points, at, PEL_GATHER_LIGHT);
-            const uint material = gathers ? frame->materialOf[as_uint(light.w)] : 0;
-            const float4 pixel = gathered(points, at, PEL_GATHER_PIXEL);
-            const Span to = imageSpan(out, &frame->out, x, y);
-            if (material && pixel.z > 0.0f) {
-                __global const PelGatherMaterial* m = &materials[material - 1];
+            GatherPixel p;
+            if (!loadPixel(frame, points, materials, columnOf(frame, tile, item), rowOf(frame, tile, item),
+                           &p))
+                continue;
+            const Span to = imageSpan(out, &frame->out, p.x, p.y);
+            if (p.material) {
                 float4 s;
-#if PEL_HALF
-                if (meanOfSamples(frame, points, samples, x, y, &s))
-                    s += ownShare(nodes, m->table, pixel) * light;
-                else
-#endif
-                    s = filterPixel(frame, points, rows, 4, m, taps, nodes, x, y, true, &taken), ++pixels;
-                const float4 mixed = light + pixel.w * (s - light);
+                if (!betweenSamples(frame, points, nodes, samples, &p, &s))
+                    s = filterPixel(frame, points, rows, 4, p.material, taps, nodes, p.x, p.y, true, &taken),
+                    ++pixels;
+                const float4 light = gathered(points, p.at, PEL_GATHER_LIGHT),
+                             mixed = light + gathered(points, p.at, PEL_GATHER_PIXEL).w * (s - light);
                 storeColor(PEL_FORMAT_OUT, to, vec3(mixed.x, mixed.y, mixed.z), 1);
             } else if (!frame->inPlace) {
-                storeColor(PEL_FORMAT_OUT, to,
-                           loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y)),
-                           1);
+                storeColor(
+                    PEL_FORMAT_OUT, to,
+                    loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, p.x, p.y)), 1);
             }
         }
     }
