@@ -61,7 +61,7 @@ void GatherScatter::sendMaterials(const std::map<uint32_t, Material>& materials)
     std::vector<float> values;
     for (const Material& material : distinct) {
         const ProfileShape& shape = material.profile->shape();
-        ProfileNodes nodes = profileNodes(shape, material.scale, {});
+        ProfileNodes nodes = profileNodes(shape, material.scale);
         const double reach = nodes.table.reach;
         if (form_ == Form::lines) takeLineSpread(nodes, shape, material.scale);
         PelGatherMaterial m{};

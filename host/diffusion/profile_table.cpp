@@ -157,39 +157,42 @@ class Slab {
     }
     // `thickness`: in mean free paths.
     double transmitted(double thickness) const { return strength_ / std::sinh(at(thickness)); }
-    // Its derivative.
-    double slope(double thickness) const {
-        return -transmitted(thickness) * decay_ / std::tanh(at(thickness));
-    }
 
   private:
     double at(double thickness) const { return decay_ * (thickness + 1.42); }
     double decay_, strength_;
 };
 
-// Q(r): R + c Q, with c the cosine between the way to a sample and the inward normal, lets as much light
-// through every slab as a random walk does. Below one mean free path it is no more than `directed` R. What
-// would come from beyond `reach` is added to the outer half.
+// V(s): light that a slab of thickness s lets through from a point of its far side straight to the other, so
+// that within `reach`, and with what surfaces count there (PEL_SLAB_COSINE), as much comes through as by a
+// random walk.
 template <class Density>
-Rgb densityThrough(const Density& density, const Rgb& beyond, const Rgb& path, const Rgb& meanDistance,
-                   double directed, double reach, double r) {
-    const Rgb R = density(r);
-    const double outer = 4 * std::max(2 * r / reach - 1, 0.0) / reach;  // its integral over r is 1
+Rgb densityThrough(const Density& density, const Rgb& path, const Rgb& meanDistance, double directed,
+                   double reach, double s) {
+    constexpr int steps = 64;
+    const double first = s / PEL_SLAB_COSINE, step = std::max(std::log(reach / first), 0.0) / steps;
+    Rgb along{};  // from r = s / cosine on
+    for (int i = 0; i < steps; ++i) {
+        const double r = first * std::exp((i + 0.5) * step),
+                     far = std::max(s / r - PEL_SLAB_FROM, 0.0) / (PEL_SLAB_COSINE - PEL_SLAB_FROM),
+                     weight = 2 * std::numbers::pi * r * r * (1 - far) * (1 + directed * s / r) * step;
+        const Rgb R = density(r);
+        for (int c = 0; c < 3; ++c) along[c] += weight * R[c];
+    }
     Rgb through{};
     for (int c = 0; c < 3; ++c) {
         if (!(path[c] > 0)) continue;
-        const Slab slab(2.5 * path[c] / meanDistance[c]);
-        const double t = r / path[c], missing = (slab.transmitted(t) - beyond[c]) / r;
-        const double q = (missing - slab.slope(t) / path[c]) / (2 * std::numbers::pi * r) - R[c] +
-                         outer * slab.transmitted(reach / path[c]) / (2 * std::numbers::pi * reach);
-        through[c] = std::max(t < 1 ? std::min(q, directed * R[c]) : q, 0.0);
+        const double t = s / path[c], q = PEL_SLAB_FIRST + PEL_SLAB_SPREAD * std::sqrt(t), b = s / q,
+                     left = Slab(2.5 * path[c] / meanDistance[c]).transmitted(t) - along[c],
+                     area = s + b - (reach + b) * std::exp((s - reach) / b);  // 1 / 2 pi b of what counts
+        through[c] = std::max(left, 0.0) / (2 * std::numbers::pi * b * std::max(area, 0.6 * (s + b)));
     }
     return through;
 }
 
 }  // namespace
 
-ProfileNodes profileNodes(const ProfileShape& shape, double scale, const Rgb& meanFreePath) {
+ProfileNodes profileNodes(const ProfileShape& shape, double scale, const Rgb& meanFreePath, double strength) {
     const Rgb width = shape.width();
     const double narrowest = std::min({width[0], width[1], width[2]}),
                  widest = std::max({width[0], width[1], width[2]});
@@ -232,7 +235,7 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale, const Rgb& me
     ProfileNodes result;
     const double reach = radiusOfNode(firstBits + uint32_t(nodes - 1) * step);
     const double fall = 4 / (reach * reach);  // of the widest Gaussian, which is 1/16 at the reach
-    result.table = {0, uint32_t(nodes), firstBits, float(reach), float(fall), 0, {}, 1};
+    result.table = {0, uint32_t(nodes), firstBits, float(reach), float(fall), 0, {}, 0, {}, 1};
     result.values.resize(12 * nodes);
     for (int c = 0; c < 3; ++c) result.meanDistance[c] = distance[c] / within[c];
     const Rgb all = shares[nodes - 1];
@@ -263,16 +266,18 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale, const Rgb& me
     append([&](double r) { return perArea(shape.radial(r / scale)); });
     append([&](double r) { return perArea(densityOfBlock(shape, r / scale)); });
     const Rgb& mean = result.meanDistance;
-    const double directed = 2 * gainPerCurvature * (meanFreePath[0] + meanFreePath[1] + meanFreePath[2]) /
+    const double directed = 2 * gainPerCurvature * strength *
+                            (meanFreePath[0] + meanFreePath[1] + meanFreePath[2]) /
                             (mean[0] + mean[1] + mean[2]);
     result.table.directed = float(directed);
     if (directed == 0) return result.values.resize(result.values.size() + 4 * PEL_PROFILE_TERMS), result;
-    append([&](double distance) {
-        const auto through = [&](double r) {
-            return densityThrough([&](double x) { return perArea(shape.radial(x / scale)); },
-                                  shape.transmission(r / scale), meanFreePath, mean, directed, reach, r);
-        };
-        return meanOfBlock(through, distance);
+    result.table.slab = float(std::min(strength, 1.0));
+    for (int c = 0; c < 3; ++c)
+        result.table.spread[c] =
+            meanFreePath[c] > 0 ? float(PEL_SLAB_SPREAD / std::sqrt(meanFreePath[c])) : 0.0f;
+    append([&](double s) {
+        return densityThrough([&](double x) { return perArea(shape.radial(x / scale)); }, meanFreePath, mean,
+                              directed, reach, s);
     });
     return result;
 }

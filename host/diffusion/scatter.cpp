@@ -63,7 +63,7 @@ void Scatter::setMaterial(uint32_t id, const Ref<Profile>& profile, float scale)
         invalidArgument(
             "the scale of material ", id, "'s profile is ", scale,
             "; a finite length of at least 0 is needed, in the unit of positions per unit of the profile");
-    if (scale > 0) profileNodes(profile->shape(), scale, {});  // throws where the lengths are out of range
+    if (scale > 0) profileNodes(profile->shape(), scale);  // throws where the lengths are out of range
     if (scale > 0)
         materials_[id] = {profile, scale};
     else

@@ -5,6 +5,7 @@
 
 #include "core/launch_policy.h"
 #include "shading/launch_ranges.h"
+#include "shading/material.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
@@ -39,8 +40,11 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
     std::vector<float> values;
     for (const Material& material : distinct) {
         // Otherwise surfaces have no outer side.
-        const Rgb path = hasSides ? Rgb{material.gain[0], material.gain[1], material.gain[2]} : Rgb{};
-        ProfileNodes nodes = profileNodes(material.profile->shape(), material.scale, path);
+        Rgb path{};
+        const PelProfileInfo info = material.profile->info();
+        for (int c = 0; hasSides && c < 3; ++c) path[c] = meanFreePath(info, c) * material.scale;
+        const double strength = path[0] > 0 ? material.gain[0] / path[0] : 0;
+        ProfileNodes nodes = profileNodes(material.profile->shape(), material.scale, path, strength);
         nodes.table.offset = uint32_t(values.size() / 4);
         for (int c = 0; c < 3; ++c)
             nodes.table.perCurvature[c] = float(nodes.table.directed / 2 * nodes.meanDistance[c] *

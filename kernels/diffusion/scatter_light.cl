@@ -62,18 +62,14 @@ typedef struct Texel {
 
 static inline Texel texelAt(__global const PelLightMap* map, float3 p, float3 normal) {
     floatw w;
-    Vec3w toLight;
-    const Vec3w at = vec3((floatw)(p.x), (floatw)(p.y), (floatw)(p.z));
-    texelOf(map, at, &w);
-    lightAt(map, at, &toLight);
+    texelOf(map, vec3((floatw)(p.x), (floatw)(p.y), (floatw)(p.z)), &w);
     Texel texel;
 #if PEL_WIDTH == 1
     texel.width = map->texel * w;
-    texel.toLight = (float3)(toLight.x, toLight.y, toLight.z);
 #else
     texel.width = map->texel * w.s0;
-    texel.toLight = (float3)(toLight.x.s0, toLight.y.s0, toLight.z.s0);
 #endif
+    texel.toLight = toLightFrom(map, p);
     texel.cosine = fabs(dot(texel.toLight, normal));
     return texel;
 }
@@ -167,6 +163,7 @@ static inline __attribute__((always_inline)) bool scatterPixel(
         for (; k < mapCount && maps[k].light == number; ++k) {
             const Texel t = texelAt(maps + k, here->p, normal);
             const float3 along = t.toLight - normal * dot(normal, t.toLight);
+            lit.slab = slabOf(table, receiver.normal, t.toLight);
             lit.along = along * rsqrt(fmax(dot(along, along), 1e-12f));
             lit.parts = (uint)(fmin(1.0f / fmax(t.cosine, 0.01f), MAX_PARTS) + 0.5f);
             *texels += addLitSurface(&sums, maps + k, lights, nodes, table, &lit);

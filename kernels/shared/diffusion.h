@@ -53,12 +53,23 @@
 // spaced in the bits of a float, PEL_PROFILE_NODES to the octave. From the last node on R is 0 and the
 // share 1.
 //
-// After the nodes follow R, the mean over a block, and that of Q (docs/mathematics.md, section 12, "Slabs")
-// as sums of PEL_PROFILE_TERMS Gaussians, four floats a term. Term i is exp2(-widest 2^i d^2), so each is the
-// square of the one before, and a vector of distances needs no look-up.
+// After the nodes follow R, the mean over a block, and V (docs/mathematics.md, section 12, "Slabs") as sums
+// of PEL_PROFILE_TERMS Gaussians, four floats a term. Term i is exp2(-widest 2^i d^2), so each is the square
+// of the one before, and a vector of distances needs no look-up.
 #define PEL_PROFILE_TERMS 16
 #define PEL_PROFILE_NODES 16
 #define PEL_PROFILE_NODE_BITS 19  // 23 bits of mantissa, less those of a node
+// Light through the body (docs/mathematics.md, section 12, "Slabs"): q is PEL_SLAB_FIRST, plus
+// PEL_SLAB_SPREAD times the root of the thickness in mean free paths.
+#define PEL_SLAB_FIRST 1.42f
+#define PEL_SLAB_SPREAD 0.96
+#define PEL_SLAB_MOST 1.05f  // light at any angle over that along the normal
+// A sample counts as on the far side of a slab from the first cosine to the second, beyond that of a sphere;
+// where the receiver's cosine to the light is below the third.
+#define PEL_SLAB_FROM 0.08f
+#define PEL_SLAB_COSINE 0.25
+#define PEL_SLAB_TURNED 0.3f
+#define PEL_SLAB_TERMS 14  // of the Gaussians: narrower ones matter to no map's texels
 // Width of such blocks over their distance: the root of the mean square over a ring around a point,
 // weighted by an R that falls as distance^-1.5.
 #define PEL_BLOCK_WIDTH 0.431
@@ -70,7 +81,9 @@ typedef struct PelProfileTable {
     float widest;           // 1/length^2: log2 of the widest Gaussian falls by so much
     float directed;         // factor of R: 1 + directed t, t the cosine between the inward normal and the way
     float perCurvature[3];  // length: even light gains so much by that, to first order
-    float perRadius2;       // of squared lengths: 1, or over the square of a receiver's factor of the radius
+    float slab;             // 0 to 1: how much light counts as through a slab where it comes through the body
+    float spread[3];   // 1/sqrt(length): how much narrower light leaves a slab by the root of its thickness
+    float perRadius2;  // of squared lengths: 1, or over the square of a receiver's factor of the radius
 } PelProfileTable;
 
 typedef struct PelPyramidLevel {
@@ -108,7 +121,7 @@ typedef struct PelDiffusionFrame {
 #define PEL_DIFFUSION_COUNTERS 6
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(PelProfileTable) == 40 && sizeof(PelPyramidLevel) == 16);
+static_assert(sizeof(PelProfileTable) == 56 && sizeof(PelPyramidLevel) == 16);
 static_assert(sizeof(PelDiffusionFrame) ==
               4 * (10 + 3 + 16 + PEL_DIFFUSION_IDS) + 6 * 32 + PEL_PYRAMID_LEVELS * 16);
 #endif

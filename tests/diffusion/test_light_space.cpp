@@ -232,7 +232,7 @@ TEST(LightSpace, SlabsLetThroughWhatRandomWalksDo) {
     const uint32_t side = sized(48u, 24u);
     const float paths[] = {1.1f * d, 1.1f * d, 1.1f * d}, white[] = {0.8f, 0.8f, 0.8f};
     LitBall lamp = lampFromBehind(extent);
-    for (double thickness : {0.3, 1.0, 2.5, 4.0}) {
+    for (double thickness : {0.3, 0.6, 1.0, 2.5, 4.0}) {
         const double truth =
             reference::walkSlab({path, 0.99055}, thickness, 1, 1, sized(100000, 1000), 7).transmitted / 0.8;
         lamp.maps = {texelsOf(lamp.width, [&](double, double, int) { return 1 - 0.05 * thickness; })};
