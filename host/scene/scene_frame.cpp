@@ -174,6 +174,8 @@ PelShaderOptions withOptionsOf(const SceneFile& scene, PelShaderOptions options)
     options.targetError = own.targetError;
     if (options.timeBudget == 0) options.timeBudget = own.timeBudget;
     if (own.frameIndex) options.frameIndex = own.frameIndex;
+    if (own.historyWeight > 0) options.historyWeight = own.historyWeight;
+    if (own.historyCut) options.historyCut = own.historyCut;
     options.millimetresPerUnit = own.millimetresPerUnit;
     return options;
 }
