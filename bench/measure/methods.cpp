@@ -74,7 +74,7 @@ std::vector<Setting> settings() {
     for (const bool halfRate : {false, true}) {
         Setting& s =
             add("disk", halfRate ? "8 taps, half rate, history" : "8 taps, history", PEL_SCATTERING_SCREEN);
-        s.request.scatterTaps = 8, s.request.halfRate = halfRate, s.request.historyWeight = 0.9f;
+        s.request.scatterTaps = 8, s.request.halfRate = halfRate, s.request.historyWeight = 0.8f;
         s.moving = true, s.quick = !halfRate;
     }
     for (const double target : {0.0, 5e-4, 2e-3, 5e-3, 1e-2, 2e-2}) {
@@ -205,7 +205,7 @@ class Methods {
     Json measure() {
         for (const FrozenScene& scene : frozenScenes())
             if (scene.quick || !request_.quick) measureScene(scene);
-        if (!request_.quick && request_.only.empty()) measureFrames();
+        if (!request_.quick) measureFrames();
         measureClips();
         return {{"scenes", scenes_}, {"operations", rows_}, {"pictures", pictures_}};
     }
@@ -306,7 +306,7 @@ class Methods {
     // Whether a method is still to be measured in this scene.
     bool anyLeft(const std::string& scene) const {
         return std::ranges::any_of(settings(), [&](const Setting& s) {
-            return (s.shown || s.texture == 1024) && request_.wants(scene + ": " + s.name());
+            return (s.shown || s.moving || s.texture == 1024) && request_.wants(scene + ": " + s.name());
         });
     }
     template <class Work>

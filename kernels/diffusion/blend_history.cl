@@ -12,6 +12,14 @@
 // number of frames in it; blue; distance from the camera.
 #define MAX_FRAMES 31u
 
+// Standard errors that a change of the mean light round a pixel must exceed to count. Measured on clips of a
+// head: with 1 the noise of taps counts as change, with 3 light that turns lags behind.
+#define CHANGE_ERRORS 2.0f
+
+static inline bool outside(__global const PelGatherFrame* frame, int x, int y) {
+    return x < 0 || y < 0 || x >= (int)frame->width || y >= (int)frame->height;
+}
+
 static inline uint byteOf(float value) {
     return as_uint(value) & 0xffu;
 }
@@ -52,6 +60,10 @@ static inline float3 motionOf(__global const PelGatherFrame* frame, __global uch
 #endif
 }
 
+static inline float4 lightOf(float4 history) {
+    return (float4)(withoutByte(history.x), withoutByte(history.y), history.z, 0.0f);
+}
+
 // Light where a pixel was, between the centres of pixels, and the number of frames in it; 0 where another
 // surface was.
 static inline float4 earlierLight(__global const PelGatherFrame* frame, __global const float* history,
@@ -69,33 +81,54 @@ static inline float4 earlierLight(__global const PelGatherFrame* frame, __global
     for (int k = 0; k < 4; ++k) {
         const int x = left + (k & 1), y = top + (k >> 1);
         const float weight = (1.0f - fabs(column - (float)x)) * (1.0f - fabs(row - (float)y));
-        if (!(weight > 0.0f) || x < 0 || y < 0 || x >= (int)frame->width || y >= (int)frame->height) continue;
+        if (!(weight > 0.0f) || outside(frame, x, y)) continue;
         const float4 there = PEL_LOAD4(history + 4 * ((size_t)y * frame->width + (size_t)x));
         const float apart = there.w - distance;
         if (byteOf(there.x) != id || !(apart * apart <= PEL_ALIKE * point.w)) continue;
         const uint count = byteOf(there.y);
         *frames = sum > 0.0f ? min(*frames, count) : count;
-        light += weight * (float4)(withoutByte(there.x), withoutByte(there.y), there.z, 0.0f);
+        light += weight * lightOf(there);
         sum += weight;
     }
     return sum > 0.0f ? light / sum : light;
 }
 
-// The range of this frame's light on the surface round a pixel. At half rate the pixels between two that are
-// computed add nothing.
-static inline void rangeAround(__global const PelGatherFrame* frame, __global const float* points,
-                               __global const float* fresh, const GatherPixel* p, float4 point, uint id,
-                               float4* low, float4* high) {
-    const int step = 1 << PEL_HALF;
+// Of the pixels round one that are on its surface. At half rate those between two that are computed add
+// nothing.
+typedef struct Around {
+    float4 low, high;  // of this frame's light
+    float4 change;     // of light from the history to this frame, as far as noise does not explain it
+} Around;
+
+static inline Around lightAround(__global const PelGatherFrame* frame, __global const float* points,
+                                 __global const float* fresh, __global const float* history,
+                                 const GatherPixel* p, float4 point, uint id, float3 motion) {
+    const int step = 1 << PEL_HALF, right = (int)floor(motion.x + 0.5f), down = (int)floor(motion.y + 0.5f);
+    Around around = {(float4)(FLT_MAX), (float4)(-FLT_MAX), (float4)(0.0f)};
+    float4 sum = (float4)(0.0f), squares = (float4)(0.0f);
+    float count = 0.0f;
     for (int dy = -step; dy <= step; dy += step)
         for (int dx = -step; dx <= step; dx += step) {
             const int x = (int)p->x + dx, y = (int)p->y + dy;
-            if (x < 0 || y < 0 || x >= (int)frame->width || y >= (int)frame->height) continue;
+            if (outside(frame, x, y)) continue;
             const size_t there = (size_t)y * frame->width + (size_t)x;
             if (!sameSurface(points, there, id, point)) continue;
             const float4 light = PEL_LOAD4(fresh + 4 * there);
-            *low = fmin(*low, light), *high = fmax(*high, light);
+            around.low = fmin(around.low, light), around.high = fmax(around.high, light);
+            if (outside(frame, x + right, y + down)) continue;
+            const float4 earlier =
+                PEL_LOAD4(history + 4 * ((size_t)(y + down) * frame->width + (size_t)(x + right)));
+            if (byteOf(earlier.x) != id) continue;
+            const float4 difference = light - lightOf(earlier);
+            sum += difference, squares += difference * difference, count += 1.0f;
         }
+    if (count == 0.0f) return around;
+    const float4 mean = sum / count, mean2 = mean * mean,
+                 error2 = fmax(squares / count - mean2, (float4)(0.0f)) / count;
+    around.change =
+        mean *
+        fmax(1.0f - CHANGE_ERRORS * CHANGE_ERRORS * error2 / fmax(mean2, (float4)(FLT_MIN)), (float4)(0.0f));
+    return around;
 }
 
 // `last`: distanceTo(); its fourth component is 0 if there is no history.
@@ -115,19 +148,17 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void blend_histo
             if (p.material) {
                 const float4 point = gathered(points, p.at, PEL_GATHER_POINT);
                 const uint id = as_uint(gathered(points, p.at, PEL_GATHER_LIGHT).w);
+                const float3 moved = motionOf(frame, motion, p.x, p.y);
                 uint frames = 0;
-                if (last.w > 0.0f) {
-                    const float4 earlier = earlierLight(frame, before, &p, point, id,
-                                                        motionOf(frame, motion, p.x, p.y), last.xyz, &frames);
-                    if (frames) {
-                        float4 low = light, high = light;
-                        rangeAround(frame, points, fresh, &p, point, id, &low, &high);
-                        const float weight = fmin(frame->historyWeight, (float)frames / (float)(frames + 1));
-                        light += weight * (clamp(earlier, low, high) - light);
-                        // Rounding may lead out of the range.
-                        light = clamp(light, low, high);
-                        ++taken;
-                    }
+                float4 earlier;
+                if (last.w > 0.0f)
+                    earlier = earlierLight(frame, before, &p, point, id, moved, last.xyz, &frames);
+                if (frames) {
+                    const Around around = lightAround(frame, points, fresh, before, &p, point, id, moved);
+                    const float weight = fmin(frame->historyWeight, (float)frames / (float)(frames + 1));
+                    light += weight * (clamp(earlier + around.change, around.low, around.high) - light);
+                    light = clamp(light, around.low, around.high);  // rounding may lead out of it
+                    ++taken;
                 }
                 kept = (float4)(withByte(light.x, id), withByte(light.y, min(frames + 1, MAX_FRAMES)),
                                 light.z, distanceTo(frame, point.xyz, viewOf(frame)));

@@ -216,20 +216,26 @@ std::vector<Rgb> blendHistory(const TapScene& s, const std::vector<Rgb>& gathere
                     found += near;
                 }
             Rgb& light = result[here];
-            if (found > 0)
-                for (int c = 0; c < 3; ++c) {
-                    double low = light[c], high = light[c];
-                    for (int dy = -s.rate; dy <= s.rate; dy += s.rate)
-                        for (int dx = -s.rate; dx <= s.rate; dx += s.rate) {
-                            if (!inside(x + dx, y + dy)) continue;
-                            const size_t there = picture.at(x + dx, y + dy);
-                            if (!sameSurface(s, all, here, there)) continue;
-                            low = std::min(low, gathered[there][c]),
-                            high = std::max(high, gathered[there][c]);
-                        }
-                    light[c] += std::min(weight, frames / (frames + 1.0)) *
-                                (std::clamp(earlier[c] / found, low, high) - light[c]);
-                }
+            for (int c = 0; found > 0 && c < 3; ++c) {
+                double low = light[c], high = light[c], sum = 0, squares = 0, count = 0;
+                for (int dy = -s.rate; dy <= s.rate; dy += s.rate)
+                    for (int dx = -s.rate; dx <= s.rate; dx += s.rate) {
+                        if (!inside(x + dx, y + dy)) continue;
+                        const size_t there = picture.at(x + dx, y + dy);
+                        if (!sameSurface(s, all, here, there)) continue;
+                        low = std::min(low, gathered[there][c]), high = std::max(high, gathered[there][c]);
+                        const int u = x + dx + int(std::floor(motion[here].x + 0.5)),
+                                  v = y + dy + int(std::floor(motion[here].y + 0.5));
+                        if (!inside(u, v) || history[picture.at(u, v)].id != picture.ids[here]) continue;
+                        const double change = gathered[there][c] - history[picture.at(u, v)].light[c];
+                        sum += change, squares += change * change, ++count;
+                    }
+                const double mean = count > 0 ? sum / count : 0,
+                             error2 = count > 0 ? std::max(squares / count - mean * mean, 0.0) / count : 0,
+                             change = mean * mean > 4 * error2 ? mean - 4 * error2 / mean : 0;
+                light[c] += std::min(weight, frames / (frames + 1.0)) *
+                            (std::clamp(earlier[c] / found + change, low, high) - light[c]);
+            }
             after[here] = {picture.ids[here], std::min(frames + 1, 31), light, all[here].p.z};
         }
     history = after;
