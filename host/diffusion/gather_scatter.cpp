@@ -150,6 +150,7 @@ std::vector<cl::ProgramKey> GatherScatter::programs(const GatherImages& images) 
         {{form_ == Form::disk ? "diffusion/scatter_disk.cl" : "diffusion/scatter_separable.cl"},
          {{"PEL_WIDTH", 1},
           {"PEL_HALF", int(images.half)},
+          {"PEL_HISTORY", int(images.history.weight > 0)},
           {"PEL_FORMAT_IRRADIANCE", formatCode(of.irradiance, 1)},
           {"PEL_FORMAT_OUT", formatCode(of.out, 1)}}}};
     const GatherImages::History& history = images.history;
@@ -171,8 +172,8 @@ void GatherScatter::blendHistory(const GatherImages& images, const cl::Program& 
     std::swap(history_[0], history_[1]);
     const size_t tiles = size_t(frame_.tilesX) * frame_.tilesY;
     device_->launch(events, program, "blend_history", groupRange(*device_, groupsFor(*device_, tiles)),
-                    constants_, points_, described_, images.of.out, images.history.motion, history_[0],
-                    lastView_, history_[1], images.history.out, counters_);
+                    constants_, points_, described_, nodes_, images.of.out, images.history.motion,
+                    history_[0], lastView_, history_[1], images.history.out, counters_);
     sequence_ = sequence;
     std::copy_n(frame_.view == PEL_VIEW_POINT ? frame_.origin : frame_.direction, 3, lastView_.s);
 }

@@ -12,7 +12,7 @@ struct GatherImages {
     ScatterImages of;
     ImageView weight;   // may be empty
     bool half = false;  // gathered at every second pixel of both directions
-    // What is gathered goes to `of.out`, tightly packed RGBA32F, and with earlier frames in it to `out`.
+    // Light from beyond pixels goes to `of.out`, tightly packed RGBA32F; the result to `out`.
     struct History {
         float weight = 0;    // as PelShaderOptions.historyWeight; 0: none
         uint32_t cut = 0;    // historyCut

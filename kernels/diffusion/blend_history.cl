@@ -1,9 +1,11 @@
 // Light of earlier frames in light that is scattered by taps (docs/mathematics.md, section 10, "History").
 //
-// Inputs: the surface (gather_surface.cl), this frame's scattered light (four floats a pixel, the last one
-// unused), where pixels were in the last frame, and the history up to it. Outputs: an image like the
-// irradiance; the history up to this frame. One work-group takes tiles, one work-item columns of their
-// pixels. Variants: PEL_FORMAT_OUT; PEL_FORMAT_MOTION (0: nothing moves), PEL_MOTION_COMPONENTS; PEL_HALF.
+// Light from beyond a pixel changes little from one to the next: that from within comes from each frame's own
+// irradiance. Inputs: the surface (gather_surface.cl), tables of profiles, what this frame scatters from
+// beyond pixels (four floats a pixel, the last one unused), where pixels were in the last frame, and the
+// history up to it. Outputs: an image like the irradiance; the history up to this frame. One work-group takes
+// tiles, one work-item columns of their pixels. Variants: PEL_FORMAT_OUT; PEL_FORMAT_MOTION (0: nothing
+// moves), PEL_MOTION_COMPONENTS; PEL_HALF.
 #include "lib/diffusion/gather.clh"
 #include "lib/diffusion/item.clh"
 #include "lib/image/image.clh"
@@ -100,13 +102,16 @@ typedef struct Around {
     float4 change;     // of light from the history to this frame, as far as noise does not explain it
 } Around;
 
+// `earlier`: earlierLight(). The history of the others is read at pixels, all of them beside their places by as
+// much as this one.
 static inline Around lightAround(__global const PelGatherFrame* frame, __global const float* points,
                                  __global const float* fresh, __global const float* history,
-                                 const GatherPixel* p, float4 point, uint id, float3 motion) {
+                                 const GatherPixel* p, float4 point, uint id, float3 motion, float4 earlier) {
     const int step = 1 << PEL_HALF, right = (int)floor(motion.x + 0.5f), down = (int)floor(motion.y + 0.5f);
     Around around = {(float4)(FLT_MAX), (float4)(-FLT_MAX), (float4)(0.0f)};
-    float4 sum = (float4)(0.0f), squares = (float4)(0.0f);
+    float4 sum = (float4)(0.0f), squares = (float4)(0.0f), beside = (float4)(0.0f);
     float count = 0.0f;
+    bool known = false;
     for (int dy = -step; dy <= step; dy += step)
         for (int dx = -step; dx <= step; dx += step) {
             const int x = (int)p->x + dx, y = (int)p->y + dy;
@@ -116,27 +121,27 @@ static inline Around lightAround(__global const PelGatherFrame* frame, __global 
             const float4 light = PEL_LOAD4(fresh + 4 * there);
             around.low = fmin(around.low, light), around.high = fmax(around.high, light);
             if (outside(frame, x + right, y + down)) continue;
-            const float4 earlier =
+            const float4 before =
                 PEL_LOAD4(history + 4 * ((size_t)(y + down) * frame->width + (size_t)(x + right)));
-            if (byteOf(earlier.x) != id) continue;
-            const float4 difference = light - lightOf(earlier);
+            if (byteOf(before.x) != id) continue;
+            const float4 difference = light - lightOf(before);
             sum += difference, squares += difference * difference, count += 1.0f;
+            if (!dx && !dy) beside = lightOf(before) - earlier, known = true;
         }
-    if (count == 0.0f) return around;
-    const float4 mean = sum / count, mean2 = mean * mean,
-                 error2 = fmax(squares / count - mean2, (float4)(0.0f)) / count;
-    around.change =
-        mean *
-        fmax(1.0f - CHANGE_ERRORS * CHANGE_ERRORS * error2 / fmax(mean2, (float4)(FLT_MIN)), (float4)(0.0f));
+    if (!known) return around;
+    const float4 mean = sum / count, error2 = fmax(squares / count - mean * mean, (float4)(0.0f)) / count,
+                 change = mean + beside, change2 = fmax(change * change, (float4)(FLT_MIN));
+    around.change = change * fmax(1.0f - CHANGE_ERRORS * CHANGE_ERRORS * error2 / change2, (float4)(0.0f));
     return around;
 }
 
 // `last`: distanceTo(); its fourth component is 0 if there is no history.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void blend_history(
     __global const PelGatherFrame* restrict frame, __global const float* restrict points,
-    __global const PelGatherMaterial* restrict materials, __global const float* restrict fresh,
-    __global uchar* motion, __global const float* restrict before, const float4 last,
-    __global float* restrict after, __global uchar* out, __global uint* restrict counters) {
+    __global const PelGatherMaterial* restrict materials, __global const float* restrict nodes,
+    __global const float* restrict fresh, __global uchar* motion, __global const float* restrict before,
+    const float4 last, __global float* restrict after, __global uchar* out,
+    __global uint* restrict counters) {
     uint taken = 0;
     for (uint tile = get_group_id(0); tile < frame->tilesX * frame->tilesY; tile += get_num_groups(0))
         for (uint item = get_local_id(0); item < PEL_TILE_ITEMS; item += PEL_GROUP) {
@@ -154,7 +159,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void blend_histo
                 if (last.w > 0.0f)
                     earlier = earlierLight(frame, before, &p, point, id, moved, last.xyz, &frames);
                 if (frames) {
-                    const Around around = lightAround(frame, points, fresh, before, &p, point, id, moved);
+                    const Around around =
+                        lightAround(frame, points, fresh, before, &p, point, id, moved, earlier);
                     const float weight = fmin(frame->historyWeight, (float)frames / (float)(frames + 1));
                     light += weight * (clamp(earlier + around.change, around.low, around.high) - light);
                     light = clamp(light, around.low, around.high);  // rounding may lead out of it
@@ -162,6 +168,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void blend_histo
                 }
                 kept = (float4)(withByte(light.x, id), withByte(light.y, min(frames + 1, MAX_FRAMES)),
                                 light.z, distanceTo(frame, point.xyz, viewOf(frame)));
+                const float4 e = gathered(points, p.at, PEL_GATHER_LIGHT);
+                light += e + gathered(points, p.at, PEL_GATHER_PIXEL).w * (ownLight(points, nodes, &p) - e);
             }
             PEL_STORE4(kept, after + 4 * p.at);
             storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->blended, p.x, p.y),
