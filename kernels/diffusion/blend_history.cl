@@ -102,8 +102,8 @@ typedef struct Around {
     float4 change;     // of light from the history to this frame, as far as noise does not explain it
 } Around;
 
-// `earlier`: earlierLight(). The history of the others is read at pixels, all of them beside their places by as
-// much as this one.
+// `earlier`: earlierLight(). The history of the others is read at the pixels nearest to their places, all of
+// which lie beside them by as much as this one's.
 static inline Around lightAround(__global const PelGatherFrame* frame, __global const float* points,
                                  __global const float* fresh, __global const float* history,
                                  const GatherPixel* p, float4 point, uint id, float3 motion, float4 earlier) {
