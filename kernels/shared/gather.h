@@ -52,7 +52,7 @@ typedef struct PelGatherFrame {
     float inverseViewProjection[16];
     float historyWeight;
     PelShadeImage irradiance, position, ids, weight, radii, out;
-    PelShadeImage motion, blended;  // of frames with a history
+    PelShadeImage motion, blended;              // of frames with a history
     PelUint32 sources[PEL_DIFFUSION_IDS / 32];  // bit i: light of id i may flow to others
     PelUint32 materialOf[PEL_DIFFUSION_IDS];    // 1 + the material of an id; 0: none, it is not gathered
 } PelGatherFrame;

@@ -32,8 +32,8 @@ struct HistoryPixel {
     double distance = 0;  // along z
 };
 // Light of earlier frames from beyond pixels in what this one gathers. `motion`: columns, rows and distance
-// to where each pixel was. Returns the blended light, and replaces the history, which is empty before the first
-// frame.
+// to where each pixel was. Returns the blended light, and replaces the history, which is empty before the
+// first frame.
 std::vector<Rgb> blendHistory(const TapScene& scene, const Profile& profile, const std::vector<Rgb>& gathered,
                               const std::vector<Vec3>& motion, double weight,
                               std::vector<HistoryPixel>& history);
