@@ -163,7 +163,6 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void blend_histo
                         lightAround(frame, points, fresh, before, &p, point, id, moved, earlier);
                     const float weight = fmin(frame->historyWeight, (float)frames / (float)(frames + 1));
                     light += weight * (clamp(earlier + around.change, around.low, around.high) - light);
-                    light = clamp(light, around.low, around.high);  // rounding may lead out of it
                     ++taken;
                 }
                 kept = (float4)(withByte(light.x, id), withByte(light.y, min(frames + 1, MAX_FRAMES)),
