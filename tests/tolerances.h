@@ -270,6 +270,9 @@ constexpr double scatterTapsRms = 2e-3;
 constexpr double scatterTapsMost = 4e-2;  // the same, of the worst pixel
 constexpr double scatterHalfRate = 2e-2;  // a pattern of single pixels, of 0.6 in the mean, between samples
 constexpr double scatterManyTaps = 6e-3;  // 256 taps on a disk against every pixel
+// the share of light from within a pixel is interpolated in a table: 4e-6 and 8e-5 measured
+constexpr double historyRms = 1e-5;
+constexpr double historyMost = 2e-4;
 constexpr double textureEdge = 1e-2;      // Gaussians sampled at half a sigma, of a step one texel wide
 constexpr double texturePlane = 4.5e-3;   // the narrowest Gaussians are below a texel there
 constexpr double textureSphere = 1.3e-3;  // texels along u and v stand for distances

@@ -22,6 +22,7 @@ struct Setting {
     int mapSize = 0;              // 0: the scene's
     bool quick = false;           // with --quick too
     bool shown = false;           // the setting of this method that pictures, frames and clips have
+    bool moving = false;          // in frames and clips too, beside a history that needs several frames
     double budget = 0;            // of time, ns per pixel of skin; 0: none
     int texture = 0;              // texels a side of the texture that is scattered; 0: none
     const char* tunes = nullptr;  // its name in records for PelShaderOptions.timeBudget
@@ -65,11 +66,17 @@ std::vector<Setting> settings() {
     for (const uint32_t taps : {8u, 16u, 32u, 64u, 128u}) {
         Setting& s = add("disk", text(taps, "taps"), PEL_SCATTERING_SCREEN);
         s.request.scatterTaps = taps;
-        s.quick = taps == 8 || taps == 32, s.shown = taps == 32;
+        s.quick = taps == 8 || taps == 32, s.shown = taps == 32, s.moving = taps == 8;
     }
     add("separable", "2 x 25 taps, half rate", PEL_SCATTERING_SEPARABLE).request.halfRate = true;
     Setting& half = add("disk", "32 taps, half rate", PEL_SCATTERING_SCREEN);
-    half.request.scatterTaps = 32, half.request.halfRate = true;
+    half.request.scatterTaps = 32, half.request.halfRate = half.moving = true;
+    for (const bool halfRate : {false, true}) {
+        Setting& s =
+            add("disk", halfRate ? "8 taps, half rate, history" : "8 taps, history", PEL_SCATTERING_SCREEN);
+        s.request.scatterTaps = 8, s.request.halfRate = halfRate, s.request.historyWeight = 0.8f;
+        s.moving = true, s.quick = !halfRate;
+    }
     for (const double target : {0.0, 5e-4, 2e-3, 5e-3, 1e-2, 2e-2}) {
         Setting& s = add("auto", "error " + text(target, "of white"), PEL_SCATTERING_AUTO);
         s.request.targetError = float(target);
@@ -198,7 +205,7 @@ class Methods {
     Json measure() {
         for (const FrozenScene& scene : frozenScenes())
             if (scene.quick || !request_.quick) measureScene(scene);
-        if (!request_.quick && request_.only.empty()) measureFrames();
+        if (!request_.quick) measureFrames();
         measureClips();
         return {{"scenes", scenes_}, {"operations", rows_}, {"pictures", pictures_}};
     }
@@ -277,11 +284,11 @@ class Methods {
         });
         return kept;
     }
-    // These, and those at half rate.
+    // These, and those at half rate or with a history.
     static std::vector<Setting> frameSettings(const LitScene& s) {
         std::vector<Setting> timed = keptSettings(s);
         std::ranges::copy_if(settings(), std::back_inserter(timed),
-                             [](const Setting& one) { return one.request.halfRate; });
+                             [](const Setting& one) { return one.request.halfRate || one.moving; });
         return timed;
     }
     static const FrozenScene& sceneOf(const std::string& name) {
@@ -299,7 +306,7 @@ class Methods {
     // Whether a method is still to be measured in this scene.
     bool anyLeft(const std::string& scene) const {
         return std::ranges::any_of(settings(), [&](const Setting& s) {
-            return (s.shown || s.texture == 1024) && request_.wants(scene + ": " + s.name());
+            return (s.shown || s.moving || s.texture == 1024) && request_.wants(scene + ": " + s.name());
         });
     }
     template <class Work>
@@ -492,6 +499,7 @@ class Methods {
         for (const Setting& setting : settings()) {
             if (!wanted(name, setting) && (setting.method != "Lambert" || !request_.only.size())) continue;
             if (setting.texture && s.gbuffer.uv.data.empty()) continue;
+            if (setting.request.historyWeight > 0) continue;
             attempt(name + ": " + setting.name(), "methods", [&] {
                 s.lamps = setting.mapSize ? stage.lampsOf(s.lighting, setting.mapSize) : lamps;
                 contenders.push_back(contenderOf(setting, scene, s, scale));
@@ -544,7 +552,7 @@ class Methods {
             std::vector<LitScene> frames;
             std::optional<ClipTruth> truth;
             for (const Setting& setting : settings()) {
-                if (!setting.shown || !wanted(clip.name, setting)) continue;
+                if (!(setting.shown || setting.moving) || !wanted(clip.name, setting)) continue;
                 if (request_.quick && (setting.method == "light" || clip.cameraStep > 0)) continue;
                 attempt(clip.name + (": " + setting.name()), "clips", [&] {
                     if (!stage) stage.emplace(device_, frozenScenes()[0].body(headFile()), 1);
@@ -560,12 +568,23 @@ class Methods {
     void measureClip(const FrozenClip& clip, const Setting& setting, const std::vector<LitScene>& frames,
                      const ClipTruth& truth) {
         double largest = 0, sum = 0, count = 0;
+        ErrorSum errors;
         std::vector<float> before;
+        ShadeRequest request = setting.request;
+        const scatter_scene::ShownImages shown(device_, uint32_t(frames[0].width),
+                                               uint32_t(frames[0].height));
         for (size_t k = 0; k < frames.size(); ++k) {
+            if (request.historyWeight > 0) {
+                request.frameIndex = uint32_t(k);
+                request.motion = motionBetween(frames[k ? k - 1 : 0], frames[k]);
+            }
             const std::vector<float> now =
-                shoot(device_, frames[k], profile_, clipScale, setting.request).light;
-            for (size_t p = 0; k > 0 && p < truth.pixels[k].size(); ++p) {
-                const size_t from = truth.pixels[k - 1][p], to = truth.pixels[k][p];
+                shoot(device_, frames[k], profile_, clipScale, request, shown).light;
+            for (size_t p = 0; p < truth.pixels[k].size(); ++p) {
+                const size_t to = truth.pixels[k][p];
+                for (size_t c = 0; to != SIZE_MAX && c < 3; ++c)
+                    errors.add(sceneAlbedo * now[3 * to + c] - truth.light[k][3 * p + c]);
+                const size_t from = k ? truth.pixels[k - 1][p] : SIZE_MAX;
                 if (from == SIZE_MAX || to == SIZE_MAX) continue;
                 for (size_t c = 0; c < 3; ++c) {
                     const double own = sceneAlbedo * (double(now[3 * to + c]) - before[3 * from + c]),
@@ -583,6 +602,7 @@ class Methods {
                          {"setting", setting.setting},
                          {"what", clip.title},
                          {"frames", frames.size()},
+                         {"error_rms", errors.result().rms},
                          {"error_max", largest},
                          {"error_mean", sum / count}});
     }

@@ -19,13 +19,24 @@ class GatherPass final : public Pass {
 
     // Neighbours may be as far away as the profile reaches.
     PassScratch scratch(const ShaderPlan& plan) const override {
-        const bool half = plan.state.options.halfRate != 0;
-        return {3 * sizeof(float) + GatherScatter::pixelBytes(form, half), 0, 0, true};
+        const PelShaderOptions& o = plan.state.options;
+        const bool history = o.historyWeight > 0;
+        return {(overwrites(plan) ? 0 : 3 * sizeof(float)) + (history ? 4 * sizeof(float) : 0) +
+                    GatherScatter::pixelBytes(form, o.halfRate != 0, history),
+                0, 0, true};
     }
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
-        images_ = {takeIrradiance(plan, device, out_), plan.state.images[PEL_SLOT_SCATTER_WEIGHT],
-                   plan.state.options.halfRate != 0};
+        const PelShaderOptions& o = plan.state.options;
+        images_ = {takeIrradiance(plan, device, out_, overwrites(plan)),
+                   plan.state.images[PEL_SLOT_SCATTER_WEIGHT], o.halfRate != 0};
+        const ImageView scattered = images_.of.out;
+        resize(fresh_, device,
+               o.historyWeight > 0 ? size_t(scattered.width) * scattered.height * 4 * sizeof(float) : 0);
+        if (o.historyWeight > 0) {
+            images_.of.out = scratchImage(fresh_, scattered, PEL_FORMAT_RGBA32F);
+            images_.history = {o.historyWeight, o.historyCut, plan.state.images[PEL_SLOT_MOTION], scattered};
+        }
         addRadii(plan, images_.of);
         if (!scatter_) scatter_.emplace(device, form);
         materials_.clear();
@@ -41,7 +52,10 @@ class GatherPass final : public Pass {
                               {m.borderColor[0], m.borderColor[1], m.borderColor[2]}};
         }
     }
-    size_t bytes() const override { return (out_ ? out_->bytes() : 0) + (scatter_ ? scatter_->bytes() : 0); }
+    size_t bytes() const override {
+        return (out_ ? out_->bytes() : 0) + (fresh_ ? fresh_->bytes() : 0) +
+               (scatter_ ? scatter_->bytes() : 0);
+    }
 
     std::vector<cl::ProgramKey> programs(const Device&, const ShaderPlan&) const override {
         return scatter_->programs(images_);
@@ -73,7 +87,12 @@ class GatherPass final : public Pass {
                                   : material.params.scattering == PEL_SCATTERING_SEPARABLE;
     }
 
-    Ref<Buffer> out_;
+    // With a history the pixels that are gathered go to another image, and leave the irradiance free.
+    static bool overwrites(const ShaderPlan& plan) {
+        return plan.state.options.historyWeight > 0 && ownsIrradiance(plan);
+    }
+
+    Ref<Buffer> out_, fresh_;
     GatherImages images_;
     std::map<uint32_t, GatherScatter::Material> materials_;
     GatherScatter::Ids sources_;

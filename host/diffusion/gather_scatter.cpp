@@ -49,7 +49,7 @@ void lookAlong(PelGatherFrame& frame, const float inverse[16]) {
     frame.direction[2] = float(z / length);
 }
 
-enum Program { SURFACE, GATHER };
+enum Program { SURFACE, GATHER, HISTORY };
 
 }  // namespace
 
@@ -100,6 +100,11 @@ void GatherScatter::prepare(const std::map<uint32_t, Material>& materials, const
     frame_.tilesX = (frame_.width + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE;
     frame_.tilesY = (frame_.height + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE;
     lookAlong(frame_, view.inverseViewProjection);
+    const GatherImages::History& history = images.history;
+    if (history.weight > 0 && frame_.view == PEL_VIEW_UNKNOWN)
+        invalidArgument("PelShaderOptions.historyWeight is ", history.weight,
+                        ": PelCamera.inverseViewProjection is needed, and the one that is set shows from no "
+                        "place and along no direction");
     frame_.frameIndex = frameIndex;
     frame_.everywhere = view.everywhere;
     frame_.inPlace = samePixels(of.irradiance, of.out);
@@ -110,6 +115,9 @@ void GatherScatter::prepare(const std::map<uint32_t, Material>& materials, const
     frame_.weight = describeImage(images.weight);
     frame_.radii = describeImage(of.radii);
     frame_.out = describeImage(of.out);
+    frame_.historyWeight = history.weight;
+    frame_.motion = describeImage(history.motion);
+    frame_.blended = describeImage(history.out);
     std::fill(std::begin(frame_.sources), std::end(frame_.sources), 0u);
     for (uint32_t id = 0; id < PEL_DIFFUSION_IDS; ++id)
         if (sources[id] || materials.contains(id)) frame_.sources[id / 32] |= 1u << id % 32;
@@ -119,6 +127,9 @@ void GatherScatter::prepare(const std::map<uint32_t, Material>& materials, const
     if (form_ == Form::lines) rows_.resize(*device_, pixels * 4 * sizeof(float));
     const size_t samples = images.half ? size_t((frame_.width + 1) / 2) * ((frame_.height + 1) / 2) : 0;
     samples_.resize(*device_, samples * 4 * sizeof(float));
+    for (SizedMemory& one : history_)
+        one.resize(*device_, history.weight > 0 ? pixels * 4 * sizeof(float) : 0);
+    if (!(history.weight > 0)) sequence_.reset();
     tiles_.resize(*device_, size_t(frame_.tilesX) * frame_.tilesY * sizeof(cl_uint));
     if (!counters_) counters_ = device_->allocate(PEL_DIFFUSION_COUNTERS * sizeof(cl_uint));
     constants_.send(*device_, frame_);
@@ -126,20 +137,45 @@ void GatherScatter::prepare(const std::map<uint32_t, Material>& materials, const
 
 std::vector<cl::ProgramKey> GatherScatter::programs(const GatherImages& images) const {
     const ScatterImages& of = images.of;
-    return {{{"diffusion/gather_surface.cl"},
-             {{"PEL_WIDTH", 1},
-              {"PEL_FORMAT_IRRADIANCE", formatCode(of.irradiance, 1)},
-              {"PEL_FORMAT_POSITION", formatCode(of.positions, 1)},
-              {"PEL_FORMAT_DEPTH", of.positions ? 0 : formatCode(of.depth, 1)},
-              {"PEL_FORMAT_MATERIAL", formatCode(of.ids, 1)},
-              {"PEL_FORMAT_SCATTER_WEIGHT", formatCode(images.weight, 1)},
-              {"PEL_FORMAT_RADIUS", formatCode(of.radii, 1)},
-              {"PEL_RADIUS_COMPONENT", of.radiusComponent}}},
-            {{form_ == Form::disk ? "diffusion/scatter_disk.cl" : "diffusion/scatter_separable.cl"},
-             {{"PEL_WIDTH", 1},
-              {"PEL_HALF", int(images.half)},
-              {"PEL_FORMAT_IRRADIANCE", formatCode(of.irradiance, 1)},
-              {"PEL_FORMAT_OUT", formatCode(of.out, 1)}}}};
+    std::vector<cl::ProgramKey> keys{
+        {{"diffusion/gather_surface.cl"},
+         {{"PEL_WIDTH", 1},
+          {"PEL_FORMAT_IRRADIANCE", formatCode(of.irradiance, 1)},
+          {"PEL_FORMAT_POSITION", formatCode(of.positions, 1)},
+          {"PEL_FORMAT_DEPTH", of.positions ? 0 : formatCode(of.depth, 1)},
+          {"PEL_FORMAT_MATERIAL", formatCode(of.ids, 1)},
+          {"PEL_FORMAT_SCATTER_WEIGHT", formatCode(images.weight, 1)},
+          {"PEL_FORMAT_RADIUS", formatCode(of.radii, 1)},
+          {"PEL_RADIUS_COMPONENT", of.radiusComponent}}},
+        {{form_ == Form::disk ? "diffusion/scatter_disk.cl" : "diffusion/scatter_separable.cl"},
+         {{"PEL_WIDTH", 1},
+          {"PEL_HALF", int(images.half)},
+          {"PEL_HISTORY", int(images.history.weight > 0)},
+          {"PEL_FORMAT_IRRADIANCE", formatCode(of.irradiance, 1)},
+          {"PEL_FORMAT_OUT", formatCode(of.out, 1)}}}};
+    const GatherImages::History& history = images.history;
+    if (history.weight > 0)
+        keys.push_back({{"diffusion/blend_history.cl"},
+                        {{"PEL_WIDTH", 1},
+                         {"PEL_HALF", int(images.half)},
+                         {"PEL_FORMAT_MOTION", formatCode(history.motion, 1)},
+                         {"PEL_MOTION_COMPONENTS",
+                          int(history.motion ? std::min(history.motion.info().components, 3u) : 0)},
+                         {"PEL_FORMAT_OUT", formatCode(history.out, 1)}}});
+    return keys;
+}
+
+void GatherScatter::blendHistory(const GatherImages& images, const cl::Program& program,
+                                 std::vector<cl::Event>& events) {
+    const Sequence sequence{frame_.width, frame_.height, frame_.view, images.history.cut};
+    lastView_.s[3] = sequence_ == sequence;
+    std::swap(history_[0], history_[1]);
+    const size_t tiles = size_t(frame_.tilesX) * frame_.tilesY;
+    device_->launch(events, program, "blend_history", groupRange(*device_, groupsFor(*device_, tiles)),
+                    constants_, points_, described_, nodes_, images.of.out, images.history.motion,
+                    history_[0], lastView_, history_[1], images.history.out, counters_);
+    sequence_ = sequence;
+    std::copy_n(frame_.view == PEL_VIEW_POINT ? frame_.origin : frame_.direction, 3, lastView_.s);
 }
 
 void GatherScatter::enqueue(const GatherImages& images, std::vector<cl::Event>& events) {
@@ -160,11 +196,13 @@ void GatherScatter::enqueue(const GatherImages& images, std::vector<cl::Event>& 
     };
     if (form_ == Form::disk) {
         if (images.half) gather("sample_disk", samples_);
-        return gather("scatter_disk", samples_, of.irradiance, of.out);
+        gather("scatter_disk", samples_, of.irradiance, of.out);
+    } else {
+        gather("filter_rows", rows_);
+        if (images.half) gather("sample_columns", rows_, samples_);
+        gather("filter_columns", rows_, samples_, of.irradiance, of.out);
     }
-    gather("filter_rows", rows_);
-    if (images.half) gather("sample_columns", rows_, samples_);
-    gather("filter_columns", rows_, samples_, of.irradiance, of.out);
+    if (images.history.weight > 0) blendHistory(images, programs[HISTORY], events);
 }
 
 ScatterCounts GatherScatter::counts() {

@@ -12,6 +12,13 @@ struct GatherImages {
     ScatterImages of;
     ImageView weight;   // may be empty
     bool half = false;  // gathered at every second pixel of both directions
+    // Light from beyond pixels goes to `of.out`, tightly packed RGBA32F; the result to `out`.
+    struct History {
+        float weight = 0;    // as PelShaderOptions.historyWeight; 0: none
+        uint32_t cut = 0;    // historyCut
+        ImageView motion{};  // may be empty
+        ImageView out{};
+    } history{};
 };
 
 class GatherScatter {
@@ -39,14 +46,22 @@ class GatherScatter {
     void enqueue(const GatherImages& images, std::vector<cl::Event>& events);
     ScatterCounts counts();
     size_t bytes() const {
-        return points_.bytes() + rows_.bytes() + tableBytes_ + tiles_.bytes() + samples_.bytes();
+        return points_.bytes() + rows_.bytes() + tableBytes_ + tiles_.bytes() + samples_.bytes() +
+               history_[0].bytes() + history_[1].bytes();
     }
     // Memory of a picture, beside tables.
-    static uint64_t pixelBytes(Form form, bool half) {
-        return (PEL_GATHER_FLOATS + (form == Form::lines ? 4 : 0) + (half ? 1 : 0)) * sizeof(float);
+    static uint64_t pixelBytes(Form form, bool half, bool history) {
+        return (PEL_GATHER_FLOATS + (form == Form::lines ? 4 : 0) + (half ? 1 : 0) + (history ? 8 : 0)) *
+               sizeof(float);
     }
 
   private:
+    // The frames that a history can go on from.
+    struct Sequence {
+        uint32_t width, height, view, cut;
+        bool operator==(const Sequence&) const = default;
+    };
+    void blendHistory(const GatherImages& images, const cl::Program& program, std::vector<cl::Event>& events);
     void sendMaterials(const std::map<uint32_t, Material>& materials);
 
     Ref<Device> device_;
@@ -56,6 +71,9 @@ class GatherScatter {
     SentConstants<PelGatherFrame> constants_;
     cl::Memory described_, taps_, nodes_, counters_;
     SizedMemory points_, rows_, samples_, tiles_;
+    SizedMemory history_[2];  // up to the last frame, and up to this one
+    std::optional<Sequence> sequence_;
+    cl_float4 lastView_{};  // origin or direction; see blend_history.cl
     size_t tableBytes_ = 0;
 };
 

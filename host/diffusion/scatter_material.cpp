@@ -22,6 +22,10 @@ ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Bu
     return taken;
 }
 
+bool ownsIrradiance(const ShaderPlan& plan) {
+    return (plan.features & PEL_FEATURE_MAKE_IRRADIANCE) && !plan.state.images[PEL_SLOT_SCATTER_WEIGHT];
+}
+
 bool hasRadii(const ShaderPlan& plan) {
     ScatterImages images;
     addRadii(plan, images);
@@ -38,6 +42,7 @@ void addScatterCounts(const ScatterCounts& counts, PelScattering scattering, Pel
     stats.pixelsScattered += counts.pixelsTapped;
     stats.pixelsKept += counts.pixelsCovered - counts.pixelsTapped;
     stats.scatterTaps += counts.taps;
+    stats.pixelsHistory += counts.history;
 }
 
 void addKeptChoices(const ScatterCounts& counts, PelShaderStats& stats) {

@@ -29,6 +29,9 @@ inline uint32_t scatterTapsOf(PelScattering scattering, uint32_t taps) {
 ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Buffer>& out,
                              bool inPlace = false);
 
+// Whether irradiance is a scratch image that is not read after scattering, so that it can be overwritten.
+bool ownsIrradiance(const ShaderPlan& plan);
+
 // Whether the profile's radius differs from pixel to pixel, and the image that says so.
 bool hasRadii(const ShaderPlan& plan);
 void addRadii(const ShaderPlan& plan, ScatterImages& images);

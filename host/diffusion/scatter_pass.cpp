@@ -17,11 +17,6 @@ bool scatters(const ShaderState& state, const ShaderMaterial& material, bool alo
     return methods >> material.params.scattering & 1 && !scattersOnDisk(material);
 }
 
-// Whether irradiance is a scratch image that is not read after scattering, so that it can be overwritten.
-bool isOwn(const ShaderPlan& plan) {
-    return (plan.features & PEL_FEATURE_MAKE_IRRADIANCE) && !plan.state.images[PEL_SLOT_SCATTER_WEIGHT];
-}
-
 // `alone`: texels are all of the far part.
 template <bool alone>
 class ScatterPass final : public Pass {
@@ -35,14 +30,14 @@ class ScatterPass final : public Pass {
     PassScratch scratch(const ShaderPlan& plan) const override {
         const ImageView& frame = plan.state.images[PEL_SLOT_RADIANCE];
         const bool half = alone && plan.state.options.halfRate;
-        return {(isOwn(plan) ? 0 : 3 * sizeof(float)) + (half ? sizeof(float) : 0),
+        return {(ownsIrradiance(plan) ? 0 : 3 * sizeof(float)) + (half ? sizeof(float) : 0),
                 ScreenScatter::bytesFor(frame.width, frame.height, hasRadii(plan)) +
                     LightSpace::bytesFor(plan.state.lights, !alone),
                 0, true};
     }
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
-        images_ = takeIrradiance(plan, device, out_, isOwn(plan));
+        images_ = takeIrradiance(plan, device, out_, ownsIrradiance(plan));
         addRadii(plan, images_);
         if (!scatter_) scatter_.emplace(device);
         scatter_->announce({plan.state.lights, alone, plan.state.options.halfRate != 0});

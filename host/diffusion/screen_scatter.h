@@ -26,7 +26,7 @@ struct ScatterLights {
 };
 
 struct ScatterCounts {
-    uint32_t tilesCovered, tilesTapped, pixelsCovered, pixelsTapped, taps, invalid;
+    uint32_t tilesCovered, tilesTapped, pixelsCovered, pixelsTapped, taps, invalid, history;
 };
 struct LightCounts {
     uint32_t pixels, texels, tiles;

@@ -174,12 +174,17 @@ PelShaderOptions withOptionsOf(const SceneFile& scene, PelShaderOptions options)
     options.targetError = own.targetError;
     if (options.timeBudget == 0) options.timeBudget = own.timeBudget;
     if (own.frameIndex) options.frameIndex = own.frameIndex;
+    if (own.historyWeight > 0) options.historyWeight = own.historyWeight;
+    options.historyCut += own.historyCut;
     options.millimetresPerUnit = own.millimetresPerUnit;
     return options;
 }
 
 void SceneFrame::update(const SceneFile& scene, LutStore& luts, const PelShaderOptions& options) {
-    set(scene, luts, options);
+    // Of the same moment: the motion in the G-buffer does not lead to the frame before.
+    PelShaderOptions anew = options;
+    anew.historyCut += ++updates_;
+    set(scene, luts, anew);
     shader_.commit();
 }
 

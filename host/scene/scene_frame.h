@@ -167,6 +167,7 @@ class SceneFrame {
     std::map<std::string, Lut> caustics_;     // by their files
     std::set<uint32_t> materials_;            // that are set
     std::map<uint32_t, std::string> irises_;  // of materials that are eyes: their textures
+    uint32_t updates_ = 0;
 };
 
 // Warnings about values that are probably wrong: depth that is not device depth, objects whose size does not

@@ -75,6 +75,11 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
         }
     if (state.images[PEL_SLOT_SKIN] && !usesSkinMaps(state))
         warn("the skin image is without effect: no material has a profile of pelProfileCreateSkinLayers");
+    if (state.options.historyWeight > 0 && std::ranges::none_of(state.materials, [](const auto& m) {
+            return m.second.params.scattering == PEL_SCATTERING_SEPARABLE ||
+                   (m.second.params.scattering == PEL_SCATTERING_SCREEN && m.second.params.scatterTaps > 0);
+        }))
+        warn("historyWeight is without effect: no material scatters by taps");
     for (const auto& [id, material] : state.materials) {
         const PelMaterial& m = material.params;
         if (!isBlack(m.deepScatterColor) && !state.lights.empty() && !thickness && !(map && m.thicknessTaps))

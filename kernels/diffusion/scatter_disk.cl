@@ -6,7 +6,8 @@
 // disk. Input: the surface (gather_surface.cl), taps and profiles. Output: an image like the irradiance;
 // pixels that nothing changes keep their value. One work-group takes tiles, one work-item columns of their
 // pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT; PEL_HALF: sample_disk gathers at every second
-// pixel of both directions before, and scatter_disk at those without a sample beside them.
+// pixel of both directions before, and scatter_disk at those without a sample beside them; PEL_HISTORY: light
+// from beyond pixels alone is written (blend_history.cl).
 #include "lib/diffusion/gather.clh"
 #include "lib/diffusion/item.clh"
 #include "lib/image/image.clh"
@@ -99,9 +100,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_dis
                 float4 s;
                 if (!betweenSamples(frame, points, nodes, samples, &p, &s))
                     s = gatherDisk(frame, points, p.material, taps, nodes, p.x, p.y, &taken), ++pixels;
-                const float4 light = gathered(points, p.at, PEL_GATHER_LIGHT),
-                             mixed = light + gathered(points, p.at, PEL_GATHER_PIXEL).w * (s - light);
-                storeColor(PEL_FORMAT_OUT, to, vec3(mixed.x, mixed.y, mixed.z), 1);
+                s = resultOf(points, nodes, &p, s);
+                storeColor(PEL_FORMAT_OUT, to, vec3(s.x, s.y, s.z), 1);
             } else if (!frame->inPlace) {
                 storeColor(
                     PEL_FORMAT_OUT, to,

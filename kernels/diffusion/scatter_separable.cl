@@ -8,7 +8,8 @@
 // irradiance, with pixels that nothing changes as they were. One work-group takes tiles, one work-item
 // columns of their pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT; PEL_HALF: rows are filtered at
 // even columns alone, sample_columns filters at every second pixel of both directions, and filter_columns at
-// those without a sample beside them.
+// those without a sample beside them; PEL_HISTORY: light from beyond pixels alone is written
+// (blend_history.cl).
 #include "lib/diffusion/gather.clh"
 #include "lib/diffusion/item.clh"
 #include "lib/image/image.clh"
@@ -178,9 +179,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void filter_colu
                 if (!betweenSamples(frame, points, nodes, samples, &p, &s))
                     s = filterPixel(frame, points, rows, 4, p.material, taps, nodes, p.x, p.y, true, &taken),
                     ++pixels;
-                const float4 light = gathered(points, p.at, PEL_GATHER_LIGHT),
-                             mixed = light + gathered(points, p.at, PEL_GATHER_PIXEL).w * (s - light);
-                storeColor(PEL_FORMAT_OUT, to, vec3(mixed.x, mixed.y, mixed.z), 1);
+                s = resultOf(points, nodes, &p, s);
+                storeColor(PEL_FORMAT_OUT, to, vec3(s.x, s.y, s.z), 1);
             } else if (!frame->inPlace) {
                 storeColor(
                     PEL_FORMAT_OUT, to,

@@ -118,7 +118,8 @@ typedef struct PelDiffusionFrame {
 #define PEL_COUNT_PIXELS_TAPPED 3
 #define PEL_COUNT_TAPS 4
 #define PEL_COUNT_IRRADIANCE_INVALID 5
-#define PEL_DIFFUSION_COUNTERS 6
+#define PEL_COUNT_PIXELS_HISTORY 6
+#define PEL_DIFFUSION_COUNTERS 7
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelProfileTable) == 56 && sizeof(PelPyramidLevel) == 16);

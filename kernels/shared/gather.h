@@ -50,7 +50,9 @@ typedef struct PelGatherFrame {
     float origin[3];
     float direction[3];  // unit
     float inverseViewProjection[16];
+    float historyWeight;
     PelShadeImage irradiance, position, ids, weight, radii, out;
+    PelShadeImage motion, blended;              // of frames with a history
     PelUint32 sources[PEL_DIFFUSION_IDS / 32];  // bit i: light of id i may flow to others
     PelUint32 materialOf[PEL_DIFFUSION_IDS];    // 1 + the material of an id; 0: none, it is not gathered
 } PelGatherFrame;
@@ -58,5 +60,5 @@ typedef struct PelGatherFrame {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelGatherTap) == 48 && sizeof(PelGatherMaterial) == sizeof(PelProfileTable) + 32);
 static_assert(sizeof(PelGatherFrame) ==
-              4 * (8 + 6 + 16 + PEL_DIFFUSION_IDS / 32 + PEL_DIFFUSION_IDS) + 6 * 32);
+              4 * (8 + 6 + 16 + 1 + PEL_DIFFUSION_IDS / 32 + PEL_DIFFUSION_IDS) + 8 * 32);
 #endif

@@ -311,7 +311,7 @@ TEST_F(BenchCommand, ADriverThatHangsOrCrashesCostsOneOperation) {
 TEST_F(BenchCommand, TheFirstTimeOnAGpuJudgesWhatItMakes) {
     const std::string command =
         "bench --first-gpu --quick --limit 600 --only table-arc --only 'ball-4: disk' --only 'ball-4: auto' "
-        "--only '270p: disk' -o @out";
+        "--only '270p: disk, 32' -o @out";
     const auto rows = [&] {
         std::map<std::string, Json> found;
         const Json device = Json::parse(read(path("out/bench.json"))).at("devices").at(0);
@@ -342,7 +342,7 @@ TEST_F(BenchCommand, TheFirstTimeOnAGpuJudgesWhatItMakes) {
     EXPECT_EQ(of[other]["within"], true);
     EXPECT_EQ(cli(command, bad + "crash").exitCode, 1);
     of = rows();
-    EXPECT_EQ(of["all"]["out"], (Json{disk, frame}));
+    EXPECT_EQ(of["all"]["out"], (Json{disk, frame, frame + ", half rate"}));
     EXPECT_TRUE(contains(of[disk]["failed"].get<std::string>(), "ended by signal 6"));
     EXPECT_EQ(of[other]["within"], true);
 #endif

@@ -137,6 +137,10 @@ TEST_F(Capture, RepeatsEveryMethodAndProfile) {
         const Profile first = all[scattering], second = scattering == PEL_SCATTERING_AUTO ? all[0] : first;
         f.materials[1].profile = first.get();
         f.materials[2].profile = second.get();
+        if (scattering == PEL_SCATTERING_SEPARABLE) {
+            f.options.historyWeight = 0.5f;
+            f.slots[PEL_SLOT_MOTION] = {3, std::vector<float>(3 * f.pixels(), 0.25f)};
+        }
         expectRepeats(f, [&](Shader& shader) {
             if (scattering != PEL_SCATTERING_TEXTURE) return;
             Random random(8);

@@ -20,6 +20,7 @@ struct LitScene {
     int width = 0, height = 0;
     Vec3 toLight;  // of the first light
     Vec3 eye;
+    sample::Matrix4 viewProjection;
     sample::Lighting lighting;
     double ambient = 0;
     std::vector<scatter_scene::Lamp> lamps;
@@ -106,6 +107,7 @@ class Stage {
         plain.diffusionRadius = profile.info().radius * request.profileScale / unit_;
         const sample::Camera camera = cameraOf(request);
         s.eye = camera.eye;
+        s.viewProjection = camera.viewProjection(double(s.width) / s.height);
         s.gbuffer = renderGBuffer(*scene_, camera, s.width, s.height, plain);
         s.lighting.lights = request.more;
         s.lighting.lights.insert(s.lighting.lights.begin(), {.toLight = s.toLight});
@@ -243,6 +245,9 @@ struct ShadeRequest {
     bool count = true;       // PelShaderOptions.countPixels
     bool everyPixel = false, halfRate = false;
     float timeBudget = 0;
+    float historyWeight = 0;
+    uint32_t frameIndex = 0;
+    std::vector<float> motion = {};   // PEL_SLOT_MOTION, two floats a pixel
     std::vector<float> texture = {};  // a scattered one, square; the body has texture coordinates
 };
 
@@ -251,6 +256,19 @@ inline scatter_scene::Picture pictureOf(const LitScene& s) {
     p.positions = s.positions, p.irradiance = s.irradiance;
     p.ids.assign(s.gbuffer.material.begin(), s.gbuffer.material.end());
     return p;
+}
+
+// Where pixels of a frame were in the one before, if only the camera has moved.
+inline std::vector<float> motionBetween(const LitScene& before, const LitScene& now) {
+    std::vector<float> motion;
+    for (int y = 0; y < now.height; ++y)
+        for (int x = 0; x < now.width; ++x) {
+            const float* p = &now.positions[3 * (size_t(y) * size_t(now.width) + size_t(x))];
+            const Vec3 clip = before.viewProjection.project({p[0], p[1], p[2]});
+            motion.push_back(float((clip.x + 1) / 2 * now.width - 0.5 - x));
+            motion.push_back(float((1 - clip.y) / 2 * now.height - 0.5 - y));
+        }
+    return motion;
 }
 
 // What a shader made of a scene; `shader` makes the same frame again.
@@ -263,7 +281,7 @@ struct Shot {
 
 // By the shader for an albedo of 1, all else at its default, shadows from the map.
 inline Shot shoot(const Device& device, const LitScene& s, const Profile& profile, double profileScale,
-                  const ShadeRequest& request) {
+                  const ShadeRequest& request, scatter_scene::ShownImages shown) {
     const uint32_t tableSize = request.tableSize;
     const auto radius = float(profile.info().radius * profileScale / s.unit);
     scatter_scene::Frame f(pictureOf(s), request.scattering);
@@ -276,6 +294,8 @@ inline Shot shoot(const Device& device, const LitScene& s, const Profile& profil
     f.options.targetError = request.targetError;
     f.options.halfRate = request.halfRate;
     f.options.timeBudget = request.timeBudget;
+    f.options.historyWeight = request.historyWeight, f.options.frameIndex = request.frameIndex;
+    if (!request.motion.empty()) f.images[PEL_SLOT_MOTION] = request.motion;
     f.texture = request.texture;
     for (size_t i = 0; !f.texture.empty() && i < s.covered.size(); ++i)
         for (int c = 0; c < 2; ++c) f.images[PEL_SLOT_UV].push_back(s.gbuffer.uv.plane(c)[i]);
@@ -300,13 +320,16 @@ inline Shot shoot(const Device& device, const LitScene& s, const Profile& profil
         f.curvatureLut = pellucid::Lut(device, curvatureDesc);
         f.shadowLut = pellucid::Lut(device, shadowDesc);
     }
-    scatter_scene::ShownImages shown(device, uint32_t(s.width), uint32_t(s.height));
     shown.shader.set(scatter_scene::standingAt({s.eye.x, s.eye.y, s.eye.z}));
     PelAmbient ambient = pelAmbientDefaults();
     std::fill_n(ambient.constant, 3, float(s.ambient));
     shown.shader.set(ambient);
     scatter_scene::Shown made = f.shade(shown);
     return {std::move(made.light), made.stats, shown.shader, shown.out};
+}
+inline Shot shoot(const Device& device, const LitScene& s, const Profile& profile, double profileScale,
+                  const ShadeRequest& request) {
+    return shoot(device, s, profile, profileScale, request, {device, uint32_t(s.width), uint32_t(s.height)});
 }
 
 inline std::vector<float> shade(const Device& device, const LitScene& s, const Profile& profile,

@@ -81,6 +81,22 @@ Rgb mixed(const TapScene& s, size_t i, Rgb light, Rgb weight) {
     return result;
 }
 
+// Light from within a disk as large as the pixel.
+Rgb lightWithin(const TapScene& s, const Rising& light, const Surface& surface, size_t i) {
+    return light.value(surface.pixel / std::sqrt(pi) / at(s.radii, i)) * s.picture.irradiance[i];
+}
+
+bool gathers(const TapScene& s, const std::vector<Surface>& all, size_t i) {
+    return all[i].there && all[i].pixel > 0 && at(s.radii, i) > 0 && at(s.weights, i) > 0;
+}
+
+// Whether another pixel gathers, and is on the surface of this one.
+bool sameSurface(const TapScene& s, const std::vector<Surface>& all, size_t here, size_t there) {
+    const double apart = length(all[there].p - all[here].p);
+    return gathers(s, all, there) && s.picture.ids[there] == s.picture.ids[here] &&
+           apart * apart <= alike * std::max(all[here].area, all[there].area);
+}
+
 }  // namespace
 
 std::vector<Rgb> scatterOnDisk(const TapScene& s, const Profile& profile) {
@@ -147,33 +163,95 @@ std::vector<std::optional<Rgb>> betweenSamples(const TapScene& s, const Profile&
     const ScatterPicture& picture = s.picture;
     const Rising light = enclosedLight(profile);
     const std::vector<Surface> all = surfaces(picture);
-    const auto gathers = [&](size_t i) {
-        return all[i].there && all[i].pixel > 0 && at(s.radii, i) > 0 && at(s.weights, i) > 0;
-    };
-    const auto ownLight = [&](size_t i) {
-        return light.value(all[i].pixel / std::sqrt(pi) / at(s.radii, i)) * picture.irradiance[i];
-    };
+    const auto ownLight = [&](size_t i) { return lightWithin(s, light, all[i], i); };
     std::vector<std::optional<Rgb>> result(all.size());
     for (int y = 0; y < picture.height; ++y)
         for (int x = 0; x < picture.width; ++x) {
             const size_t here = picture.at(x, y);
-            if (!gathers(here)) continue;
+            if (!gathers(s, all, here)) continue;
             Rgb sum{};
             int count = 0;
             for (int v = std::max(y - 1, 0); v <= std::min(y + 1, picture.height - 1); ++v)
                 for (int u = std::max(x - 1, 0); u <= std::min(x + 1, picture.width - 1); ++u) {
                     const size_t there = picture.at(u, v);
                     const bool own = (x % 2 || u == x) && (y % 2 || v == y);
-                    if (u % 2 || v % 2 || !own || !gathers(there) || picture.ids[there] != picture.ids[here])
-                        continue;
-                    const double apart = length(all[there].p - all[here].p);
-                    if (apart * apart > alike * std::max(all[here].area, all[there].area)) continue;
+                    if (u % 2 || v % 2 || !own || !sameSurface(s, all, here, there)) continue;
                     const Rgb beyond = gathered[there] - ownLight(there);
                     for (int c = 0; c < 3; ++c) sum[c] += std::max(beyond[c], 0.0);
                     ++count;
                 }
             if (count) result[here] = sum / double(count) + ownLight(here);
         }
+    return result;
+}
+
+std::vector<Rgb> blendHistory(const TapScene& s, const Profile& profile, const std::vector<Rgb>& gathered,
+                              const std::vector<Vec3>& motion, double weight,
+                              std::vector<HistoryPixel>& history) {
+    const ScatterPicture& picture = s.picture;
+    const std::vector<Surface> all = surfaces(picture);
+    const Rising profileLight = enclosedLight(profile);
+    std::vector<Rgb> beyond(all.size());
+    for (size_t i = 0; i < all.size(); ++i)
+        if (gathers(s, all, i))
+            beyond[i] = gathered[i] - (1 - at(s.weights, i)) * picture.irradiance[i] -
+                        at(s.weights, i) * lightWithin(s, profileLight, all[i], i);
+    const auto inside = [&](int x, int y) {
+        return x >= 0 && y >= 0 && x < picture.width && y < picture.height;
+    };
+    std::vector<Rgb> result = gathered;
+    std::vector<HistoryPixel> after(all.size());
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) {
+            const size_t here = picture.at(x, y);
+            if (!gathers(s, all, here)) continue;
+            const double column = x + motion[here].x, row = y + motion[here].y,
+                         distance = all[here].p.z + motion[here].z;
+            Rgb earlier{};
+            double found = 0;
+            int frames = 0;
+            const bool finite = std::isfinite(column) && std::isfinite(row);
+            for (int v = 0; finite && !history.empty() && v < picture.height; ++v)
+                for (int u = 0; u < picture.width; ++u) {
+                    const double near =
+                        std::max(1 - std::abs(column - u), 0.0) * std::max(1 - std::abs(row - v), 0.0);
+                    const HistoryPixel& before = history[picture.at(u, v)];
+                    const double apart = before.distance - distance;
+                    if (!(near > 0) || before.id != picture.ids[here] ||
+                        !(apart * apart <= alike * all[here].area))
+                        continue;
+                    frames = found > 0 ? std::min(frames, before.frames) : before.frames;
+                    earlier = earlier + near * before.light;
+                    found += near;
+                }
+            Rgb light = beyond[here];
+            for (int c = 0; found > 0 && c < 3; ++c) {
+                double low = light[c], high = light[c], sum = 0, squares = 0, count = 0;
+                std::optional<double> beside;
+                for (int dy = -s.rate; dy <= s.rate; dy += s.rate)
+                    for (int dx = -s.rate; dx <= s.rate; dx += s.rate) {
+                        if (!inside(x + dx, y + dy)) continue;
+                        const size_t there = picture.at(x + dx, y + dy);
+                        if (!sameSurface(s, all, here, there)) continue;
+                        low = std::min(low, beyond[there][c]), high = std::max(high, beyond[there][c]);
+                        const int u = x + dx + int(std::floor(motion[here].x + 0.5)),
+                                  v = y + dy + int(std::floor(motion[here].y + 0.5));
+                        if (!inside(u, v) || history[picture.at(u, v)].id != picture.ids[here]) continue;
+                        const double change = beyond[there][c] - history[picture.at(u, v)].light[c];
+                        sum += change, squares += change * change, ++count;
+                        // All are read beside their places by as much as this one.
+                        if (!dx && !dy) beside = history[picture.at(u, v)].light[c] - earlier[c] / found;
+                    }
+                const double mean = sum / count, change = mean + beside.value_or(-mean),
+                             error2 = std::max(squares / count - mean * mean, 0.0) / count,
+                             shift = change * change > 4 * error2 ? change - 4 * error2 / change : 0;
+                light[c] += std::min(weight, frames / (frames + 1.0)) *
+                            (std::clamp(earlier[c] / found + shift, low, high) - light[c]);
+            }
+            result[here] = gathered[here] + light - beyond[here];
+            after[here] = {picture.ids[here], std::min(frames + 1, 31), light, all[here].p.z};
+        }
+    history = after;
     return result;
 }
 

@@ -109,6 +109,28 @@ TEST_F(SceneFrames, PreparedShadesTheSameBits) {
     EXPECT_NE(prepared.radiance(), whole.radiance());
 }
 
+// The next picture goes on from the one before; the same picture, changed, begins anew.
+TEST_F(SceneFrames, AHistoryIsOfPicturesThatFollowOneAnother) {
+    const Device device("");
+    io::SceneFile s = scene();
+    s.channels[PEL_SLOT_MOTION] = uv;
+    s.options.historyWeight = 0.8f;
+    s.materials[0].material.scattering = PEL_SCATTERING_SCREEN;
+    s.materials[0].material.scatterTaps = 8;
+    const io::Image gbuffer = ball();
+    io::LutStore luts(device);
+    io::SceneFrame frame(device, gbuffer, s, luts);
+    const auto historyOf = [&] {
+        frame.shade();
+        return frame.stats().pixelsHistory;
+    };
+    EXPECT_EQ(historyOf(), 0u);
+    frame.show(gbuffer, s);
+    EXPECT_GT(historyOf(), 0u);
+    frame.update(s, luts);
+    EXPECT_EQ(historyOf(), 0u);
+}
+
 // A map and its levels in files of their own; both everywhere the same normal.
 TEST_F(SceneFrames, LevelsOfANormalMapComeFromFiles) {
     const Device device("");

@@ -168,3 +168,28 @@ def test_ambient_cube(device, view):
                            (np.zeros((12, 2), np.float32), "three components")]:
         with pytest.raises((ValueError, pel.PellucidError), match=message):
             shader.set_ambient_cube(wrong)
+
+
+def test_history(device, view):
+    """Frames of few taps come closer to many; pixels that were not in the picture stand alone."""
+    motion = np.zeros((HEIGHT, WIDTH, 2), np.float32)
+    motion[:, :20] = 100
+
+    def frames(count, taps, cuts=0, **options):
+        radiance = black()
+        shader = shader_for(device, view, radiance, position=view.position, motion=motion)
+        shader.set_material(1, pel.Material(profile="skin", scattering="screen", scatter_taps=taps,
+                                            curvature_gain=0))
+        for index in range(count):
+            shader.set_options(frame_index=index, history_cut=index * cuts, **options).commit().execute()
+        return radiance, shader.stats().pixels_history
+
+    truth, none = frames(1, 256)
+    single, cut = frames(8, 8, cuts=1, history_weight=0.9)
+    blended, some = frames(8, 8, history_weight=0.9)
+    assert none == cut == 0 and some == view.inside[:, 20:].sum()
+    assert np.array_equal(blended[:, :20], single[:, :20])
+    error = [np.abs(image - truth)[:, 20:].mean() for image in (single, blended)]
+    assert error[1] < 0.6 * error[0]
+    with pytest.raises(pel.PellucidError, match="historyWeight"):
+        frames(1, 8, history_weight=1)

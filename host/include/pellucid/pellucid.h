@@ -890,7 +890,12 @@ typedef enum PelImageSlot {
      * from it, and the albedo image is not read. Clamped to the ranges; NaN, and a component that is missing:
      * that of the profile */
     PEL_SLOT_SKIN = 25,
-    PEL_SLOT_COUNT = 26
+    /* two or three components, float or half: where the surface of a pixel was in the last frame less where
+     * it is, in pixels to the right and down; and, for surfaces that come closer or go away, how much farther
+     * from the camera it was (length; in parallel views along rising depth). Read with
+     * PelShaderOptions.historyWeight. NaN, Inf: the pixel takes nothing from the last frame. Not set: 0 */
+    PEL_SLOT_MOTION = 26,
+    PEL_SLOT_COUNT = 27
 } PelImageSlot;
 
 /* The images of one light. */
@@ -1212,7 +1217,8 @@ typedef struct PelShaderStats {
     double takenTargetError;
     double expectedMilliseconds;
     double expectedError;
-    uint64_t tuned; /* 1: they come from this device's record, 0: from the built-in guess */
+    uint64_t tuned;         /* 1: they come from this device's record, 0: from the built-in guess */
+    uint64_t pixelsHistory; /* that took light from the last frame (PelShaderOptions.historyWeight) */
 } PelShaderStats;
 
 /* What a pass of a shader did in one execution. */
@@ -1301,6 +1307,16 @@ typedef struct PelShaderOptions {
     uint32_t regionY;
     uint32_t regionWidth;
     uint32_t regionHeight;
+    /* 0 to 0.95: share of earlier frames in the scattered light of materials that scatter by taps
+     * (PEL_SCATTERING_SEPARABLE, and PEL_SCATTERING_SCREEN with scatterTaps). Of n frames they have at most n
+     * / (n + 1), so that a picture at rest becomes the mean of all. Light is taken from where PEL_SLOT_MOTION
+     * says, if material and distance are the pixel's there, and clamped to the range that this frame's has in
+     * the 3 x 3 pixels around. Needs PelCamera.inverseViewProjection; frameIndex should change from frame to
+     * frame (docs/guide/shading.md, "History"); 0 */
+    float historyWeight;
+    /* another number than in the last execution: this one takes nothing from earlier ones, as after a cut.
+     * The same holds for another size, and for a commit without history; 0 */
+    uint32_t historyCut;
 } PelShaderOptions;
 
 PEL_API PelError pelShaderCreate(PelDevice device, PelShader* shader);

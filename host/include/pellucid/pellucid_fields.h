@@ -158,7 +158,11 @@
       "\"none\" until then ([devices.md](devices.md#the-first-picture)); those that write a picture wait") \
     X(FLOAT, timeBudget, 0, 0, PEL_FINITE, PEL_NONE, "", "time_budget", PEL_NO_SLIDER, \
       "milliseconds that `auto` may take beyond plain lighting, by what is known of the device; 0: no " \
-      "limit ([shading.md](shading.md#time-budget))")
+      "limit ([shading.md](shading.md#time-budget))") \
+    X(FLOAT, historyWeight, 0, 0, 0.95f, PEL_NONE, "", "history_weight", PEL_NO_SLIDER, \
+      "share of earlier frames in light that is scattered by taps ([shading.md](shading.md#history))") \
+    X(FREE_UINT, historyCut, 0, 0, PEL_FINITE, PEL_NONE, "", "history_cut", PEL_NO_SLIDER, \
+      "another number than in the frame before: nothing is taken from earlier frames")
 
 #define PEL_EACH_SCATTER_PARAM_FIELD(X) \
     X(FLOAT, targetError, 2e-3f, 0, PEL_FINITE, PEL_NONE, "", "target_error", PEL_NO_SLIDER, \

@@ -50,8 +50,9 @@ void outputFileKeys(Visitor& v, Scene& scene) {
 template <class Visitor, class Scene>
 void channelKeys(Visitor& v, Scene& scene) {
     for (const SlotKey& k : slotKeys) {
-        // The last channel, of radius or oxygenation, is optional.
-        const bool optional = k.slot == PEL_SLOT_SCATTER_WEIGHT || k.slot == PEL_SLOT_SKIN;
+        // The last channel, of radius, oxygenation or distance, is optional.
+        const bool optional =
+            k.slot == PEL_SLOT_SCATTER_WEIGHT || k.slot == PEL_SLOT_SKIN || k.slot == PEL_SLOT_MOTION;
         const size_t least = k.components - (optional ? 1 : 0);
         v.texts(k.key, scene.channels[k.slot], k.components, least);
     }
