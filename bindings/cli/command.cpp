@@ -4,7 +4,6 @@
 #include <cctype>
 #include <charconv>
 #include <csignal>
-#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <sstream>

@@ -1,6 +1,4 @@
 // pellucid demo: the whole chain on a real mesh: curvature, look-up tables, G-buffer, shading, pictures.
-#include <cstdlib>
-#include <filesystem>
 
 #include "demo.h"
 #include "demo/demo_hair.h"

@@ -2,7 +2,6 @@
 // neighbours.
 #include "cl/cl_spy.h"
 #include "shader_ready.h"
-#include "test.h"
 
 using namespace shade_test;
 

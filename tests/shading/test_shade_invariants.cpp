@@ -3,7 +3,6 @@
 #include "scattering_frame.h"
 #include "shader_ready.h"
 #include "shadow_forms.h"
-#include "test.h"
 
 using namespace shade_test;
 

@@ -2,7 +2,6 @@
 // ambient light from a cube map.
 #include "pass_scene.h"
 #include "shader_ready.h"
-#include "test.h"
 
 using namespace shade_test;
 using reference::CubeMap;

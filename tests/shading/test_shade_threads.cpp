@@ -1,10 +1,8 @@
 // Shaders used from several threads, on one device and on several; objects that outlive the caller's device;
 // progress and cancelling; and what a second frame costs.
-#include "cl/cl_spy.h"
 #include "held_queue.h"
 #include "pass_scene.h"
 #include "shader_ready.h"
-#include "test.h"
 
 using namespace shade_test;
 

@@ -2,7 +2,6 @@
 // bounds and skipping, what the forms have in common, and what is refused.
 #include "shader_ready.h"
 #include "shadow_forms.h"
-#include "test.h"
 
 using namespace shade_test;
 
