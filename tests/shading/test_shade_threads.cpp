@@ -138,7 +138,8 @@ TEST(ShadeProgress, IsToldAndMayCancel) {
         };
         Listener listener{0, 3};
         pellucid::check(pelDeviceSetProgress(own.get(), listen, &listener));
-        expectError(PEL_ERROR_CANCELLED, {"shading"}, [&] { shader.execute(); });
+        expectRefused(
+            {"shading"}, [&] { shader.execute(); }, PEL_ERROR_CANCELLED);
         EXPECT_GT(made().first, 0u) << "not all";
         EXPECT_GT(made().second, 0u) << "what was made before";
         listener = {};
