@@ -96,6 +96,9 @@ TEST_F(ShadeFeatures, CurvatureFromThePictureItself) {
         return shaded();
     };
     EXPECT_GT(farthest(of("screen"), of("Flat.V")), 0.01);
+    // Of geometric normals where there are some.
+    add(PEL_SLOT_NORMAL_GEOMETRIC, {"G.X", "G.Y", "G.Z"}, [](int, int, size_t c) { return c == 2; });
+    EXPECT_LE(farthest(of("screen"), of("Flat.V")), 1e-6);
     scene_.channels[PEL_SLOT_CURVATURE] = {"screen"};
     scene_.channels[PEL_SLOT_POSITION].clear();
     refuses("[channels] curvature");

@@ -17,18 +17,22 @@ def test_each_argument_reaches_the_function(gl):
     halved[2] = (gl[2] + gl[3]) / 2
     backwards = halved.copy()
     backwards[2] = gl[3] - halved[2]
-    light, camera = light_from_view_projection(gl, color=(1, 2, 3)), camera_from_view_projection(gl)
+    light = light_from_view_projection(gl, color=(1, 2, 3))
     assert light.type == (pel.LightType.SPOT if gl is SPOT else pel.LightType.DIRECTIONAL)
     assert np.allclose(light.color, (1, 2, 3))
-    x, y, z, w = light.world_to_shadow.reshape(4, 4) @ [0.3, 0.2, 0, 1]
-    for matrix, how, depth in ((gl * [[1], [-1], [1], [1]], {"y_up": False}, z),
+    place = [0.3, 0.2, 0, 1]
+    clip = gl @ place / (gl @ place)[3]
+    x, y, z, w = light.world_to_shadow.reshape(4, 4) @ place
+    assert np.allclose([x / w, y / w, z / w], 0.5 + 0.5 * clip[:3] * [1, -1, 1], atol=1e-5)
+    for matrix, how, depth in ((gl, {}, z), (gl * [[1], [-1], [1], [1]], {"y_up": False}, z),
                                (halved, {"depth": "0..1"}, z), (backwards, {"depth": "1..0"}, w - z)):
         other = light_from_view_projection(matrix, **how).world_to_shadow.reshape(4, 4)
-        assert np.allclose(other @ [0.3, 0.2, 0, 1], [x, y, depth, w], atol=1e-5)
-        seen = camera_from_view_projection(matrix, **how)
-        assert np.allclose(np.abs(seen.position), np.abs(camera.position), rtol=1e-4, atol=1e-4)
+        assert np.allclose(other @ place, [x, y, depth, w], atol=1e-5)
+        camera = camera_from_view_projection(matrix, **how)
+        seen = camera.inverse_view_projection.reshape(4, 4) @ [clip[0], clip[1], depth / w, 1]
+        assert np.allclose(seen / seen[3], place, atol=1e-4)
     below = light_from_view_projection(gl, first_row="bottom").world_to_shadow.reshape(4, 4)
-    assert np.allclose(below @ [0.3, 0.2, 0, 1], [x, w - y, z, w], atol=1e-5)
+    assert np.allclose(below @ place, [x, w - y, z, w], atol=1e-5)
 
 
 @pytest.mark.parametrize("use, message", [
