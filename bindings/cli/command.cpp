@@ -230,6 +230,15 @@ void addRunOptions(CLI::App& command, Run::Options& options) {
            "what would be a warning is an error: exit code 3, and nothing is written");
 }
 
+std::string installed(const std::string& data) {
+    std::error_code error;
+    const std::filesystem::path bin = std::filesystem::path(pel::system::programFile()).parent_path();
+    for (const char* folder : {"../share/pellucid", "../../../data"})
+        if (std::filesystem::exists(bin / folder / data, error))
+            return (bin / folder / data).lexically_normal().string();
+    return "";
+}
+
 void parseSize(const std::string& text, uint32_t& width, uint32_t& height) {
     const char *at = text.data(), *end = at + text.size();
     uint32_t w = 0, h = 0;
