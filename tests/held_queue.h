@@ -1,15 +1,10 @@
 // A device whose queue waits for an event that the test has yet to set.
 #pragma once
 #include <CL/cl.h>
-#include <gtest/gtest.h>
 
 #include "cl/cl_spy.h"
 #include "test.h"
 
-#include <pellucid/pellucid.hpp>
-
-#include <chrono>
-#include <ctime>
 #include <future>
 
 namespace fixture {

@@ -40,11 +40,8 @@ constexpr double walkTheirs = 5e-4;       // of the other walk, smoothed over N.
 constexpr double throughSlab = 0.015;     // light from beyond the profile's reach, in a slab of 12 paths
 constexpr double throughSlabPart = 0.03;  // relative: sums over blocks of texels
 constexpr double publishedDeltaE = 1e-4;  // published to four decimals
-constexpr double flip = 3e-5;  // the authors' program sums in floats, with more digits of sRGB's matrix
-// a cosine from interpolated normals, at a point of a facet beside that of the ball
-constexpr double litFacets = 0.02;
-constexpr double referenceRms = 1e-3;  // RMS on a ball of 57,600 facets at pixels that were brought to it
-constexpr double neverWorse = 2e-4;    // of white: what the reference itself may be off on facets
+constexpr double flip = 3e-5;        // the authors' program sums in floats, with more digits of sRGB's matrix
+constexpr double neverWorse = 2e-4;  // of white: what the reference itself may be off on facets
 
 // --- curvature, relative to the mesh's largest value ---
 constexpr double edgeCurvature = 1e-5;  // differences of float positions and normals, then a mean per pass
@@ -95,8 +92,6 @@ constexpr double noisyBorder = 0.15;  // the same in the outermost two rows, who
 // relative to 1/(a step): differences of float normals and positions of neighbours
 constexpr double screenOracle = 2e-5;
 constexpr double screenSphere = 2e-3;  // relative: float positions at steps of 1/30 radius; normals are exact
-// radiance up to 1: what an error of screenSphere in curvature may do to it
-constexpr double screenShaded = 1e-3;
 // relative: float depth leaves 1e-7 of the distance, a step is 1e-4 of it
 constexpr double screenFromDepth = 0.02;
 constexpr double shuffled = 2e-3;   // sums in another order; the fit squares the rounding of positions

@@ -1,12 +1,10 @@
 // What tests and measurements use: the standard headers, sizes and halves.
 #pragma once
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <bit>
 #include <cerrno>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
@@ -27,11 +25,8 @@
 #include <set>
 #include <span>
 #include <sstream>
-#include <stdexcept>
-#include <string>
 #include <thread>
 #include <type_traits>
-#include <vector>
 
 // Smaller meshes, tables and images where every instruction is interpreted: ./run check oclgrind sets
 // PELLUCID_TEST_SMALL.

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <csignal>
 #include <deque>
-#include <filesystem>
 #include <mutex>
 #include <thread>
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
 
 #include "io/content_hash.h"
 #include "io/lut/lut_describe.h"

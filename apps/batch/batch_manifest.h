@@ -4,8 +4,6 @@
 #include <future>
 #include <map>
 #include <pellucid/pellucid.hpp>
-#include <string>
-#include <vector>
 
 namespace pellucid::io {
 

@@ -70,18 +70,6 @@ sample::Camera cameraOf(const io::GltfCamera* given, const sample::Scene& scene,
     return camera;
 }
 
-void addChannels(io::Image& image, io::SceneFile& scene, PelImageSlot slot, const std::string& name,
-                 const std::string& components, const std::vector<float>& planes) {
-    const size_t pixels = image.pixelCount();
-    scene.channels[slot].clear();
-    for (size_t c = 0; c < components.size(); ++c) {
-        scene.channels[slot].push_back(name + "." + components[c]);
-        const auto from = planes.begin() + std::ptrdiff_t(c * pixels);
-        image.channels.push_back(
-            {scene.channels[slot].back(), io::ChannelType::Float, {from, from + std::ptrdiff_t(pixels)}});
-    }
-}
-
 // Multiplies the albedo of pixels whose material has a texture, one texture after another to save memory.
 void applyTextures(Run& run, const io::GltfScene& v, sample::GBuffer& g) {
     const size_t pixels = g.material.size();
@@ -156,11 +144,15 @@ void drawImport(Run& run, const std::string& folder, io::ImportedGltf& imported,
     applyTextures(run, gltf, g);
     io::Image image;
     image.width = int(v.width), image.height = int(v.height);
-    addChannels(image, scene, PEL_SLOT_POSITION, "Position", "XYZ", g.position.data);
-    addChannels(image, scene, PEL_SLOT_NORMAL_SHADING, "Normal", "XYZ", g.geometricNormal.data);
-    addChannels(image, scene, PEL_SLOT_CURVATURE, "Curvature", "V", g.curvature.data);
-    addChannels(image, scene, PEL_SLOT_ALBEDO, "Albedo", "RGB", g.albedo.data);
-    addChannels(image, scene, PEL_SLOT_MATERIAL, "Material", "I", {g.material.begin(), g.material.end()});
+    const auto add = [&](PelImageSlot slot, const char* name, const char* components,
+                         std::span<const float> planes) {
+        io::addPlanes(scene, image, slot, name, components, planes);
+    };
+    add(PEL_SLOT_POSITION, "Position", "XYZ", g.position.data);
+    add(PEL_SLOT_NORMAL_SHADING, "Normal", "XYZ", g.geometricNormal.data);
+    add(PEL_SLOT_CURVATURE, "Curvature", "V", g.curvature.data);
+    add(PEL_SLOT_ALBEDO, "Albedo", "RGB", g.albedo.data);
+    add(PEL_SLOT_MATERIAL, "Material", "I", std::vector<float>(g.material.begin(), g.material.end()));
     size_t covered = 0;
     for (const uint32_t id : g.material) covered += id != 0;
     run.report["pixels_covered"] = covered;

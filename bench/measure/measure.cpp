@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "power.h"
-#include "timing.h"
 
 namespace pellucid::bench {
 namespace {

@@ -8,7 +8,6 @@
 #include "measure.h"
 #include "power.h"
 #include "scenes.h"
-#include "timing.h"
 
 namespace pellucid::bench {
 namespace {

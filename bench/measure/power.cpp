@@ -2,7 +2,6 @@
 
 #include <CL/cl.h>
 
-#include <filesystem>
 #include <fstream>
 
 #include "io/shortest.h"

@@ -3,7 +3,6 @@
 #include <functional>
 #include <optional>
 #include <pellucid/pellucid.hpp>
-#include <string>
 
 #include "timing.h"
 

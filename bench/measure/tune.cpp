@@ -1,5 +1,4 @@
 // Launch sizes by measurement: tables and frames are made with one size after another, in turns.
-#include <random>
 
 #include "diffusion/lit_scenes.h"
 #include "measure.h"

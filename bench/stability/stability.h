@@ -1,6 +1,5 @@
 // The operations of docs/stability.md: the errors at points of the unit cube, which stand for inputs.
 #pragma once
-#include <memory>
 
 #include "io/shortest.h"
 #include "shading/pass_scene.h"

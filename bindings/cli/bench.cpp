@@ -2,7 +2,6 @@
 // a report and a page; bench compare: reports against the first of them.
 #include <atomic>
 #include <csignal>
-#include <filesystem>
 #include <iostream>
 
 #include "command.h"
@@ -27,14 +26,12 @@ struct Arguments {
     std::string events;  // in a child process: what it measures; it prints one JSON object a line
 };
 
-// The folder with heads, frozen scenes' truth and the page's form: installed, or of the source code.
+// The folder with heads, frozen scenes' truth and the page's form.
 std::string dataFolder() {
-    std::error_code error;
-    const std::filesystem::path bin = std::filesystem::path(pel::system::programFile()).parent_path();
-    for (const char* folder : {"../share/pellucid", "../../../data"})
-        if (std::filesystem::exists(bin / folder / "bench", error))
-            return (bin / folder).lexically_normal().string();
-    throw UsageError("the folder share/pellucid/bench, which comes with pellucid, is missing");
+    const std::string bench = installed("bench");
+    if (bench.empty())
+        throw UsageError("the folder share/pellucid/bench, which comes with pellucid, is missing");
+    return std::filesystem::path(bench).parent_path().string();
 }
 
 // A number with a unit, such as "1ms" or "10%".

@@ -4,7 +4,6 @@
 #include <cctype>
 #include <charconv>
 #include <csignal>
-#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <sstream>
@@ -229,6 +228,15 @@ void addRunOptions(CLI::App& command, Run::Options& options) {
     jsonOption(command, options.json);
     option(command, "--strict", options.strict,
            "what would be a warning is an error: exit code 3, and nothing is written");
+}
+
+std::string installed(const std::string& data) {
+    std::error_code error;
+    const std::filesystem::path bin = std::filesystem::path(pel::system::programFile()).parent_path();
+    for (const char* folder : {"../share/pellucid", "../../../data"})
+        if (std::filesystem::exists(bin / folder / data, error))
+            return (bin / folder / data).lexically_normal().string();
+    return "";
 }
 
 void parseSize(const std::string& text, uint32_t& width, uint32_t& height) {

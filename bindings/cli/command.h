@@ -159,6 +159,10 @@ void checkFolder(const std::string& folder, const std::string& file);
 // Adds --device, --json and --strict.
 void addRunOptions(CLI::App& command, Run::Options& options);
 
+// The path of data that come with the command, such as "heads/head_female.obj": in share/pellucid where it is
+// installed, else in the source code. "" if they are not there.
+std::string installed(const std::string& data);
+
 // "WxH" to two numbers; throws UsageError.
 void parseSize(const std::string& text, uint32_t& width, uint32_t& height);
 

@@ -1,6 +1,4 @@
 // pellucid demo: the whole chain on a real mesh: curvature, look-up tables, G-buffer, shading, pictures.
-#include <cstdlib>
-#include <filesystem>
 
 #include "demo.h"
 #include "demo/demo_hair.h"
@@ -46,12 +44,7 @@ class Stages {
 std::string standardHead() {
     const char* named = std::getenv("PELLUCID_DEMO_MESH");
     if (named && *named) return named;
-    std::error_code error;
-    const std::filesystem::path bin = std::filesystem::path(pel::system::programFile()).parent_path();
-    for (const char* folder : {"../share/pellucid/heads", "../../../data/heads"}) {  // installed, or built
-        const std::filesystem::path head = bin / folder / "head_female.obj";
-        if (std::filesystem::exists(head, error)) return head.lexically_normal().string();
-    }
+    if (const std::string head = installed("heads/head_female.obj"); !head.empty()) return head;
     throw UsageError(
         "no mesh given, and the head that comes with pellucid is not in its share/pellucid/heads; name an "
         "OFF, OBJ, PLY or STL file");

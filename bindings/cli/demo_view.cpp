@@ -13,18 +13,6 @@ constexpr const char *profileName = "skin", *curvatureLutName = "skin", *shadowL
 constexpr float skinRoughness = 0.4f;  // of the broad lobe
 constexpr int shadowMapSize = 2048;    // texels a side: 0.15 mm each for a head
 
-// Adds an image's planes as channels "NAME.X" and so on, and names them in the scene for `slot`.
-void addChannels(DemoView& view, const std::string& name, const std::string& components, const float* planes,
-                 PelImageSlot slot) {
-    std::vector<std::string>& names = view.scene.channels[slot];
-    const size_t pixels = view.gbuffer.pixelCount();
-    for (size_t c = 0; c < components.size(); ++c) {
-        names.push_back(name + "." + components[c]);
-        view.gbuffer.channels.push_back(
-            {names.back(), io::ChannelType::Float, {planes + c * pixels, planes + (c + 1) * pixels}});
-    }
-}
-
 void copy(float (&to)[3], sample::Vec3 from) {
     to[0] = float(from.x), to[1] = float(from.y), to[2] = float(from.z);
 }
@@ -189,22 +177,21 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     view.hair = demo::coverageOf(head.strands, camera, g);
     view.gbuffer.width = width;
     view.gbuffer.height = height;
-    addChannels(view, "Position", "XYZ", g.position.data.data(), PEL_SLOT_POSITION);
-    addChannels(view, "NormalGeometric", "XYZ", g.geometricNormal.data.data(), PEL_SLOT_NORMAL_GEOMETRIC);
-    addChannels(view, "NormalShading", "XYZ", g.shadingNormal.data.data(), PEL_SLOT_NORMAL_SHADING);
-    addChannels(view, "NormalBlurred", "XYZ", g.blurredNormal.data.data(), PEL_SLOT_NORMAL_BLURRED);
-    addChannels(view, "Curvature", "V", g.curvature.data.data(), PEL_SLOT_CURVATURE);
-    addChannels(view, "Albedo", "RGB", g.albedo.data.data(), PEL_SLOT_ALBEDO);
-    addChannels(view, "Roughness", "V", g.roughness.data.data(), PEL_SLOT_ROUGHNESS);
-    addChannels(view, "Specular", "V", g.specular.data.data(), PEL_SLOT_SPECULAR);
-    addChannels(view, "AmbientOcclusion", "V", sample::ambientOcclusion(mesh, g).data.data(),
-                PEL_SLOT_AMBIENT_OCCLUSION);
-    const std::vector<float> ids(g.material.begin(), g.material.end());
-    addChannels(view, "Material", "I", ids.data(), PEL_SLOT_MATERIAL);
-    if (!head.eyeModels.empty()) {
-        const std::vector<float> wet = wetLine(g);
-        addChannels(view, "Wetness", "V", wet.data(), PEL_SLOT_WETNESS);
-    }
+    const auto add = [&](PelImageSlot slot, const char* name, const char* components,
+                         std::span<const float> planes) {
+        io::addPlanes(view.scene, view.gbuffer, slot, name, components, planes);
+    };
+    add(PEL_SLOT_POSITION, "Position", "XYZ", g.position.data);
+    add(PEL_SLOT_NORMAL_GEOMETRIC, "NormalGeometric", "XYZ", g.geometricNormal.data);
+    add(PEL_SLOT_NORMAL_SHADING, "NormalShading", "XYZ", g.shadingNormal.data);
+    add(PEL_SLOT_NORMAL_BLURRED, "NormalBlurred", "XYZ", g.blurredNormal.data);
+    add(PEL_SLOT_CURVATURE, "Curvature", "V", g.curvature.data);
+    add(PEL_SLOT_ALBEDO, "Albedo", "RGB", g.albedo.data);
+    add(PEL_SLOT_ROUGHNESS, "Roughness", "V", g.roughness.data);
+    add(PEL_SLOT_SPECULAR, "Specular", "V", g.specular.data);
+    add(PEL_SLOT_AMBIENT_OCCLUSION, "AmbientOcclusion", "V", sample::ambientOcclusion(mesh, g).data);
+    add(PEL_SLOT_MATERIAL, "Material", "I", std::vector<float>(g.material.begin(), g.material.end()));
+    if (!head.eyeModels.empty()) add(PEL_SLOT_WETNESS, "Wetness", "V", wetLine(g));
 
     for (const DemoLight& lamp : request.lights) {
         const sample::DirectionalLight direction{

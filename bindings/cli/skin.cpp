@@ -1,5 +1,4 @@
 // pellucid profile skin, and profile pigments: skin by what it is made of. Needs no device.
-#include <cmath>
 #include <cstdio>
 
 #include "command.h"

@@ -1,5 +1,4 @@
 // pellucid tune: which launch sizes are fastest on a device, kept in a file that is read when it is opened.
-#include <filesystem>
 
 #include "command.h"
 #include "io/atomic_file.h"

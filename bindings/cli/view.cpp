@@ -1,5 +1,4 @@
 // pellucid view and pellucid gallery: of the Python package, which this hands everything over to.
-#include <cstdlib>
 
 #include "command.h"
 #include "system/process.h"

@@ -1,5 +1,4 @@
 // pellucid warm-up: builds programs before they are needed. The driver's cache on disk keeps them.
-#include <cstdlib>
 
 #include "command.h"
 #include "scene/scene_frame.h"

@@ -10,7 +10,6 @@
 #include <CL/cl_icd.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "system/process.h"
 

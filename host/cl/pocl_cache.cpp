@@ -1,6 +1,5 @@
 #include "cl/pocl_cache.h"
 
-#include <cstdlib>
 #include <utility>
 
 #include "cl/error.h"

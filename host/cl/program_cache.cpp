@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <set>
 
 #include "cl/build_helpers.h"
@@ -10,7 +9,6 @@
 #include "cl/machine.h"
 #include "cl/platform.h"
 #include "cl/pocl_cache.h"
-#include "system/process.h"
 
 namespace pel::cl {
 

@@ -74,8 +74,7 @@ struct TomlReader::Nodes {
                          Range range) {
         if (!node.is_number()) reader.fail(key, "is " + typeName(node) + "; a number would be right");
         const auto value =
-            static_cast<float>(node.is_integer() ? static_cast<double>(node.as_integer()->get())
-                                                 : node.as_floating_point()->get());
+            float(node.is_integer() ? double(node.as_integer()->get()) : node.as_floating_point()->get());
         if (range.holds(value)) return value;
         std::ostringstream text;
         text << "is " << value << "; it must be " << describe(range);
@@ -92,12 +91,12 @@ std::shared_ptr<const TomlTable> parseToml(const std::string& file, const std::s
         return {root, opaque(root.get())};
     } catch (const toml::parse_error& error) {
         throw FileError(file, "is not TOML: " + std::string(error.description()),
-                        static_cast<int>(error.source().begin.line));
+                        int(error.source().begin.line));
     }
 }
 
 int TomlReader::line() const {
-    return static_cast<int>(nodesOf(table_).source().begin.line);
+    return int(nodesOf(table_).source().begin.line);
 }
 
 bool TomlReader::has(std::string_view key) const {
@@ -106,7 +105,7 @@ bool TomlReader::has(std::string_view key) const {
 
 int TomlReader::lineOf(std::string_view key) const {
     for (const auto& [k, node] : nodesOf(table_)) {
-        if (k.str() == key) return static_cast<int>(k.source().begin.line);
+        if (k.str() == key) return int(k.source().begin.line);
     }
     return line();
 }
@@ -160,7 +159,7 @@ void TomlReader::integer(std::string_view key, uint32_t& value, Range range) {
     const int64_t given = node->as_integer()->get();
     if ((given < low || given > high) && (special.empty() || given != int64_t(range.special)))
         fail(key, concat("is ", given, "; it must be ", wanted));
-    value = static_cast<uint32_t>(given);
+    value = uint32_t(given);
 }
 
 void TomlReader::text(std::string_view key, std::string& value) {
@@ -199,7 +198,7 @@ void TomlReader::choiceIndex(std::string_view key, uint32_t& index, std::span<co
     text(key, given);
     for (size_t i = 0; i < names.size(); ++i) {
         if (names[i] == given) {
-            index = static_cast<uint32_t>(i);
+            index = uint32_t(i);
             return;
         }
         list.append(i ? ", " : "").append(inQuotes(names[i]));

@@ -44,7 +44,7 @@ class TomlReader {
 
     template <class Enum>
     void choice(std::string_view key, Enum& value, std::span<const std::string_view> names) {
-        uint32_t index = static_cast<uint32_t>(value);
+        uint32_t index = uint32_t(value);
         choiceIndex(key, index, names);
         value = static_cast<Enum>(index);
     }

@@ -42,7 +42,7 @@ class TomlWriter {
     }
     template <class Enum>
     void choice(std::string_view key, Enum value, std::span<const std::string_view> names) {
-        line(key, quoted(names[static_cast<size_t>(value)]));
+        line(key, quoted(names[size_t(value)]));
     }
     template <class Function>
     void table(std::string_view key, bool isPresent, Function&& function) {

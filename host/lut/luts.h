@@ -1,6 +1,5 @@
 // Makes look-up tables on the device, and packs them for the host.
 #pragma once
-#include <span>
 
 #include "lut/lut.h"
 

@@ -1,11 +1,7 @@
 // PelProfile: diffusion profiles (section 1 of the mathematics) in double precision.
 #pragma once
-#include <array>
-#include <atomic>
 #include <memory>
-#include <optional>
 #include <span>
-#include <vector>
 
 #include "core/object.h"
 #include "fields/captured_frame.h"

@@ -3,7 +3,6 @@
 // in log t turns that into sums that converge faster than any power of the step; the device uses these sums.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "lut/profile.h"
 

@@ -1,7 +1,6 @@
 // Tabulated profiles: R is linear between distances. Its line integral has a closed form per piece.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "lut/profile.h"
 

@@ -1,7 +1,6 @@
 #include "profile_fit/profile_fit.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <span>
 #include <sstream>

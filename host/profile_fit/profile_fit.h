@@ -1,9 +1,6 @@
 // Fits a sum of K Gaussians to a profile.
 #pragma once
-#include <array>
 #include <pellucid/pellucid.hpp>
-#include <string>
-#include <vector>
 
 namespace pellucid::io {
 

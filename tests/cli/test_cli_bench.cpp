@@ -1,5 +1,4 @@
 // `pellucid bench`: a report with times, shares and errors, its page, and verdicts on two reports.
-#include <thread>
 
 #include "cli_run.h"
 #include "measure/power.h"

@@ -65,47 +65,31 @@ TEST_F(CliLut, LutFilesHoldTheLibrarysTexels) {
 // The default tables are those that a material makes of its profile, --preset faceworks makes those of
 // FaceWorks; an option of its own takes precedence.
 TEST_F(CliLut, OptionsBecomeDescriptions) {
-    PelCurvatureLutDesc c = info("curvature").curvature;
-    EXPECT_EQ(c.form, PEL_FORM_SPHERE);
-    EXPECT_EQ(c.axis, PEL_AXIS_ROOT);
-    EXPECT_EQ(c.width, 64u);
-    c = info("curvature --preset faceworks --size 32x8").curvature;
-    EXPECT_EQ(c.form, PEL_FORM_ARC);
-    EXPECT_EQ(c.axis, PEL_AXIS_LINEAR);
-    EXPECT_EQ(c.height, 8u);
-    EXPECT_EQ(info("curvature --preset faceworks --size 32x8 --axis root").curvature.axis, PEL_AXIS_ROOT);
-    const PelLutInfo own = info("curvature --size 8x6 --form arc --axis linear --profile ketchup");
-    EXPECT_EQ(own.curvature.form, PEL_FORM_ARC);
-    EXPECT_EQ(own.curvature.axis, PEL_AXIS_LINEAR);
-    EXPECT_STREQ(own.profile, "ketchup");
-    PelShadowLutDesc s = info("shadow").shadow;
-    EXPECT_EQ(s.closedEnds, 1u);
-    EXPECT_EQ(s.axis, PEL_AXIS_ROOT);
-    EXPECT_EQ(s.width, 128u);
-    EXPECT_EQ(s.height, 32u);
-    EXPECT_NEAR(s.widthMax, 1000 * s.widthMin, 1e-3 * s.widthMax);
-    EXPECT_EQ(info("shadow --open-ends").shadow.closedEnds, 0u);
-    s = info("shadow --preset faceworks").shadow;
-    EXPECT_EQ(s.closedEnds, 0u);
-    EXPECT_EQ(s.axis, PEL_AXIS_LINEAR);
-    EXPECT_EQ(s.width, 512u);
-    EXPECT_EQ(s.widthMin, 8);
-    s = info("shadow --size 16x8 --width-min 4 --width-max 40 --sharpening 5 --diffusion-radius 1.5").shadow;
-    EXPECT_EQ(s.width, 16u);
-    EXPECT_EQ(s.height, 8u);
-    EXPECT_EQ(s.widthMin, 4.0f);
-    EXPECT_EQ(s.widthMax, 40.0f);
-    EXPECT_EQ(s.sharpening, 5.0f);
-    EXPECT_EQ(s.diffusionRadius, 1.5f);
+    const std::pair<std::string, nlohmann::json> rows[] = {
+        {"curvature", {{"form", "sphere"}, {"axis", "root"}, {"width", 64}}},
+        {"curvature --preset faceworks --size 32x8", {{"form", "arc"}, {"axis", "linear"}, {"height", 8}}},
+        {"curvature --preset faceworks --size 32x8 --axis root", {{"axis", "root"}}},
+        {"curvature --size 8x6 --form arc --axis linear", {{"form", "arc"}, {"axis", "linear"}}},
+        {"shadow", {{"closed_ends", true}, {"axis", "root"}, {"width", 128}, {"height", 32}}},
+        {"shadow --open-ends", {{"closed_ends", false}}},
+        {"shadow --preset faceworks",
+         {{"closed_ends", false}, {"axis", "linear"}, {"width", 512}, {"width_min", 8}}},
+        {"shadow --size 16x8 --width-min 4 --width-max 40 --diffusion-radius 1.5",
+         {{"width", 16}, {"height", 8}, {"width_min", 4}, {"width_max", 40}, {"diffusion_radius", 1.5}}}};
+    for (const auto& [options, expected] : rows) {
+        const auto report = reportOf("lut " + options + " -o @t.exr");
+        for (const auto& [key, value] : expected.items()) EXPECT_EQ(report[key], value) << options << key;
+    }
+    EXPECT_STREQ(info("curvature --size 8x6 --profile ketchup").profile, "ketchup");
+    EXPECT_EQ(info("shadow --size 8x6 --sharpening 5").shadow.sharpening, 5.0f);
     EXPECT_EQ(info("specular --size 8x6").kind, PEL_LUT_SPECULAR);
     done("lut shadow -o @s.tga --size 8x6");
     // What followed from the profile is shown.
     const auto shown = reportOf("lut shadow --profile marble -o @p.exr");
     const PelProfileInfo marble = Profile::named("marble").info();
-    EXPECT_NEAR(shown["width_min"].get<float>(), 1.3f * *std::max_element(marble.width, marble.width + 3),
-                1e-3);
-    EXPECT_EQ(shown["closed_ends"], true);
-    EXPECT_EQ(reportOf("lut curvature -o @p.exr")["form"], "sphere");
+    const float narrowest = 1.3f * *std::max_element(marble.width, marble.width + 3);
+    EXPECT_NEAR(shown["width_min"].get<float>(), narrowest, 1e-3);
+    EXPECT_NEAR(shown["width_max"].get<float>(), 1000 * narrowest, 1e-3 * 1000 * narrowest);
 }
 
 TEST_F(CliLut, TablesOfCaustics) {

@@ -1,8 +1,6 @@
 // `pellucid reference` and `pellucid compare` as users run them: a ball whose reference has a closed form.
 #include "cli_shade.h"
 #include "io/image/flip.h"
-#include "reference/random_walk.h"
-#include "reference/surface_integral.h"
 #include "sample/mesh.h"
 
 namespace {
@@ -66,33 +64,20 @@ const std::string ofBall = "reference @ball.off --scene @s.toml ", picture = "--
 
 }  // namespace
 
-TEST_F(CliReference, BallEqualsTheClosedForm) {
-    writeBall(sized(120, 12));
+// What the integral is: tests/diffusion/test_surface_integral.cpp.
+TEST_F(CliReference, PixelsOfABall) {
     const auto report = reportOf(ofBall + picture + fine + "-o @o.exr");
     expectReport(report);
-    EXPECT_LT(report["points_off_mesh"].get<double>(), testsAreSmall() ? 1 : 0.01);
+    EXPECT_LT(report["points_off_mesh"].get<double>(), 1);
     const Image out = pellucid::io::readImage(path("o.exr"));
-    const auto truth = reference::skinProfile();
-    double square = 0;
-    int count = 0;
     for (size_t i = 0; i < out.pixelCount(); ++i) {
-        if (given("Id.X")[i] == 0) {
-            EXPECT_EQ(out.channel("R").pixels[i], 0) << "background";
-            continue;
-        }
-        const double cosine = given("P.X")[i] / radius;
-        const reference::Rgb S = reference::surfaceIntegralOfSphere(*truth, radius, std::acos(cosine));
-        EXPECT_NEAR(out.channel("Irradiance.R").pixels[i], std::max(0.0, cosine),
-                    testsAreSmall() ? 0.1 : tolerance::litFacets);
-        for (int c = 0; c < 3; ++c) {
-            const std::string name(1, "RGB"[c]);
-            const double e = out.channel("Surface." + name).pixels[i] - S[c];
-            square += e * e, ++count;
+        const float light = out.channel("Irradiance.R").pixels[i];
+        EXPECT_NEAR(light, std::max(0.0f, given("P.X")[i] / float(radius)), given("Id.X")[i] ? 0.1 : 0);
+        for (const std::string name : {"R", "G", "B"})
             EXPECT_NEAR(out.channel(name).pixels[i], 0.5 * out.channel("Surface." + name).pixels[i], 1e-6)
                 << "the material's albedo";
-        }
+        EXPECT_NEAR(out.channel("Surface.B").pixels[i], light, 0.2) << "blue hardly scatters";
     }
-    EXPECT_LT(std::sqrt(square / count), testsAreSmall() ? 0.1 : tolerance::referenceRms);
 }
 
 TEST_F(CliReference, VerticesUnitAndProfile) {
@@ -123,23 +108,17 @@ TEST_F(CliReference, WalkWritesHalvesForCompare) {
     EXPECT_NEAR(medium["mean_free_path"][1].get<double>(), 1.087 * 0.5, 0.01);
     EXPECT_NEAR(medium["single_scattering_albedo"][2].get<double>(), 0.99055, 1e-4);
     const Image out = pellucid::io::readImage(path("w.exr"));
-    const reference::WalkResult walked =
-        reference::walkBall({1.087, 0.99055}, radius, 20, sized(100000, 2000), 3);
-    double square = 0, difference = 0;
+    double difference = 0;
     int count = 0;
     for (size_t i = 0; i < out.pixelCount(); ++i) {
         const float first = out.channel("First.R").pixels[i], second = out.channel("Second.R").pixels[i];
         EXPECT_NEAR(out.channel("R").pixels[i], (first + second) / 2, 1e-5);
         EXPECT_NEAR(out.channel("R").pixels[i], 0.5 * out.channel("Surface.R").pixels[i], 1e-5) << "albedo";
         if (given("Id.X")[i] == 0) continue;
-        const double cosine = given("P.X")[i] / radius;
-        const double expected = 0.5 / 0.8 * walked.radiance[size_t(std::min(19.0, 10 * (cosine + 1)))];
-        square += (first - expected) * (second - expected), difference += std::pow(first - second, 2),
-            ++count;
+        difference += std::pow(first - second, 2), ++count;
         EXPECT_NEAR(out.channel("MeanCurvature").pixels[i], 1 / radius, testsAreSmall() ? 0.05 : 0.002);
         EXPECT_NEAR(out.channel("Thickness").pixels[i], 2 * radius, testsAreSmall() ? 1 : 0.1);
     }
-    EXPECT_LT(square / count, testsAreSmall() ? 0.1 : 2e-3) << "within the bins of 0.1";
     EXPECT_GT(difference / count, 1e-5) << "halves are independent";
     done(walk + "@again.exr", "OMP_NUM_THREADS=1");
     EXPECT_TRUE(read(path("w.exr")) == read(path("again.exr"))) << "one thread and three";
@@ -150,26 +129,14 @@ TEST_F(CliReference, WalkWritesHalvesForCompare) {
     EXPECT_GT(report["all"]["noise"][0].get<double>(), 0);
 }
 
-// Under even light a ball of 10 cm is everywhere as bright as its albedo.
+// How much comes back: tests/sample/test_walk.cpp.
 TEST_F(CliReference, SkinIsWalkedInItsLayers) {
     write("cheek.toml",
           "name = \"cheek\"\nkind = \"skin\"\nsource = \"test\"\nmelanin = 0.03\nepidermis = 0.1\n");
-    scene_.lights.clear();
-    std::ranges::fill(scene_.ambient.constant, 1.0f);
-    pellucid::io::writeScene(path("s.toml"), scene_);
     const std::string walk =
-        ofBall + picture + "--walk --unit-mm 10 --profile @cheek.toml --samples 128 -o @w.exr ";
+        ofBall + picture + "--walk --unit-mm 10 --profile @cheek.toml --samples 4 -o @w.exr ";
     const auto medium = reportOf(walk)["media"][0];
     EXPECT_NEAR(medium["epidermis"].get<double>(), 0.01, 1e-6) << "cm";
-    const Image out = pellucid::io::readImage(path("w.exr"));
-    for (size_t c = 0; c < 3; ++c) {
-        const double albedo = medium["reflectance"][c].get<double>();
-        double sum = 0, count = 0;
-        for (size_t i = 0; i < out.pixelCount(); ++i)
-            if (given("Id.X")[i] != 0)
-                sum += out.channel(std::string("Surface.") + "RGB"[c]).pixels[i], ++count;
-        EXPECT_NEAR(albedo * sum / count, albedo, tolerance::skinAlbedo) << c;
-    }
     refused(walk + "--reflectance 0.5 0.5 0.5", 3, "follows from its pigments");
     scene_.channels[PEL_SLOT_SKIN] = {"Melanin.V", "Blood.V"};
     pellucid::io::writeScene(path("s.toml"), scene_);
@@ -265,6 +232,7 @@ TEST_F(CliReference, Compare) {
     for (const auto& [arguments, message] :
          {std::pair{"@a.npy @a.exr --max-rmse 0", ""},
           {"@b.exr @a.npy --max-rmse 0.06", ""},
+          {"@b.exr @a.npy --second-half @b.exr --max-rmse 0", ""},  // (b - a)(b - b): all is noise
           {"@b.exr @a.npy --max-rmse 0.05", "more than --max-rmse 0.05"},
           {"@a.exr @a.npy --scale-b 1.5 --max-rmse 0.24", "more than --max-rmse 0.24"},
           {"@one.npy @a.exr --max-rmse 1", "1 pixels with NaN"},
@@ -294,15 +262,4 @@ TEST_F(CliReference, ComparePaintsTheLargestChannel) {
         colors.insert(column);
     }
     EXPECT_EQ(colors.size(), 1u);
-}
-
-// Walks write both halves to one file; others name the second.
-TEST_F(CliReference, CompareTakesNoiseOutOfTheError) {
-    npy("v.npy", {1, 2, 3}, std::vector<float>(6, 0.5f));
-    npy("first.npy", {1, 2, 3}, {0.6f, 0.6f, 0.6f, 0.5f, 0.5f, 0.5f});
-    npy("second.npy", {1, 2, 3}, {0.4f, 0.6f, 0.7f, 0.5f, 0.5f, 0.5f});
-    const auto all = reportOf("compare @v.npy @first.npy --second-half @second.npy")["all"];
-    EXPECT_NEAR(all["rmse"][0].get<double>(), 0, 1e-6) << "(0.5 - 0.6)(0.5 - 0.4) < 0";
-    EXPECT_NEAR(all["rmse"][2].get<double>(), std::sqrt(0.1 * 0.2 / 2), 1e-6);
-    EXPECT_NEAR(all["noise"][0].get<double>(), std::sqrt(0.1 * 0.1 / 2), 1e-6);
 }

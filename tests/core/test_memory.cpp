@@ -6,7 +6,6 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include "test.h"
 
 #include "cl/error.h"
 #include "cl/machine.h"

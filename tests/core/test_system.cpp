@@ -1,6 +1,5 @@
 // What the files in folders named `posix` and `windows` do: outputs, inputs, this process, libraries.
 #include "io/atomic_file.h"
-#include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/io_files.h"
 #include "system/process.h"

@@ -3,7 +3,6 @@
 #include "device_lanes.h"
 #include "diffusion/reference_scenes.h"
 #include "npy.h"
-#include "test.h"
 
 using namespace reference_scenes;
 using reference::Vec3;

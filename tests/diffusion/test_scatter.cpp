@@ -1,7 +1,5 @@
 // A PelScatter: blocks of pixels, taps on a disk and the separable filter against the sums that they stand
 // for, and what must hold for any picture.
-#include <numeric>
-#include <set>
 
 #include "diffusion/scatter_scene.h"
 #include "reference/diffusion_taps.h"

@@ -1,11 +1,9 @@
 // A radius per pixel in sums by levels and over shadow maps, and maps of melanin and blood (PEL_SLOT_SKIN).
-#include <gtest/gtest.h>
 #include "test.h"
 
 #include "diffusion/lit_ball.h"
 #include "fields/color_difference.h"
 #include "fields/field_ranges.h"
-#include "tolerances.h"
 
 using namespace lit_ball;
 

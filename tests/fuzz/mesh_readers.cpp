@@ -1,4 +1,3 @@
-#include <cmath>
 #include <cstring>
 #define XXH_INLINE_ALL
 #include <xxhash.h>

@@ -1,5 +1,4 @@
 // host/io/scene/scene_file.h: the documentation's example, round trip, a message for each kind of mistake.
-#include "fields/field_ranges.h"
 #include "io/image/image_file.h"
 #include "io/scene/scene_file.h"
 #include "io/toml_reader.h"

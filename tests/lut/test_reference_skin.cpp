@@ -1,7 +1,6 @@
 // Skin by what it is made of, against random walks in its layers and against measured colours of skin.
 #include "test.h"
 
-#include "fields/color_difference.h"
 #include "fields/field_ranges.h"
 #include "fields/skin_spectra.h"
 #include "lut/measured_skin.h"

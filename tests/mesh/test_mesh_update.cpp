@@ -1,6 +1,5 @@
 // Live meshes: an update of a part gives the bits of measuring everything anew, and counters show that it did
 // not.
-#include "cl/cl_spy.h"
 #include "held_queue.h"
 #include "mesh_fixture.h"
 #include "reference_meshes.h"

@@ -7,7 +7,6 @@
 //   replays   of accesses to local memory, over their number: lanes that want other words of one bank wait
 #include <cstdio>
 #include <cstdlib>
-#include <mutex>
 #include <set>
 #include <unordered_map>
 #include <unordered_set>

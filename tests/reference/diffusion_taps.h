@@ -1,7 +1,6 @@
 // Scattering by a few taps (section 10 of the mathematics) in double precision: on a disk round each pixel,
 // and along two lines.
 #pragma once
-#include <optional>
 
 #include "reference/diffusion_screen.h"
 

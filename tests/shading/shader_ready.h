@@ -15,10 +15,4 @@ struct Ready {
     }
 };
 
-// The call fails with this code and says all of `words`.
-inline void expectError(PelError code, const std::vector<const char*>& words,
-                        const std::function<void()>& call) {
-    expectRefused(words, call, code);
-}
-
 }  // namespace shade_test

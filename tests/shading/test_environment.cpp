@@ -1,10 +1,7 @@
 // Light of the surroundings: ambient, specular and in eyes, against integrals over the sphere in doubles.
-#include <functional>
 
 #include "cl/cl_spy.h"
-#include "reference/shade.h"
 #include "shader_ready.h"
-#include "test.h"
 
 using namespace shade_test;
 using reference::Rgb;

@@ -154,8 +154,8 @@ TEST_F(FaceWorksPixels, ThicknessAgreesOnAverage) {
         }
 }
 
-// The disks of thickness taps (bench/shading/generate_disks.py): centred, as wide as the disk, and better
-// than random points at what they are for: how much of the disk lies on one side of an edge.
+// The disks of thickness taps: centred, as wide as the disk, and better than random points at what they are
+// for: how much of the disk lies on one side of an edge.
 class PoissonDisk : public testing::TestWithParam<uint32_t> {};
 
 TEST_P(PoissonDisk, IsCentredInTheUnitDisk) {

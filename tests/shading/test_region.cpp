@@ -3,7 +3,6 @@
 #include "cl/cl_spy.h"
 #include "device_lanes.h"
 #include "scattering_frame.h"
-#include "test.h"
 
 using namespace shade_test;
 using pellucid::Profile;

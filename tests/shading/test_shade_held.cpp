@@ -3,7 +3,6 @@
 #include "diffusion/lit_ball.h"
 #include "held_queue.h"
 #include "pass_scene.h"
-#include "test.h"
 
 using namespace pellucid;
 using fixture::expectReturns;

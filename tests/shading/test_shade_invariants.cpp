@@ -3,7 +3,6 @@
 #include "scattering_frame.h"
 #include "shader_ready.h"
 #include "shadow_forms.h"
-#include "test.h"
 
 using namespace shade_test;
 
@@ -371,9 +370,9 @@ TEST(ShadeBands, ABudgetThatIsTooSmallSaysWhatWouldDo) {
     Shader shader(device());
     setFrame(device(), shader, f, tables());
     const auto target = setTarget(device(), shader, f);
-    expectError(PEL_ERROR_OUT_OF_MEMORY,
-                {("at least " + std::to_string(150 * 48 * 61 + 2 * 400 * 40)).c_str()},
-                [&] { shader.commit(); });
+    expectRefused(
+        {("at least " + std::to_string(150 * 48 * 61 + 2 * 400 * 40)).c_str()}, [&] { shader.commit(); },
+        PEL_ERROR_OUT_OF_MEMORY);
     f.options.scratchBudget = 150 * 48 * 61 + 2 * 400 * 40;
     shader.set(f.options).commit().execute();
     // Without passes there is no scratch memory to limit.

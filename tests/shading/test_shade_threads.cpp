@@ -1,10 +1,8 @@
 // Shaders used from several threads, on one device and on several; objects that outlive the caller's device;
 // progress and cancelling; and what a second frame costs.
-#include "cl/cl_spy.h"
 #include "held_queue.h"
 #include "pass_scene.h"
 #include "shader_ready.h"
-#include "test.h"
 
 using namespace shade_test;
 
@@ -140,7 +138,8 @@ TEST(ShadeProgress, IsToldAndMayCancel) {
         };
         Listener listener{0, 3};
         pellucid::check(pelDeviceSetProgress(own.get(), listen, &listener));
-        expectError(PEL_ERROR_CANCELLED, {"shading"}, [&] { shader.execute(); });
+        expectRefused(
+            {"shading"}, [&] { shader.execute(); }, PEL_ERROR_CANCELLED);
         EXPECT_GT(made().first, 0u) << "not all";
         EXPECT_GT(made().second, 0u) << "what was made before";
         listener = {};

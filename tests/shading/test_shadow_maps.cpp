@@ -2,7 +2,6 @@
 // bounds and skipping, what the forms have in common, and what is refused.
 #include "shader_ready.h"
 #include "shadow_forms.h"
-#include "test.h"
 
 using namespace shade_test;
 
@@ -505,7 +504,8 @@ TEST(ShadowForms, WhatIsRefused) {
         {cascades, "one sign", [](auto& p, Light&) { p.cascadeDepthRange[0] *= -1; }},
     };
     const auto refused = [](PelError code, const char* word, const std::vector<Light>& lights) {
-        expectError(code, {word}, [&] { shadeForms(formFrame(1, 9, 3), lights); });
+        expectRefused(
+            {word}, [&] { shadeForms(formFrame(1, 9, 3), lights); }, code);
     };
     for (size_t i = 0; i < std::size(rows); ++i) {
         SCOPED_TRACE("row " + std::to_string(i));
@@ -523,7 +523,7 @@ TEST(ShadowForms, WhatIsRefused) {
     // Without places; and beside a filtered shadow, images of the host have its format.
     Frame f = litFrame();
     f.slots[PEL_SLOT_POSITION] = {};
-    expectError(PEL_ERROR_INVALID_ARGUMENT, {"position image"}, [&] { shade(f); });
+    expectRefused("position image", [&] { shade(f); });
     f = litFrame();
     f.lights.push_back(f.lights[0]);
     for (const PelFormat format : {PEL_FORMAT_R8_UNORM, PEL_FORMAT_R32F}) {
@@ -536,7 +536,7 @@ TEST(ShadowForms, WhatIsRefused) {
         if (format == PEL_FORMAT_R32F)
             run();
         else
-            expectError(PEL_ERROR_UNSUPPORTED, {"R32F"}, run);
+            expectRefused({"R32F"}, run, PEL_ERROR_UNSUPPORTED);
     }
 }
 

@@ -2,7 +2,6 @@
 // against the taps of each pixel.
 #include "shader_ready.h"
 #include "shadow_forms.h"
-#include "test.h"
 
 using namespace shade_test;
 

@@ -249,11 +249,11 @@ def submit_surface_integral(device: Device, positions: Any, triangles: Any, irra
     if p.ndim != 2 or p.shape[1] != 3:
         raise ValueError(f"positions has shape {p.shape}; (n, 3) is needed")
     t = _triangles(triangles, len(p), None)[0].reshape(-1, 3)
-    places = {(len(p), 3): IrradianceAt.VERTEX, (len(t), 3): IrradianceAt.TRIANGLE,
-              (len(t), 3, 3): IrradianceAt.CORNER}
+    places = {(len(t), 3): IrradianceAt.TRIANGLE, (len(t), 3, 3): IrradianceAt.CORNER,
+              (len(p), 3): IrradianceAt.VERTEX}  # the last counts where there are as many of both
     if e.shape not in places:
         raise ValueError(f"irradiance has shape {e.shape}; it must be one of {', '.join(map(str, places))}")
-    at = IrradianceAt.VERTEX if e.shape == (len(p), 3) else places[e.shape]
+    at = places[e.shape]
     views = [vertex_view(device, points, 3, "points"), vertex_view(device, out, 3, "out", output=True)]
     x, s = (v.native for v in views)
     known = as_profile(profile)

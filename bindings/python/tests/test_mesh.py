@@ -181,22 +181,16 @@ def test_a_part_gives_the_bits_of_the_whole(device, moving_device, make_sphere, 
     assert np.array_equal(pairs, topology.curvature(positions, normals, params=both))
 
 
-def test_screen_curvature_of_a_sphere(device, tolerance):
-    radius = 8.0
-    y, x = np.mgrid[-9:9:60j, -9:9:80j]
-    inside = x**2 + y**2 < radius**2
-    z = np.sqrt(np.where(inside, radius**2 - x**2 - y**2, 1))
-    positions = np.stack([x, y, z], -1).astype(np.float32)
-    normals = np.where(inside[..., None], positions / np.float32(radius), np.float32(0)).astype(np.float32)
-    c = pel.screen_curvature(device, normals, positions, ids=inside.astype(np.uint8))
-    assert c.dtype == np.float32 and not c[~inside].any()
-    assert np.abs(c[c > 0] * radius - 1).max() < tolerance["screenSphere"]
-    assert (c > 0).sum() > 0.95 * inside.sum()
-    out = np.zeros((60, 160), np.float32)
-    pel.screen_curvature(device, normals, positions, ids=inside, out=out[:, ::2])  # a mask of bool
-    assert np.array_equal(out[:, ::2], c) and not out[:, 1::2].any()
+def test_screen_curvature(device, view):
+    c = pel.screen_curvature(device, view.normal, view.position, ids=view.material)
+    assert c.dtype == np.float32 and not c[~view.inside].any() and np.median(c[c > 0]) == pytest.approx(0.1)
+    out, upper = np.zeros((len(c), 2 * c.shape[1]), np.float32), view.inside.copy()  # of bool
+    upper[len(c) // 2:] = False
+    pel.screen_curvature(device, view.normal, view.position, ids=upper, out=out[:, ::2])
+    assert not out[:, 1::2].any() and not out[:, ::2][~upper].any()
+    assert np.array_equal(out[:len(c) // 2 - 4, ::2], c[:len(c) // 2 - 4])
     with pytest.raises(pel.PellucidError, match="either"):
-        pel.screen_curvature(device, normals)
+        pel.screen_curvature(device, view.normal)
 
 
 def test_arrays_outlive_what_a_later_error_left_under_way(moving_device, sphere, monkeypatch):

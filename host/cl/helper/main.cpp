@@ -6,9 +6,7 @@
 #include <CL/cl.h>
 
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 
 #include "system/process.h"
 

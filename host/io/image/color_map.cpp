@@ -44,8 +44,8 @@ template <class Color>
 Table makeTable(Color&& color) {
     Table table;
     for (size_t i = 0; i < tableSize; ++i) {
-        const Rgb c = color(static_cast<double>(i) / (tableSize - 1));
-        for (size_t k = 0; k < 3; ++k) table[i][k] = encodeSrgb(static_cast<float>(c[k]));
+        const Rgb c = color(double(i) / (tableSize - 1));
+        for (size_t k = 0; k < 3; ++k) table[i][k] = encodeSrgb(float(c[k]));
     }
     return table;
 }
@@ -64,12 +64,12 @@ Rgb diverging(double t) {
 Srgb8 lookUp(const Table& table, float t) {
     if (std::isnan(t)) return {128, 128, 128};
     const float at = std::clamp(t, 0.0f, 1.0f) * (tableSize - 1);
-    const size_t low = std::min(static_cast<size_t>(at), tableSize - 2);
-    const float share = at - static_cast<float>(low);
+    const size_t low = std::min(size_t(at), tableSize - 2);
+    const float share = at - float(low);
     Srgb8 color;
     for (size_t k = 0; k < 3; ++k) {
         const float value = table[low][k] * (1 - share) + table[low + 1][k] * share;
-        color[k] = static_cast<uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
+        color[k] = uint8_t(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
     }
     return color;
 }

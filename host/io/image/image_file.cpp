@@ -14,10 +14,6 @@ std::string listOf(const std::vector<std::string>& names) {
     return list;
 }
 
-bool endsWith(const std::string& text, const std::string& end) {
-    return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 }  // namespace
 
 const Channel& Image::channel(const std::string& name) const {
@@ -26,7 +22,7 @@ const Channel& Image::channel(const std::string& name) const {
     for (const Channel& c : channels) {
         if (c.name == name) return c;
         all.push_back(c.name);
-        if (endsWith(c.name, "." + name)) {
+        if (c.name.ends_with("." + name)) {
             fitting.push_back(c.name);
             found = &c;
         }
@@ -41,7 +37,7 @@ bool Image::has(const std::string& name) const {
     size_t fitting = 0;
     for (const Channel& c : channels) {
         if (c.name == name) return true;
-        fitting += endsWith(c.name, "." + name);
+        fitting += c.name.ends_with("." + name);
     }
     return fitting == 1;
 }
@@ -74,9 +70,8 @@ void Image::addInterleaved(std::span<const std::string> names, std::span<const f
 }
 
 const Attribute* Image::attribute(const std::string& name) const {
-    for (const auto& [key, value] : attributes) {
+    for (const auto& [key, value] : attributes)
         if (key == name) return &value;
-    }
     return nullptr;
 }
 
@@ -101,8 +96,7 @@ void writeImage8(const std::string& path, int width, int height, int channels,
     const std::string extension = requirePicture(path);
     const bool jpeg = extension == "jpg" || extension == "jpeg";
     if (jpeg && channels == 4) throw FileError(path, "JPEG holds no alpha; 1 or 3 channels do");
-    if (pixels.size() !=
-        static_cast<size_t>(width) * static_cast<size_t>(height) * static_cast<size_t>(channels))
+    if (pixels.size() != size_t(width) * size_t(height) * size_t(channels))
         throw std::invalid_argument("writeImage8: the number of bytes does not fit the size");
     writeWholeFile(path,
                    pictureLibraryFor(extension, path).encode(path, width, height, channels, pixels, srgb));

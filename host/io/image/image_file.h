@@ -26,7 +26,7 @@ struct Image {
     std::vector<std::pair<std::string, Attribute>> attributes;  // of the file's first part
     std::string source;                                         // the file, for messages
 
-    size_t pixelCount() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
+    size_t pixelCount() const { return size_t(width) * size_t(height); }
 
     // The channel of that full name or, if there is none, the only one whose name ends with "." + name.
     // Throws FileError when none or several fit; the message lists the channels found.

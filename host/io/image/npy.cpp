@@ -99,8 +99,8 @@ void write(const std::string& path, const char* descr, std::span<const size_t> s
     header.append(alignment - 1 - (preamble + header.size()) % alignment, ' ');
     header += '\n';
     std::string out("\x93NUMPY\x01\x00", 8);
-    out += static_cast<char>(header.size() & 0xff);
-    out += static_cast<char>(header.size() >> 8);
+    out += char(header.size() & 0xff);
+    out += char(header.size() >> 8);
     out += header;
     out.append(static_cast<const char*>(bytes), count * elementBytes);
     writeWholeFile(path, out);

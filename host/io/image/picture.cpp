@@ -15,31 +15,27 @@ static constexpr int fontSize(int scale) {
 }
 
 Picture::Picture(int w, int h, Srgb8 background) : width(w), height(h) {
-    rgb.reserve(static_cast<size_t>(w) * static_cast<size_t>(h) * 3);
-    for (size_t i = 0; i < static_cast<size_t>(w) * static_cast<size_t>(h); ++i)
+    rgb.reserve(size_t(w) * size_t(h) * 3);
+    for (size_t i = 0; i < size_t(w) * size_t(h); ++i)
         rgb.insert(rgb.end(), background.begin(), background.end());
 }
 
 Picture::Picture(int w, int h, std::vector<uint8_t> pixels) : width(w), height(h), rgb(std::move(pixels)) {
-    if (rgb.size() != static_cast<size_t>(w) * static_cast<size_t>(h) * 3)
+    if (rgb.size() != size_t(w) * size_t(h) * 3)
         throw std::invalid_argument("Picture: the number of bytes does not fit the size");
 }
 
 void Picture::paint(int x, int y, Srgb8 color) {
     if (x < 0 || y < 0 || x >= width || y >= height) return;
-    std::copy(color.begin(), color.end(),
-              &rgb[3 * (static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x))]);
+    std::copy(color.begin(), color.end(), &rgb[3 * (size_t(y) * size_t(width) + size_t(x))]);
 }
 
 void Picture::paste(int x, int y, const Picture& other) {
-    for (int row = 0; row < other.height; ++row) {
+    for (int row = 0; row < other.height; ++row)
         for (int column = 0; column < other.width; ++column) {
-            const uint8_t* from =
-                &other.rgb[3 * (static_cast<size_t>(row) * static_cast<size_t>(other.width) +
-                                static_cast<size_t>(column))];
+            const uint8_t* from = &other.rgb[3 * (size_t(row) * size_t(other.width) + size_t(column))];
             paint(x + column, y + row, {from[0], from[1], from[2]});
         }
-    }
 }
 
 int Picture::write(int x, int y, std::string_view text, Srgb8 color, int scale) {
@@ -56,34 +52,30 @@ int textWidth(std::string_view text, int scale) {
 Picture shrunk(const Picture& picture, int factor) {
     if (factor <= 1) return picture;
     Picture small(std::max(1, picture.width / factor), std::max(1, picture.height / factor));
-    for (int y = 0; y < small.height; ++y) {
+    for (int y = 0; y < small.height; ++y)
         for (int x = 0; x < small.width; ++x) {
             float sum[3] = {0, 0, 0};
             int count = 0;
-            for (int dy = 0; dy < factor && y * factor + dy < picture.height; ++dy) {
+            for (int dy = 0; dy < factor && y * factor + dy < picture.height; ++dy)
                 for (int dx = 0; dx < factor && x * factor + dx < picture.width; ++dx, ++count) {
                     const size_t at =
-                        static_cast<size_t>(y * factor + dy) * static_cast<size_t>(picture.width) +
-                        static_cast<size_t>(x * factor + dx);
+                        size_t(y * factor + dy) * size_t(picture.width) + size_t(x * factor + dx);
                     for (size_t c = 0; c < 3; ++c)
-                        sum[c] += decodeSrgb(static_cast<float>(picture.rgb[3 * at + c]) / 255.0f);
+                        sum[c] += decodeSrgb(float(picture.rgb[3 * at + c]) / 255.0f);
                 }
-            }
             Srgb8 mean;
             for (size_t c = 0; c < 3; ++c)
-                mean[c] = static_cast<uint8_t>(
-                    std::lround(255.0f * encodeSrgb(sum[c] / static_cast<float>(count))));
+                mean[c] = uint8_t(std::lround(255.0f * encodeSrgb(sum[c] / float(count))));
             small.paint(x, y, mean);
         }
-    }
     return small;
 }
 
 Picture contactSheet(std::span<const Tile> tiles, int columns, int textScale) {
     const int gap = 6 * textScale, labelHeight = textHeight(textScale) + gap;
-    columns = std::max(1, std::min<int>(columns, static_cast<int>(tiles.size())));
-    const int rows = (static_cast<int>(tiles.size()) + columns - 1) / columns;
-    std::vector<int> widths(static_cast<size_t>(columns), 0), heights(static_cast<size_t>(rows), 0);
+    columns = std::max(1, std::min<int>(columns, int(tiles.size())));
+    const int rows = (int(tiles.size()) + columns - 1) / columns;
+    std::vector<int> widths(size_t(columns), 0), heights(size_t(rows), 0);
     for (size_t i = 0; i < tiles.size(); ++i) {
         const size_t column = i % widths.size(), row = i / widths.size();
         widths[column] =
@@ -114,8 +106,7 @@ Picture colorBar(int width, double low, double high, std::string_view unit, int 
     Picture bar(width, textTop + 2 * textHeight(textScale), paper);
     for (int x = 0; x < width; ++x) {
         const double value = low + (high - low) * (x + 0.5) / width;
-        const Srgb8 color =
-            scaleColor(static_cast<float>(value), static_cast<float>(low), static_cast<float>(high));
+        const Srgb8 color = scaleColor(float(value), float(low), float(high));
         for (int y = 0; y < barHeight; ++y) bar.paint(x, y, color);
     }
     const std::string middle = printed("%.3g", (low + high) / 2), right = printed("%.3g", high);
@@ -138,13 +129,11 @@ Picture withColorBar(const Picture& picture, double low, double high, std::strin
 Picture colored(int width, int height, std::span<const float> values, float low, float high,
                 std::span<const float> mask, Srgb8 outside) {
     Picture picture(width, height, outside);
-    for (int y = 0; y < height; ++y) {
+    for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
-            if (!mask.empty() && mask[i] == 0.0f) continue;
-            picture.paint(x, y, scaleColor(values[i], low, high));
+            const size_t i = size_t(y) * size_t(width) + size_t(x);
+            if (mask.empty() || mask[i] != 0.0f) picture.paint(x, y, scaleColor(values[i], low, high));
         }
-    }
     return picture;
 }
 

@@ -1,7 +1,6 @@
 #include "io/image/texture_file.h"
 
 #include <bit>
-#include <vector>
 
 #include "io/atomic_file.h"
 

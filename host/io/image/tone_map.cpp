@@ -10,7 +10,7 @@ namespace pellucid::io {
 namespace {
 
 uint8_t byteOf(float code) {
-    return static_cast<uint8_t>(std::lround(255.0f * std::clamp(code, 0.0f, 1.0f)));
+    return uint8_t(std::lround(255.0f * std::clamp(code, 0.0f, 1.0f)));
 }
 
 float notNegative(float x) {

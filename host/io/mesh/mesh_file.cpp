@@ -27,8 +27,8 @@ void checkVertices(const std::string& path, const RawMesh& raw) {
 }
 
 void checkCorners(const std::string& path, const RawMesh& raw) {
-    const auto vertices = static_cast<int64_t>(raw.positions.size() / 3);
-    for (size_t f = 0; f + 1 < raw.faceStart.size(); ++f) {
+    const auto vertices = int64_t(raw.positions.size() / 3);
+    for (size_t f = 0; f + 1 < raw.faceStart.size(); ++f)
         for (size_t c = raw.faceStart[f]; c < raw.faceStart[f + 1]; ++c) {
             if (raw.corners[c] >= 0 && raw.corners[c] < vertices) continue;
             throw FileError(path,
@@ -36,7 +36,6 @@ void checkCorners(const std::string& path, const RawMesh& raw) {
                                    ", but the file has ", vertices, (vertices == 1 ? " vertex" : " vertices"),
                                    "; 0 to ", vertices - 1, " would be right"));
         }
-    }
 }
 
 // Corner UVs become vertex UVs. Where corners differ, the vertex is copied, or all UVs are left out.
@@ -59,7 +58,7 @@ void assignCornerUvs(MeshData& mesh, std::vector<uint32_t>& corners, std::span<c
                     "texture coordinates left out: they differ between faces at a vertex");
                 return;
             }
-            const auto next = static_cast<uint32_t>(uvs.size() / 2);
+            const auto next = uint32_t(uvs.size() / 2);
             const auto [entry, isNew] = copies.try_emplace({v, {uv[0], uv[1]}}, next);
             own[c] = entry->second;
             if (isNew) {
@@ -84,8 +83,7 @@ void triangulate(MeshData& mesh, const RawMesh& raw) {
         const size_t first = raw.faceStart[f], last = raw.faceStart[f + 1];
         tooSmall += last - first < 3;
         for (size_t c = first + 1; c + 1 < last; ++c) {
-            for (size_t corner : {first, c, c + 1})
-                mesh.triangles.push_back(static_cast<uint32_t>(raw.corners[corner]));
+            for (size_t corner : {first, c, c + 1}) mesh.triangles.push_back(uint32_t(raw.corners[corner]));
         }
     }
     if (tooSmall)
@@ -114,7 +112,7 @@ void checkNormals(MeshData& mesh) {
 // Reorients triangles that face another way than their neighbours, or adds a warning.
 void checkOrder(MeshData& mesh, bool orient) {
     PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
-    desc.numVertices = static_cast<uint32_t>(mesh.vertexCount());
+    desc.numVertices = uint32_t(mesh.vertexCount());
     desc.indices = mesh.triangles.data();
     desc.numIndices = mesh.triangles.size();
     desc.weld = PEL_WELD_EXACT;

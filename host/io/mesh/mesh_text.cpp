@@ -34,7 +34,7 @@ bool endFace(RawMesh& mesh) {
         ++mesh.leftOut;
         return false;
     }
-    mesh.faceStart.push_back(static_cast<uint32_t>(mesh.corners.size()));
+    mesh.faceStart.push_back(uint32_t(mesh.corners.size()));
     return true;
 }
 
@@ -106,7 +106,7 @@ class StlVertices {
     explicit StlVertices(RawMesh& mesh) : mesh_(mesh) {}
     void corner(const float (&p)[3]) {
         const auto [entry, isNew] =
-            known_.try_emplace({p[0], p[1], p[2]}, static_cast<int64_t>(mesh_.positions.size() / 3));
+            known_.try_emplace({p[0], p[1], p[2]}, int64_t(mesh_.positions.size() / 3));
         if (isNew) mesh_.positions.insert(mesh_.positions.end(), p, p + 3);
         mesh_.corners.push_back(entry->second);
     }
@@ -120,8 +120,7 @@ class StlVertices {
 std::optional<RawMesh> readBinaryStl(const std::string& path, const std::string& text) {
     uint32_t facets = 0;
     if (text.size() >= stlHeader) std::memcpy(&facets, text.data() + 80, 4);
-    if (text.size() < stlHeader || text.size() != stlHeader + stlFacet * static_cast<size_t>(facets))
-        return std::nullopt;
+    if (text.size() < stlHeader || text.size() != stlHeader + stlFacet * size_t(facets)) return std::nullopt;
     RawMesh mesh;
     StlVertices vertices(mesh);
     for (uint32_t f = 0; f < facets; ++f) {
@@ -184,15 +183,14 @@ RawMesh readOff(const std::string& path, const std::string& text) {
     for (long long f = 0; f < faces; ++f) {
         if (!scan.nextLine()) scan.fail(concat("ends early: ", faces, " faces announced, ", f, " found"));
         const long long corners = scan.integer(scan.words()[0], "number of corners");
-        if (corners < 1 || static_cast<size_t>(corners) >= scan.words().size())
+        if (corners < 1 || size_t(corners) >= scan.words().size())
             scan.fail(concat("the face announces ", corners, " corners and lists ", scan.words().size() - 1));
-        for (size_t i = 1; i <= static_cast<size_t>(corners); ++i) {
+        for (size_t i = 1; i <= size_t(corners); ++i) {
             const long long index = scan.integer(scan.words()[i], "vertex");
-            if (index < 0 || index >= vertices)
-                scan.fail(outOfRange(index, 0, static_cast<size_t>(vertices), "vertex"));
+            if (index < 0 || index >= vertices) scan.fail(outOfRange(index, 0, size_t(vertices), "vertex"));
             mesh.corners.push_back(index);
         }
-        mesh.faceStart.push_back(static_cast<uint32_t>(mesh.corners.size()));
+        mesh.faceStart.push_back(uint32_t(mesh.corners.size()));
     }
     return mesh;
 }

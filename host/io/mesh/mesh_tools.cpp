@@ -58,7 +58,7 @@ void computeNormals(MeshData& mesh) {
         const double size = sum.norm();
         const bool usable = size > 1e-12;  // else unreferenced, or two faces back to back
         for (size_t k = 0; k < 3; ++k)
-            mesh.normals[3 * v + k] = usable ? static_cast<float>(sum[k] / size) : (k == 2 ? 1.0f : 0.0f);
+            mesh.normals[3 * v + k] = usable ? float(sum[k] / size) : (k == 2 ? 1.0f : 0.0f);
     }
 }
 
@@ -75,9 +75,9 @@ void loopSubdivide(MeshData& mesh, int levels) {
         const bool repeated = corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0];
         OpenMesh::FaceHandle face;
         if (!repeated)
-            face = topology.add_face(OpenMesh::VertexHandle(static_cast<int>(corner[0])),
-                                     OpenMesh::VertexHandle(static_cast<int>(corner[1])),
-                                     OpenMesh::VertexHandle(static_cast<int>(corner[2])));
+            face = topology.add_face(OpenMesh::VertexHandle(int(corner[0])),
+                                     OpenMesh::VertexHandle(int(corner[1])),
+                                     OpenMesh::VertexHandle(int(corner[2])));
         if (face.is_valid()) continue;
         throw FileError(
             mesh.source,
@@ -91,7 +91,7 @@ void loopSubdivide(MeshData& mesh, int levels) {
         if (!mesh.uvs.empty()) {
             // LoopT adds one vertex per edge, in the order of the edges.
             for (auto edge : topology.edges()) {
-                const auto a = static_cast<size_t>(edge.v0().idx()), b = static_cast<size_t>(edge.v1().idx());
+                const auto a = size_t(edge.v0().idx()), b = size_t(edge.v1().idx());
                 for (size_t k = 0; k < 2; ++k)
                     mesh.uvs.push_back((mesh.uvs[2 * a + k] + mesh.uvs[2 * b + k]) / 2);
             }
@@ -112,7 +112,7 @@ void loopSubdivide(MeshData& mesh, int levels) {
     }
     mesh.triangles.clear();
     for (auto f : topology.faces()) {
-        for (auto v : f.vertices()) mesh.triangles.push_back(static_cast<uint32_t>(v.idx()));
+        for (auto v : f.vertices()) mesh.triangles.push_back(uint32_t(v.idx()));
     }
     mesh.normals.clear();
     mesh.splitFrom.clear();

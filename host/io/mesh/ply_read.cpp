@@ -32,9 +32,8 @@ struct Element {
     std::vector<Property> properties;
     int line = 0;
     const Property* find(std::string_view property) const {
-        for (const Property& p : properties) {
+        for (const Property& p : properties)
             if (p.name == property) return &p;
-        }
         return nullptr;
     }
 };
@@ -47,9 +46,8 @@ struct Header {
 };
 
 const Type* typeNamed(const TextScan& scan, std::string_view name) {
-    for (const Type& t : types) {
+    for (const Type& t : types)
         if (name == t.name || name == t.otherName) return &t;
-    }
     scan.fail("has the type '" + std::string(name) +
               "'; char, uchar, short, ushort, int, uint, float and double are known");
 }
@@ -213,9 +211,9 @@ class AsciiBody {
         const long long length = scan_.integer(word(), "length of " + p.name);
         ++word_;
         const size_t left = scan_.words().size() - word_;
-        if (length < 0 || static_cast<size_t>(length) > left)
+        if (length < 0 || size_t(length) > left)
             scan_.fail(concat("the list ", p.name, " announces ", length, " values and has ", left));
-        return static_cast<size_t>(length);
+        return size_t(length);
     }
     double number(const Property& p) {
         const double value =
@@ -263,7 +261,7 @@ void readVertices(Body& body, const Element& e, RawMesh& mesh) {
         for (size_t k = 0; k < e.properties.size(); ++k) {
             const Property& p = e.properties[k];
             if (role[k] < vertexValues)
-                values[role[k]] = static_cast<float>(body.number(p));
+                values[role[k]] = float(body.number(p));
             else
                 body.skip(p.count ? body.length(p) : 1, p);
         }
@@ -288,10 +286,10 @@ void readFaces(Body& body, const Element& e, RawMesh& mesh) {
             seen = true;
             constexpr double most = 1e15;  // an int64_t holds it; no vertex has such an index
             for (size_t k = 0; k < length; ++k)
-                mesh.corners.push_back(static_cast<int64_t>(std::clamp(body.number(p), -most, most)));
+                mesh.corners.push_back(int64_t(std::clamp(body.number(p), -most, most)));
         }
         body.end(e);
-        mesh.faceStart.push_back(static_cast<uint32_t>(mesh.corners.size()));
+        mesh.faceStart.push_back(uint32_t(mesh.corners.size()));
     }
 }
 

@@ -93,7 +93,7 @@ void AtomicFile::write(const void* bytes, size_t count) {
         if (wrote == 0) errno = ENOSPC;
         if (wrote <= 0) fail();
         next += wrote;
-        count -= static_cast<size_t>(wrote);
+        count -= size_t(wrote);
     }
 }
 

@@ -3,8 +3,8 @@
 #pragma once
 #include <array>
 #include <string>
-#include <vector>
 
+#include "io/image/image_file.h"
 #include "io/lut/lut_preset.h"
 
 namespace pellucid::io {
@@ -96,6 +96,11 @@ struct SceneFile {
 SceneFile readScene(const std::string& path);
 // The same from text. `path` is for messages, and the scene's paths are relative to it.
 SceneFile parseScene(const std::string& path, const std::string& text);
+
+// Appends planes, one for each component, to the G-buffer as channels "NAME.X" and so on, and names them in
+// the scene for `slot`.
+void addPlanes(SceneFile& scene, Image& gbuffer, PelImageSlot slot, const std::string& name,
+               const std::string& components, std::span<const float> planes);
 
 // The text of a scene file.
 std::string sceneText(const SceneFile& scene);

@@ -5,6 +5,18 @@
 
 namespace pellucid::io {
 
+void addPlanes(SceneFile& scene, Image& gbuffer, PelImageSlot slot, const std::string& name,
+               const std::string& components, std::span<const float> planes) {
+    scene.channels[slot].clear();
+    const size_t pixels = gbuffer.pixelCount();
+    for (size_t c = 0; c < components.size(); ++c) {
+        scene.channels[slot].push_back(name + "." + components[c]);
+        const auto from = planes.begin() + ptrdiff_t(c * pixels);
+        gbuffer.channels.push_back(
+            {scene.channels[slot].back(), ChannelType::Float, {from, from + ptrdiff_t(pixels)}});
+    }
+}
+
 std::string sceneText(const SceneFile& scene) {
     std::string out =
         "# A scene of `pellucid shade`. Lengths are in the unit of the G-buffer's positions.\nversion = 2\n";
