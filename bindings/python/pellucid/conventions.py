@@ -37,8 +37,8 @@ def camera_from_view_projection(view_projection: ArrayLike, depth: str = "-1..1"
                                 **fields: Any) -> Camera:
     """The camera of a G-buffer whose depth image is what the depth buffer holds, its first row on top.
 
-    The position is where the projection puts it: on the line through the middle of the picture for a
-    parallel one.
+    The position is where the projection puts it: far away in front of the middle of the picture for
+    a parallel one.
     """
     camera: Camera = _set(Camera(**fields), _native.camera_of, view_projection, depth, y_up, "top",
                           "has no inverse")

@@ -82,12 +82,12 @@ static inline int pelConventionInvert_(double m[4][4], double inverse[4][4]) {
 }
 
 /* Sets position and inverseViewProjection of `camera`, for a depth image that is what the depth buffer holds
- * and whose first row is the highest. The position of a parallel projection is far away on the line through
+ * and whose first row is the highest. The position of a parallel projection is far away, in front of
  * the middle of the picture. Errors: PEL_ERROR_INVALID_ARGUMENT: numbers that are not finite, no inverse;
  * nothing is written. */
 static inline PelError pelCameraFromViewProjection(const float viewProjection[16], PelConvention convention,
                                                    PelCamera* camera) {
-    double m[4][4], inverse[4][4], eye[4], largest = 0;
+    double m[4][4], inverse[4][4], eye[4], largest = 0, nearer = 0;
     int i, k;
     if (!viewProjection || !camera || !pelConventionRead_(viewProjection, &convention, m))
         return PEL_ERROR_INVALID_ARGUMENT;
@@ -96,12 +96,16 @@ static inline PelError pelCameraFromViewProjection(const float viewProjection[16
         if (convention.yDown) m[1][k] = -m[1][k];
         if (convention.depth == PEL_CLIP_DEPTH_MINUS_ONE_TO_ONE) m[2][k] = 0.5 * (m[2][k] + m[3][k]);
     }
+    /* parallel: depth says which way along the line leads to the camera */
+    for (k = 0; k < 3; ++k) nearer -= m[2][k] * eye[k] * m[3][3];
+    if (convention.depth == PEL_CLIP_DEPTH_ONE_TO_ZERO) nearer = -nearer;
     if (!pelConventionInvert_(m, inverse)) return PEL_ERROR_INVALID_ARGUMENT;
     for (k = 0; k < 3; ++k) largest = fabs(eye[k]) > largest ? fabs(eye[k]) : largest;
     for (k = 0; k < 3; ++k) {
         const double length = sqrt(eye[0] * eye[0] + eye[1] * eye[1] + eye[2] * eye[2]);
         camera->position[k] =
-            (float)(fabs(eye[3]) > 1e-12 * largest ? eye[k] / eye[3] : -1e6 * eye[k] / length);
+            (float)(fabs(eye[3]) > 1e-12 * largest ? eye[k] / eye[3]
+                                                   : (nearer > 0 ? 1e6 : -1e6) * eye[k] / length);
     }
     for (i = 0; i < 4; ++i)
         for (k = 0; k < 4; ++k) camera->inverseViewProjection[4 * i + k] = (float)inverse[i][k];
