@@ -30,6 +30,7 @@ static cl::ProgramKey wideShadowKey(const Device& device, const ShaderPlan& plan
     defines["PEL_NORMAL_SLOT"] = int(normal);
     defines["PEL_FORMAT_SHADOW_MAP"] = map;
     defines["PEL_SHADOW_CONTENT"] = content;
+    defines["PEL_AREA_LIGHTS"] = int(hasAreaLight(plan.state));
     defines["PEL_BOUNDS"] = int(!plan.boundedMaps.empty());
     defines["PEL_THIN"] = int(makesLightFromBehind(plan.state, plan.features));
     defines["PEL_FILTERS_WIDE"] = int(std::ranges::any_of(plan.filteredLights, [&](uint32_t light) {
