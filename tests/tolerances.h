@@ -117,6 +117,8 @@ constexpr double areaSphere = 1e-4, areaRectangle = 1e-2;
 constexpr double areaTables = 0.05;  // by the size over the distance: two places of the table for all
 // radius over distance up to 0.05, 0.3, 0.6: one point of the light for all of it
 constexpr double areaHighlightSmall = 6e-3, areaHighlight = 0.08, areaHighlightLarge = 0.2;
+// share of light in a penumbra: the filter is rounder than a disk's edge response, and 32 taps find its width
+constexpr double softShadow = 0.02;
 // relative: the tenth power of a float value read at float coordinates up to 300
 constexpr double specularTable = 2e-4;
 // length: depths of a map that spans 200 to 700, through one float division

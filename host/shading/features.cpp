@@ -130,7 +130,8 @@ bool filtersShadow(const ShaderState& state, const ShaderLight& light) {
 }
 
 bool filtersWide(const ShaderState& state, const ShaderLight& light) {
-    return light.params.shadowFilterTexels > 0 &&
+    if (light.params.shadowFilterTexels == 0) return false;
+    return isArea(light.params) ||
            std::ranges::any_of(state.materials, [](const auto& m) { return !readsIrradiance(m.second); });
 }
 

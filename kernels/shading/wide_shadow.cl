@@ -16,6 +16,9 @@
 #include "lib/shading/light.clh"
 #include "lib/shading/shadow_bounds.clh"
 #include "lib/shading/sharp_shadow.clh"
+#if PEL_AREA_LIGHTS
+#include "lib/shading/soft_shadow.clh"
+#endif
 
 // The tangent plane is followed down to this cosine to the light: five times the sideways distance.
 #define PEL_FLATTEST_COSINE 0.2f
@@ -129,6 +132,28 @@ static inline floatw sharpInMap(__global const PelWideShadow* light, __global co
     return selectw(shown, sharpShadow(PEL_FORMAT_SHADOW_MAP, map, &light->map, &s, perExponent, held), held);
 }
 
+#if PEL_AREA_LIGHTS
+// The width of the penumbra of a light with a size; 0: not known, and of other lights. `n`: towards the light.
+static inline floatw penumbraOfLight(__global const PelWideShadow* light, __global const PelShadeLight* from,
+                                     __global uchar* map, Vec3w p, Vec3w n, floatw bias, maskw on) {
+    if (!isArea(from) || !(light->maxTexels > 0.0f) || light->projection == PEL_MAP_PARALLEL || !anyw(on))
+        return (floatw)(0.0f);
+    if ((PEL_FEATURES & PEL_BIT_SHADOW_CUBE) && light->projection >= PEL_MAP_CUBE) {
+        __global const float* m = light->worldToShadow;
+        return penumbraInCube(PEL_FORMAT_SHADOW_MAP, firstTexel(map, &light->map), from, cubePosition(m, p),
+                              cubeTurned(m, n), bias, on);
+    }
+    const Receiver r = receiverInMap(light, p, n);
+    const floatw tilt = 1.0f / fmax(r.cosine, (floatw)(PEL_FLATTEST_COSINE));
+    const floatw dzdx = dot3(n, loadUniform3(light->right)) * tilt * r.texelU * r.zPerLength,
+                 dzdy = dot3(n, loadUniform3(light->down)) * tilt * r.texelV * r.zPerLength;
+    return penumbraInMap(PEL_FORMAT_SHADOW_MAP, firstTexel(map, &light->map), &light->map, from, r.x, r.y,
+                         r.z, dzdx, dzdy, 1.0f / r.texelU, 1.0f / r.texelV,
+                         bias + PEL_SHARP_TEXELS * fmax(r.texelU, r.texelV) * tilt,
+                         on & comparable(&r, p, n));
+}
+#endif
+
 // Of the materials of these ids; ids without one may lie beyond the table.
 static inline FilterShape filterShape(__global const PelWideShadow* light,
                                       __global const PelShadeMaterial* materials, uintw id, maskw active) {
@@ -227,6 +252,14 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
             // Others interpolate between these, so they are the same with skipping and without it.
             if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING) || apart == 2)
                 left &= sampleLight(from, p).strength > 0.0f;
+#if PEL_AREA_LIGHTS
+            const LightSample sample = sampleLight(from, p);
+            // Where the centre is below the horizon its map shows nothing of what is before the rest.
+            if (isArea(from)) left &= dot3(n, sample.direction) > 0.0f;
+            const floatw penumbra = penumbraOfLight(wideShadow, from, PEL_LIGHT_BUFFER_OF(from->mapBuffer), p,
+                                                    n, shape.bias, left);
+            shape.width = sqrt(fma(shape.width, shape.width, penumbra * penumbra));
+#endif
             maskw sharp = left & (shape.width == 0.0f);
             float shown[PEL_WIDTH];
             storew(selectw((floatw)(1.0f), between, known), 0, shown);

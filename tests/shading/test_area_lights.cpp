@@ -265,7 +265,8 @@ TEST(AreaLights, IrradiancePerPixel) {
     }
 }
 
-// Methods by tables, from irradiance, and from shadow maps: what is small is a point, and what is not lights beyond the terminator.
+// Methods by tables, from irradiance, and from shadow maps: what is small is a point, and what is not lights
+// beyond the terminator.
 TEST(AreaLights, OfMethodsOfScattering) {
     for (const PelScattering method :
          {PEL_SCATTERING_PREINTEGRATED, PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_LIGHT}) {
