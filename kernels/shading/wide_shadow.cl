@@ -74,11 +74,11 @@ static inline maskw comparable(const Receiver* r, Vec3w p, Vec3w n) {
 
 // Returns the lanes whose filter can be run. The other lanes lie behind the light or are not finite.
 static inline maskw makeFilters(__global const PelWideShadow* light, const FilterShape* shape, Vec3w p,
-                                Vec3w n, Filters* f) {
+                                Vec3w n, float flattest, Filters* f) {
     const floatw width = shape->width;
     const Receiver r = receiverInMap(light, p, n);
     const floatw zPerLength = r.zPerLength, texelU = r.texelU, texelV = r.texelV, cosine = r.cosine;
-    const floatw tilt = 1.0f / fmax(cosine, (floatw)(PEL_FLATTEST_COSINE));
+    const floatw tilt = 1.0f / fmax(cosine, (floatw)(flattest));
     // A point that faces away is behind its own body. Up to two filter widths of that do not count as shadow;
     // the curvature table darkens it.
     const floatw body = 2.0f * width * max0w(-cosine);
@@ -133,7 +133,8 @@ static inline floatw sharpInMap(__global const PelWideShadow* light, __global co
 }
 
 #if PEL_AREA_LIGHTS
-// The width of the penumbra of a light with a size; 0: not known, and of other lights. `n`: towards the light.
+// The width of the penumbra of a light with a size; 0: not known, and of other lights. `n`: towards the
+// light.
 static inline floatw penumbraOfLight(__global const PelWideShadow* light, __global const PelShadeLight* from,
                                      __global uchar* map, Vec3w p, Vec3w n, floatw bias, maskw on) {
     if (!isArea(from) || !(light->maxTexels > 0.0f) || light->projection == PEL_MAP_PARALLEL || !anyw(on))
@@ -144,7 +145,7 @@ static inline floatw penumbraOfLight(__global const PelWideShadow* light, __glob
                               cubeTurned(m, n), bias, on);
     }
     const Receiver r = receiverInMap(light, p, n);
-    const floatw tilt = 1.0f / fmax(r.cosine, (floatw)(PEL_FLATTEST_COSINE));
+    const floatw tilt = 1.0f / fmax(r.cosine, (floatw)(PEL_SHARP_FLATTEST));
     const floatw dzdx = dot3(n, loadUniform3(light->right)) * tilt * r.texelU * r.zPerLength,
                  dzdy = dot3(n, loadUniform3(light->down)) * tilt * r.texelV * r.zPerLength;
     return penumbraInMap(PEL_FORMAT_SHADOW_MAP, firstTexel(map, &light->map), &light->map, from, r.x, r.y,
@@ -207,6 +208,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
     const WideContent content = {wideShadow->perExponent, wideShadow->minDeviation * wideShadow->minDeviation,
                                  wideShadow->bleeding};
     const uint maps = (PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) ? max(wideShadow->cascades, 1u) : 1;
+    // Filters over the penumbra of a light with a size are wide: their plane has to be followed further.
+    const float flattest = isArea(from) ? PEL_SHARP_FLATTEST : PEL_FLATTEST_COSINE;
 #if PEL_FILTERS_WIDE
     const BetweenImages images = {frame, material, position, depth};
 #endif
@@ -273,7 +276,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                 const Vec3w q = cubePosition(m, p);
                 shape.width =
                     selectw(shape.width, sqrt(dot3(q, q)) * (8.0f / (float)wideShadow->map.width), sharp);
-                left &= makeCubeFilters(wideShadow, &shape, q, cubeTurned(m, n), PEL_FLATTEST_COSINE, &f);
+                left &= makeCubeFilters(wideShadow, &shape, q, cubeTurned(m, n), flattest, &f);
                 if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(left), texels += countw(left);
                 int wanted[PEL_WIDTH];
                 storew(left, 0, wanted);
@@ -298,7 +301,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                         if (!anyw(left)) continue;
                     }
 #if PEL_FILTERS_WIDE
-                    const maskw held = makeFilters(light, &shape, p, n, &f) & left;
+                    const maskw held = makeFilters(light, &shape, p, n, flattest, &f) & left;
                     if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(held);
                     left &= notw(held);
                     float decided[PEL_WIDTH];

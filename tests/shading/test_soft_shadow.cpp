@@ -1,5 +1,5 @@
-// Penumbrae of lights with a size, from maps that are seen from their centre: of a straight edge over a plane,
-// against the part of the light that is above the edge.
+// Penumbrae of lights with a size, from maps that are seen from their centre: of a straight edge over a
+// plane, against the part of the light that is above the edge.
 #include "shade_scene.h"
 #include "test.h"
 
@@ -148,7 +148,7 @@ TEST(SoftShadow, WithoutASizeOrAFilterIsSharp) {
     EXPECT_LE(between * extent / columns, 3);
 }
 
-// Where the horizon hides the light's centre, the map seen from there says nothing of the rest.
+// Where the horizon hides the light's centre, the map does not show what is before the rest.
 TEST(SoftShadow, OfAPointThatSeesTheRimAlone) {
     Frame f = edgeFrame({PEL_LIGHT_SPHERE, 100, 60});
     f.slots[PEL_SLOT_NORMAL_GEOMETRIC] = f.slots[PEL_SLOT_NORMAL_SHADING];
