@@ -992,6 +992,9 @@ typedef struct PelLight {
     /* rectangle: from the centre to the middle of a side, and of the next one, at right angles; lengths */
     float halfWidth[3];
     float halfHeight[3];
+    /* 0: the light's maps may change from frame to frame. Else a number that the caller changes when they do:
+     * what is computed from maps alone is kept until then, and shared by the shaders of a device */
+    uint32_t shadowMapVersion;
 } PelLight;
 
 typedef enum PelSpecularModel {
