@@ -39,9 +39,13 @@ std::array<double, 3> ambientAlong(const PelAmbient& ambient, sample::Vec3 n) {
 }
 
 // A scene's lights, which all cast shadows, and its ambient light, which does not.
-sample::Lighting lightingOf(const io::SceneFile& scene) {
+sample::Lighting lightingOf(const io::SceneFile& scene, const std::string& file) {
     sample::Lighting lighting;
     for (const io::SceneLight& l : scene.lights) {
+        if (l.light.type >= PEL_LIGHT_SPHERE)
+            throw io::FileError(file,
+                                "has a sphere or rectangle as its light; reference takes directional, "
+                                "point and spot lights");
         sample::SurfaceLight light;
         light.type = sample::SurfaceLight::Type(l.light.type);
         light.toLight = normalize(vectorOf(l.light.toLight));
@@ -375,7 +379,7 @@ class Reference {
           mesh_(loadReferenceMesh(a.mesh, a.subdivide, a.parts)),
           scene_(sample::MeshView{
               mesh_.mesh.positions, mesh_.mesh.normals, {}, {}, mesh_.mesh.triangles, mesh_.materials}),
-          lighting_(lightingOf(file_)) {
+          lighting_(lightingOf(file_, a.scene)) {
         for (const std::string& warning : mesh_.mesh.warnings) run.warn(warning);
         if (!file_.ambientCube.empty())
             run.warn("the ambient cube map is left out; only the keys constant and sh of [ambient] are used");

@@ -63,6 +63,17 @@ class Device final : public Object {
         if (constants_.size() == 32) constants_.clear();
         return constants_.insert_or_assign(key, memory).first->second;
     }
+    // What several objects use whose result follows from `key` alone. It goes with the last of them.
+    template <class T, class Make>
+    std::shared_ptr<T> shared(const std::string& key, const Make& make) {
+        const std::lock_guard lock(sharedMutex_);
+        std::erase_if(shared_, [](const auto& entry) { return entry.second.expired(); });
+        if (const auto found = shared_.find(key); found != shared_.end())
+            if (auto held = found->second.lock()) return std::static_pointer_cast<T>(held);
+        std::shared_ptr<T> made = make();
+        shared_[key] = made;
+        return made;
+    }
     void countTransfer(size_t toDevice, size_t toHost);
     // `destination` and `source` are not NULL. Blocking calls return when the bytes are copied.
     void read(cl_mem memory, size_t offset, size_t bytes, void* destination, bool blocking,
@@ -110,6 +121,8 @@ class Device final : public Object {
     PelAllocateCallback allocate_ = nullptr;
     void* allocateUser_ = nullptr;
 
+    std::mutex sharedMutex_;  // guards the next
+    std::map<std::string, std::weak_ptr<void>> shared_;
     std::mutex mutex_;  // guards the rest
     std::map<std::string, cl::Memory> constants_;
     // Of launches that may be queued still. NVIDIA's driver (580) uses a kernel that is released before its

@@ -104,6 +104,9 @@ PelLightMap describe(const ShaderLight& light, uint32_t number, Matrix m, const 
     to.spotScale = 1 / std::max(l.spotCosInner - l.spotCosOuter, 1e-6f);
     to.range2 = l.range > 0 ? std::min(l.range * l.range, FLT_MAX) : FLT_MAX;
     std::copy_n(l.color, 3, to.color);
+    to.radius = l.radius;
+    std::copy_n(l.halfWidth, 3, to.halfWidth);
+    std::copy_n(l.halfHeight, 3, to.halfHeight);
     if (l.shadowProjection == PEL_SHADOW_CUBE_RADIAL) to.radialRange = l.shadowDepthRange;
     if (l.shadowExponent != 0) to.perExponent = float(std::log(2.0) / l.shadowExponent);
     const double texel = std::max(1 / (perLength(m, 0) * width), 1 / (perLength(m, 1) * height));

@@ -78,11 +78,13 @@ void LightSpace::announce(const std::vector<ShaderLight>& lights, bool hidden, b
     hidden_ = hidden, half_ = half && !hidden;
     empty_ = true;
     mapFormat_ = content_ = 0;
+    area_ = false;
     for (const ShaderLight& light : lights) {
         if (!shines(light)) continue;
         empty_ = false;
         mapFormat_ |= mapFormatCode(light);
         content_ = light.params.shadowContent;
+        area_ |= isArea(light.params);
     }
 }
 
@@ -114,6 +116,7 @@ void LightSpace::addFiles(cl::ProgramKey& program) const {
     program.files.push_back(hidden_ ? "diffusion/light_hidden.cl" : "diffusion/scatter_light.cl");
     program.defines["PEL_SUM_GROUP"] = summingGroup(*device_);
     program.defines["PEL_HIDDEN"] = int(hidden_);
+    program.defines["PEL_AREA_LIGHTS"] = int(area_);
     program.defines["PEL_HALF"] = int(half_);
     program.defines["PEL_FORMAT_SHADOW_MAP"] = mapFormat_;
     program.defines["PEL_SHADOW_CONTENT"] = content_;

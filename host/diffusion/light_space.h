@@ -52,7 +52,7 @@ class LightSpace {
     Ref<Device> device_;
     std::vector<LightMap> maps_;
     std::vector<PelLightMap> sent_;
-    bool empty_ = true, hidden_ = true, half_ = false;
+    bool empty_ = true, hidden_ = true, half_ = false, area_ = false;
     bool known_ = false;        // whether cells_[0] says what the pyramid holds, and seen_ is 0
     uint32_t frameNumber_ = 0;  // of those that were enqueued
     uint32_t mapFormat_ = 0, content_ = 0;

@@ -117,6 +117,23 @@ void checkMaterial(const PelMaterial& m) {
         invalidArgument("PelMaterial.thicknessTaps is ", m.thicknessTaps, "; it must be 0, 8, 16 or 32");
 }
 
+static void checkRectangle(const PelLight& l, const std::string& name) {
+    checkFinite(name.c_str(), "halfWidth", l.halfWidth, 3);
+    checkFinite(name.c_str(), "halfHeight", l.halfHeight, 3);
+    const auto dot = [](const float(&a)[3], const float(&b)[3]) {
+        return double(a[0]) * b[0] + double(a[1]) * b[1] + double(a[2]) * b[2];
+    };
+    const double width = std::sqrt(dot(l.halfWidth, l.halfWidth)),
+                 height = std::sqrt(dot(l.halfHeight, l.halfHeight));
+    if (!(std::min(width, height) >= PEL_TINY && std::max(width, height) <= PEL_HUGE))
+        invalidArgument(name, ".halfWidth and halfHeight have the lengths ", width, " and ", height,
+                        "; each must be at least ", PEL_TINY, " and at most ", PEL_HUGE);
+    const double cosine = dot(l.halfWidth, l.halfHeight) / (width * height);
+    if (!(std::abs(cosine) <= 1e-3))
+        invalidArgument(
+            name, ".halfWidth and halfHeight must be at right angles; the cosine between them is ", cosine);
+}
+
 void checkLight(const PelLight& l, uint32_t index) {
     const std::string name = text("PelLight ", index), &structure = name;
     const PelLight& fields = l;
@@ -142,6 +159,10 @@ void checkLight(const PelLight& l, uint32_t index) {
             invalidArgument(name, ".spotCosInner is ", l.spotCosInner, "; it must be at least spotCosOuter, ",
                             l.spotCosOuter);
     }
+    if (l.type == PEL_LIGHT_SPHERE) {
+        PEL_EACH_SPHERE_LIGHT_FIELD(PEL_CHECK_RANGE)
+    }
+    if (l.type == PEL_LIGHT_RECTANGLE) checkRectangle(l, name);
 }
 
 void checkAmbient(const PelAmbient& ambient) {
@@ -203,7 +224,7 @@ void checkCube(const ShaderLight& light, const std::string& name) {
     if (l.type == PEL_LIGHT_DIRECTIONAL)
         invalidArgument(
             name,
-            ".shadowProjection is a cube, and its type directional: cubes are for point and spot lights");
+            ".shadowProjection is a cube, and its type directional: cubes are for lights with a position");
     const ImageView& map = light.images[PEL_LIGHT_SHADOW_MAP];
     if (map.height != 6 * uint64_t(map.width))
         invalidArgument("the shadow map of ", name, " is ", map.width, " x ", map.height,

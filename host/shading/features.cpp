@@ -130,7 +130,8 @@ bool filtersShadow(const ShaderState& state, const ShaderLight& light) {
 }
 
 bool filtersWide(const ShaderState& state, const ShaderLight& light) {
-    return light.params.shadowFilterTexels > 0 &&
+    if (light.params.shadowFilterTexels == 0) return false;
+    return isArea(light.params) ||
            std::ranges::any_of(state.materials, [](const auto& m) { return !readsIrradiance(m.second); });
 }
 
@@ -266,12 +267,20 @@ uint32_t deriveFeatures(const ShaderState& state) {
     if (features & PEL_FEATURE_BLUR_NORMALS) need(position, what, "to blur normals over a length");
     if (filtered) need(position, what, "to filter a wide shadow from a shadow map");
     if (features & PEL_FEATURE_EYE) need(position, what, "by eyes");
-    if (positional) need(position, what, "by point and spot lights");
+    if (positional) need(position, what, "by lights that have a position");
     return features;
 }
 
 bool shines(const ShaderLight& light) {
     return light.images[PEL_LIGHT_SHADOW_MAP] && !isBlack(light.params.color);
+}
+
+bool isArea(const PelLight& light) {
+    return light.type >= PEL_LIGHT_SPHERE;
+}
+
+bool hasAreaLight(const ShaderState& state) {
+    return std::ranges::any_of(state.lights, [](const ShaderLight& l) { return isArea(l.params); });
 }
 
 uint32_t mapsOf(const ShaderLight& light) {

@@ -42,6 +42,9 @@ bool isBlack(const PelAmbient& ambient);
 bool shines(const ShaderLight& light);
 // How many maps that is: cascades and faces of cubes one by one.
 uint32_t mapsOf(const ShaderLight& light);
+// Spheres and rectangles.
+bool isArea(const PelLight& light);
+bool hasAreaLight(const ShaderState& state);
 // Whether maps hold all light: every light that has a colour has one, there are some and not too many, and
 // there is no ambient light.
 bool lightIsMapped(const ShaderState& state);

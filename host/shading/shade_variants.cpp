@@ -57,6 +57,7 @@ cl::Defines sceneDefines(const Device& device, const ShaderState& state, uint32_
     }
     if (!(features & PEL_BIT_THICKNESS_TAPS)) map = content = 0;
     cl::Defines defines{{"PEL_FEATURES", features},
+                        {"PEL_AREA_LIGHTS", int(hasAreaLight(state))},
                         {"PEL_FORMAT_WIDE_SHADOW", wide},
                         {"PEL_FORMAT_SHADOW_MAP", map},
                         {"PEL_SHADOW_CONTENT", content}};

@@ -270,6 +270,9 @@ std::vector<PelShadeLight> ShadingConstants::describeLights(const ShaderState& s
         to.wide = describeImage(wide);
         to.map = describeImage(map);
         if (l.shadowExponent != 0) to.perExponent = float(std::log(2.0) / l.shadowExponent);
+        to.radius = l.radius;
+        copy(to.halfWidth, l.halfWidth);
+        copy(to.halfHeight, l.halfHeight);
         to.cascades = map ? l.shadowCascades : 0;
         for (uint32_t i = 0; i < to.cascades; ++i) {
             const ShadowCascade c = shadowCascade(from, i);

@@ -4,6 +4,7 @@
 
 #include "core/launch_policy.h"
 #include "shading/features.h"
+#include "shading/kept_maps.h"
 #include "shading/shade_variants.h"
 #include "shading/shading_constants.h"
 
@@ -46,10 +47,16 @@ class TapCells final : public Pass {
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
         maps_ = mapCells(plan.state);
         plan.tapCells = cl::Memory();
-        resize(cells_, device, (maps_.back().cells.samples + maps_.back().samples()) * sizeof(float));
-        plan.tapCells = cells_->memory();
+        MapsKey key("tap_cells");
+        for (const MapCells& map : maps_) {
+            key.addMap(plan.state.lights[map.light], map.cascade);
+            key.add(&map.cells, sizeof map.cells);
+        }
+        cells_.allocate(device, std::move(key),
+                        (maps_.back().cells.samples + maps_.back().samples()) * sizeof(float));
+        plan.tapCells = cells_.memory();
     }
-    size_t bytes() const override { return cells_ ? cells_->bytes() : 0; }
+    size_t bytes() const override { return cells_.bytes(); }
 
     std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
         return {shadeKey(device, plan.state, plan.variants[0])};
@@ -57,7 +64,9 @@ class TapCells final : public Pass {
 
     void enqueueAround(PassWork& work) override {
         const ShaderPlan& plan = work.plan;
-        const bool lists = plan.state.options.tileLists != PEL_TILES_NO_LIST || plan.scratch;
+        if (cells_.made()) return;
+        const bool lists =
+            (plan.state.options.tileLists != PEL_TILES_NO_LIST || plan.scratch) && !cells_.isShared();
         const uint32_t lanes = work.device.info().mathWidth;
         for (const MapCells& map : maps_) {
             const ShaderLight& light = plan.state.lights[map.light];
@@ -66,7 +75,7 @@ class TapCells final : public Pass {
                                lists ? plan.tileLists : cl::Memory(), cl_uint(map.light),
                                cl_uint(map.cascade), cl_uint(map.disk));
                 if (readsMap) one.arg(*shadowCascade(light, map.cascade).map);
-                one.arg(cells_->memory());
+                one.arg(cells_.memory());
                 work.launch(one, {{size_t(items), 1, 1}, {launchPolicy(work.device).texels, 1, 1}});
             };
             launch("tap_samples", true,
@@ -74,10 +83,11 @@ class TapCells final : public Pass {
             const uint32_t run = cellsRun(work.device);
             launch("tap_cells", false, uint64_t(map.cells.columns + run - 1) / run * map.cells.rows);
         }
+        cells_.setMade(work);
     }
 
   private:
-    Ref<Buffer> cells_;
+    KeptMaps cells_;
     std::vector<MapCells> maps_;
 };
 

@@ -4,6 +4,7 @@
 
 #include "core/launch_policy.h"
 #include "shading/features.h"
+#include "shading/kept_maps.h"
 #include "shading/launch_ranges.h"
 #include "shading/pass.h"
 #include "shading/shading_constants.h"
@@ -30,6 +31,7 @@ static cl::ProgramKey wideShadowKey(const Device& device, const ShaderPlan& plan
     defines["PEL_NORMAL_SLOT"] = int(normal);
     defines["PEL_FORMAT_SHADOW_MAP"] = map;
     defines["PEL_SHADOW_CONTENT"] = content;
+    defines["PEL_AREA_LIGHTS"] = int(hasAreaLight(plan.state));
     defines["PEL_BOUNDS"] = int(!plan.boundedMaps.empty());
     defines["PEL_THIN"] = int(makesLightFromBehind(plan.state, plan.features));
     defines["PEL_FILTERS_WIDE"] = int(std::ranges::any_of(plan.filteredLights, [&](uint32_t light) {
@@ -237,24 +239,32 @@ class ShadowBounds final : public Pass {
                  " lights' and too large together: ", floats, " bounds of their depths; ", UINT32_MAX,
                  " are the most");
         plan.bounds = cl::Memory();
+        MapsKey key("shadow_bounds");
+        for (const BoundedMap& map : plan.boundedMaps) {
+            key.addMap(plan.state.lights[plan.filteredLights[map.filtered]], map.cascade);
+            key.add(&map.offset, sizeof map.offset);
+        }
         // One vector more, since the last row's vectors reach beyond its end.
-        resize(bounds_, device, (floats + device->info().mathWidth) * sizeof(float));
-        plan.bounds = bounds_->memory();
+        bounds_.allocate(device, std::move(key), (floats + device->info().mathWidth) * sizeof(float));
+        plan.bounds = bounds_.memory();
     }
-    size_t bytes() const override { return bounds_ ? bounds_->bytes() : 0; }
+    size_t bytes() const override { return bounds_.bytes(); }
 
     std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
         return {wideShadowKey(device, plan)};
     }
 
     void enqueueAround(PassWork& work) override {
+        if (bounds_.made()) return;
         for (const BoundedMap& map : work.plan.boundedMaps) {
             const ShaderLight& light = work.plan.state.lights[work.plan.filteredLights[map.filtered]];
             cl::Launch launch(program(), "shadow_bounds", work.constants.frameMemory(), work.plan.tileLists,
                               work.plan.wideShadows, cl_uint(map.index()),
-                              *shadowCascade(light, map.cascade).map, bounds_->memory());
+                              *shadowCascade(light, map.cascade).map, bounds_.memory(),
+                              cl_uint(bounds_.isShared()));
             work.launch(launch, {{map.pairs, 1, 1}, {launchPolicy(work.device).texels, 1, 1}});
         }
+        bounds_.setMade(work);
     }
 
   private:
@@ -262,7 +272,7 @@ class ShadowBounds final : public Pass {
         return !plan.state.options.disableSkipping && !isCube(light.params) && filtersWide(plan.state, light);
     }
 
-    Ref<Buffer> bounds_;
+    KeptMaps bounds_;
 };
 
 }  // namespace

@@ -47,9 +47,9 @@ static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMat
         valid &= finitew(w);
         const Vec3w color = loadUniform3(light->color);
         const floatw cosine = dot3(n, sample.direction), arrives = sample.strength * satw(w);
-        e = add3(e, scale3(color, arrives * satw(cosine)));
+        e = add3(e, scale3(color, arrives * lambertOf(light, sample, cosine)));
 #if PEL_THIN
-        e = add3(e, scale3(mul3(color, through), arrives * satw(-cosine)));
+        e = add3(e, scale3(mul3(color, through), arrives * lambertOf(light, sample, -cosine)));
 #endif
     }
     const floatw none = NAN;

@@ -5,7 +5,7 @@
 // block; depths are multiplied by the sign with which they grow away from the light. Texels with NaN or Inf
 // cast no shadow: they count as infinitely far, and their block as level. One work-item: two blocks side by
 // side. Nothing is written if so few tiles have a material that reading the map would cost more than their
-// filters.
+// filters, unless the bounds are `kept` for later frames and other views.
 #include "lib/shading/shadow_bounds.clh"
 
 // The texels of a row of two blocks; after its end the last texel again.
@@ -58,12 +58,12 @@ static inline void storeBlock(__global float* to, uint plane, float8 least, floa
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadow_bounds(
     __global const PelShadeFrame* restrict frame, __global const uint* restrict list,
     __global const PelWideShadow* restrict cascades, uint cascade, __global uchar* restrict mapBuffer,
-    __global float* restrict bounds) {
+    __global float* restrict bounds, uint kept) {
     __global const PelWideShadow* light = cascades + cascade;
     __global const PelShadeImage* map = &light->map;
     const uint columns = boundsBlocks(map->width), plane = boundsPlane(map), pairs = (columns + 1) / 2,
                pair = get_global_id(0);
-    if (pair >= pairs * boundsBlocks(map->height) || !boundsPay(frame, list, map)) return;
+    if (pair >= pairs * boundsBlocks(map->height) || !(kept || boundsPay(frame, list, map))) return;
     const uint column = 2 * (pair % pairs), row = pair / pairs, y = row * PEL_BOUNDS_BLOCK;
     const bool falls = PEL_SHADOW_CONTENT == PEL_CONTENT_EXPONENTIAL ? light->exponent < 0.0f
                        : light->projection == PEL_MAP_PARALLEL       ? light->zPerLength < 0.0f

@@ -16,6 +16,9 @@
 #include "lib/shading/light.clh"
 #include "lib/shading/shadow_bounds.clh"
 #include "lib/shading/sharp_shadow.clh"
+#if PEL_AREA_LIGHTS
+#include "lib/shading/soft_shadow.clh"
+#endif
 
 // The tangent plane is followed down to this cosine to the light: five times the sideways distance.
 #define PEL_FLATTEST_COSINE 0.2f
@@ -71,11 +74,11 @@ static inline maskw comparable(const Receiver* r, Vec3w p, Vec3w n) {
 
 // Returns the lanes whose filter can be run. The other lanes lie behind the light or are not finite.
 static inline maskw makeFilters(__global const PelWideShadow* light, const FilterShape* shape, Vec3w p,
-                                Vec3w n, Filters* f) {
+                                Vec3w n, float flattest, Filters* f) {
     const floatw width = shape->width;
     const Receiver r = receiverInMap(light, p, n);
     const floatw zPerLength = r.zPerLength, texelU = r.texelU, texelV = r.texelV, cosine = r.cosine;
-    const floatw tilt = 1.0f / fmax(cosine, (floatw)(PEL_FLATTEST_COSINE));
+    const floatw tilt = 1.0f / fmax(cosine, (floatw)(flattest));
     // A point that faces away is behind its own body. Up to two filter widths of that do not count as shadow;
     // the curvature table darkens it.
     const floatw body = 2.0f * width * max0w(-cosine);
@@ -128,6 +131,29 @@ static inline floatw sharpInMap(__global const PelWideShadow* light, __global co
     s.perTolerance = copysign(1.0f / tolerance, r.zPerLength);
     return selectw(shown, sharpShadow(PEL_FORMAT_SHADOW_MAP, map, &light->map, &s, perExponent, held), held);
 }
+
+#if PEL_AREA_LIGHTS
+// The width of the penumbra of a light with a size; 0: not known, and of other lights. `n`: towards the
+// light.
+static inline floatw penumbraOfLight(__global const PelWideShadow* light, __global const PelShadeLight* from,
+                                     __global uchar* map, Vec3w p, Vec3w n, floatw bias, maskw on) {
+    if (!isArea(from) || !(light->maxTexels > 0.0f) || light->projection == PEL_MAP_PARALLEL || !anyw(on))
+        return (floatw)(0.0f);
+    if ((PEL_FEATURES & PEL_BIT_SHADOW_CUBE) && light->projection >= PEL_MAP_CUBE) {
+        __global const float* m = light->worldToShadow;
+        return penumbraInCube(PEL_FORMAT_SHADOW_MAP, firstTexel(map, &light->map), from, cubePosition(m, p),
+                              cubeTurned(m, n), bias, on);
+    }
+    const Receiver r = receiverInMap(light, p, n);
+    const floatw tilt = 1.0f / fmax(r.cosine, (floatw)(PEL_SHARP_FLATTEST));
+    const floatw dzdx = dot3(n, loadUniform3(light->right)) * tilt * r.texelU * r.zPerLength,
+                 dzdy = dot3(n, loadUniform3(light->down)) * tilt * r.texelV * r.zPerLength;
+    return penumbraInMap(PEL_FORMAT_SHADOW_MAP, firstTexel(map, &light->map), &light->map, from, r.x, r.y,
+                         r.z, dzdx, dzdy, 1.0f / r.texelU, 1.0f / r.texelV,
+                         bias + PEL_SHARP_TEXELS * fmax(r.texelU, r.texelV) * tilt,
+                         on & comparable(&r, p, n));
+}
+#endif
 
 // Of the materials of these ids; ids without one may lie beyond the table.
 static inline FilterShape filterShape(__global const PelWideShadow* light,
@@ -182,6 +208,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
     const WideContent content = {wideShadow->perExponent, wideShadow->minDeviation * wideShadow->minDeviation,
                                  wideShadow->bleeding};
     const uint maps = (PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) ? max(wideShadow->cascades, 1u) : 1;
+    // Filters over the penumbra of a light with a size are wide: their plane has to be followed further.
+    const float flattest = isArea(from) ? PEL_SHARP_FLATTEST : PEL_FLATTEST_COSINE;
 #if PEL_FILTERS_WIDE
     const BetweenImages images = {frame, material, position, depth};
 #endif
@@ -227,6 +255,14 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
             // Others interpolate between these, so they are the same with skipping and without it.
             if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING) || apart == 2)
                 left &= sampleLight(from, p).strength > 0.0f;
+#if PEL_AREA_LIGHTS
+            const LightSample sample = sampleLight(from, p);
+            // Where the centre is below the horizon its map shows nothing of what is before the rest.
+            if (isArea(from)) left &= dot3(n, sample.direction) > 0.0f;
+            const floatw penumbra = penumbraOfLight(wideShadow, from, PEL_LIGHT_BUFFER_OF(from->mapBuffer), p,
+                                                    n, shape.bias, left);
+            shape.width = sqrt(fma(shape.width, shape.width, penumbra * penumbra));
+#endif
             maskw sharp = left & (shape.width == 0.0f);
             float shown[PEL_WIDTH];
             storew(selectw((floatw)(1.0f), between, known), 0, shown);
@@ -240,7 +276,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                 const Vec3w q = cubePosition(m, p);
                 shape.width =
                     selectw(shape.width, sqrt(dot3(q, q)) * (8.0f / (float)wideShadow->map.width), sharp);
-                left &= makeCubeFilters(wideShadow, &shape, q, cubeTurned(m, n), PEL_FLATTEST_COSINE, &f);
+                left &= makeCubeFilters(wideShadow, &shape, q, cubeTurned(m, n), flattest, &f);
                 if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(left), texels += countw(left);
                 int wanted[PEL_WIDTH];
                 storew(left, 0, wanted);
@@ -265,7 +301,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                         if (!anyw(left)) continue;
                     }
 #if PEL_FILTERS_WIDE
-                    const maskw held = makeFilters(light, &shape, p, n, &f) & left;
+                    const maskw held = makeFilters(light, &shape, p, n, flattest, &f) & left;
                     if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(held);
                     left &= notw(held);
                     float decided[PEL_WIDTH];

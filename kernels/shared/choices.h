@@ -7,7 +7,9 @@
 #define PEL_EACH_LIGHT_TYPE(X)         \
     X(DIRECTIONAL, 0, "directional")   \
     X(POINT, 1, "point")               \
-    X(SPOT, 2, "spot")
+    X(SPOT, 2, "spot")                 \
+    X(SPHERE, 3, "sphere")             \
+    X(RECTANGLE, 4, "rectangle")
 // PelShadowProjection
 #define PEL_EACH_SHADOW_PROJECTION(X)  \
     X(PARALLEL, 0, "parallel")         \

@@ -36,6 +36,9 @@ typedef struct PelLightMap {
     float spotScale;  // 1 / (cosInner - cosOuter)
     float range2;     // length^2; FLT_MAX: no limit
     float color[3];
+    float radius;        // sphere: length
+    float halfWidth[3];  // rectangle: from its centre to the middles of two sides, length
+    float halfHeight[3];
     float radialRange;  // length per unit of depth where depth is the distance from the light; 0: it is not
     float perExponent;  // depth per log2 of a texel; exponential maps
     float texel;        // length of a texel over the homogeneous coordinate there
@@ -62,5 +65,6 @@ typedef struct PelLightMap {
 #define PEL_LIGHT_COUNTERS (PEL_DIFFUSION_COUNTERS + 3)
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(PelLightMap) == 4 * (32 + 1 + 3 + 3 + 3 + 3 + 3 + 8 + 8) + 32 + PEL_LIGHT_LEVELS * 16);
+static_assert(sizeof(PelLightMap) ==
+              4 * (32 + 1 + 3 + 3 + 3 + 3 + 3 + 7 + 8 + 8) + 32 + PEL_LIGHT_LEVELS * 16);
 #endif

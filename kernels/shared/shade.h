@@ -159,6 +159,9 @@ typedef struct PelShadeLight {
     float perExponent;   // depth per log2 of a texel; exponential maps
     PelShadeCascade cascade[PEL_CASCADES];
     PelTapCells cells[PEL_TAP_DISKS];  // of the map above, unless that is a cascade
+    float radius;                      // sphere: length
+    float halfWidth[3];                // rectangle: from its centre to the middles of two sides, length
+    float halfHeight[3];
 } PelShadeLight;
 
 // Counters of one execution, in a buffer of their own.
@@ -184,5 +187,5 @@ static_assert(sizeof(PelShadeMaterial) == 4 * 44 + 3 * sizeof(PelShadeLut));
 static_assert(sizeof(PelTapCells) == 24);
 static_assert(sizeof(PelShadeCascade) == 4 * (16 + 4) + 32 + PEL_TAP_DISKS * sizeof(PelTapCells));
 static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64 + 8 + PEL_CASCADES * sizeof(PelShadeCascade) +
-                                           PEL_TAP_DISKS * sizeof(PelTapCells));
+                                           PEL_TAP_DISKS * sizeof(PelTapCells) + 4 * 7);
 #endif

@@ -84,6 +84,15 @@ TEST(CppInterface, ShortFormsGiveTheSameBits) {
     EXPECT_EQ(lamp.type, PEL_LIGHT_POINT);
     EXPECT_EQ(lamp.position[2], 3);
     EXPECT_EQ(lamp.color[0], 4);
+    const PelLight bulb = sphereLight({1, 2, 3}, 7, {4, 5, 6});
+    EXPECT_EQ(bulb.type, PEL_LIGHT_SPHERE);
+    EXPECT_EQ(bulb.radius, 7);
+    EXPECT_EQ(bulb.position[0], 1);
+    const PelLight box = rectangleLight({1, 2, 3}, {7, 0, 0}, {0, 8, 0}, {4, 5, 6});
+    EXPECT_EQ(box.type, PEL_LIGHT_RECTANGLE);
+    EXPECT_EQ(box.halfWidth[0], 7);
+    EXPECT_EQ(box.halfHeight[1], 8);
+    EXPECT_EQ(box.color[2], 6);
 }
 
 TEST(CppInterface, EveryMessageNamesItsImage) {

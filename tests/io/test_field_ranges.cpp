@@ -125,6 +125,8 @@ TEST_F(FieldRanges, TheLibraryChecksLightsAndOptions) {
     PEL_EACH_POSITIONAL_LIGHT_FIELD(CHECK)
     PEL_EACH_SPOT_LIGHT_FIELD(CHECK)
     PEL_EACH_SHADOW_MAP_FIELD(CHECK)
+    spot.type = PEL_LIGHT_SPHERE;
+    PEL_EACH_SPHERE_LIGHT_FIELD(CHECK)
 #undef CHECK
 #define CHECK(type, name, ...)                                                                            \
     if (isChecked(#type))                                                                                 \

@@ -123,6 +123,8 @@ TEST_F(SceneFileTest, WrittenIsRead) {
         s.type = PEL_LIGHT_SPOT;
         PEL_EACH_POSITIONAL_LIGHT_FIELD(CHANGE)
         PEL_EACH_SPOT_LIGHT_FIELD(CHANGE)
+        PEL_EACH_SPHERE_LIGHT_FIELD(CHANGE)
+        PEL_EACH_RECTANGLE_LIGHT_FIELD(CHANGE)
         std::copy_n(pelLightDefaults().spotDirection, 3, s.spotDirection);  // made unit
     };
     const auto changeMaterial = [](PelMaterial& s) {
@@ -226,6 +228,8 @@ TEST_F(SceneFileTest, MistakesNameKeyAndWhatIsRight) {
          "'preset' in [[shadow_lut]] cannot stand beside 'file'"},
         {"to_light = [0.6, 0.3, 0.742]", "", "a directional light needs it"},
         {"\"directional\"", "\"point\"", "'position' in [[light]] is missing"},
+        {"\"directional\"", "\"sphere\"\nposition = [0, 0, 9]", "'radius' in [[light]] is missing"},
+        {"\"directional\"", "\"rectangle\"\nposition = [0, 0, 9]", "'half_width' in [[light]] is missing"},
         {"normal_shading", "normal_blurred", "'normal_shading' in [channels] is missing"},
         {"curvature_lut = \"skin\"", "curvature_lut = \"wax\"",
          "asks for the curvature_lut 'wax'; there is only: skin"},

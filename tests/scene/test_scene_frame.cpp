@@ -263,6 +263,8 @@ std::vector<End<PelLight>> endsOfLights() {
     PEL_EACH_DIRECTIONAL_LIGHT_FIELD(AT_ENDS)
     PEL_EACH_POSITIONAL_LIGHT_FIELD(AT_ENDS)
     PEL_EACH_SPOT_LIGHT_FIELD(AT_ENDS)
+    PEL_EACH_SPHERE_LIGHT_FIELD(AT_ENDS)
+    PEL_EACH_RECTANGLE_LIGHT_FIELD(AT_ENDS)
     PEL_EACH_SHADOW_MAP_FIELD(AT_ENDS)
     return all;
 }
@@ -336,7 +338,9 @@ TEST_F(FieldBounds, OfLights) {
     const float seen[16] = {0.5f, 0, -0.5f, 30, 0, 0.5f, -0.5f, 30,
                             0,    0, -1,    59, 0, 0,    -1,    60};  // from z = 60
     std::copy_n(seen, 16, spot.lights[0].light.worldToShadow);
-    for (io::SceneFile s : {sun, moments, spot}) {
+    io::SceneFile sphere = spot;
+    sphere.lights[0].light.type = PEL_LIGHT_SPHERE, sphere.lights[0].light.radius = 1;
+    for (io::SceneFile s : {sun, moments, spot, sphere}) {
         std::fill_n(s.materials[0].material.deepScatterColor, 3, 0.5f);
         expectBounded<PelLight>(
             s, endsOfLights(), [](io::SceneFile & f) -> auto& { return f.lights[0].light; });

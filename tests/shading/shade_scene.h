@@ -1,5 +1,6 @@
 // Random frames for the shading pass, the device's answer to them, and the oracle's.
 #pragma once
+#include "reference/area_light.h"
 #include "shade_frame.h"
 
 namespace shade_test {
@@ -188,6 +189,24 @@ inline reference::PixelLight truthLight(const Frame& f, const PelMaterial& mater
     return out;
 }
 
+// The light, or the parts of one with a size.
+inline std::vector<reference::PixelLight> truthLights(const Frame& f, const PelMaterial& material,
+                                                      const Light& light, size_t i) {
+    const reference::PixelLight whole = truthLight(f, material, light, i);
+    const PelLight& l = light.params;
+    if (l.type < PEL_LIGHT_SPHERE) return {whole};
+    reference::AreaLamp lamp{vectorOf(l.position), vectorOf(l.color), l.radius, {}, {}};
+    if (l.type == PEL_LIGHT_RECTANGLE)
+        lamp.halfWidth = vectorOf(l.halfWidth), lamp.halfHeight = vectorOf(l.halfHeight);
+    constexpr int partsPerSide = 32;
+    auto parts = reference::areaLights(lamp, f.slots[PEL_SLOT_POSITION].vec(i), partsPerSide);
+    for (reference::PixelLight& part : parts) {
+        part.wideShadow = whole.wideShadow;
+        part.hasThickness = whole.hasThickness, part.thickness = whole.thickness;
+    }
+    return parts;
+}
+
 // Background pixels give nothing.
 inline reference::Shaded truth(const Frame& f, const Tables& tables, size_t i) {
     const auto& s = f.slots;
@@ -232,7 +251,10 @@ inline reference::Shaded truth(const Frame& f, const Tables& tables, size_t i) {
     pixel.hasThickness = !s[PEL_SLOT_THICKNESS].values.empty();
     pixel.thickness = value(PEL_SLOT_THICKNESS, 0);
     std::vector<reference::PixelLight> lights;
-    for (const Light& light : f.lights) lights.push_back(truthLight(f, m, light, i));
+    for (const Light& light : f.lights) {
+        const auto parts = truthLights(f, m, light, i);
+        lights.insert(lights.end(), parts.begin(), parts.end());
+    }
     reference::Ambient ambient{vectorOf(f.ambient.constant), {}};
     if (f.cube.size) ambient.cube = &f.cube;
     for (int k = 0; k < 9; ++k) ambient.harmonics[k] = vectorOf(f.ambient.sh[k]);

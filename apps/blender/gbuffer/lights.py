@@ -12,15 +12,15 @@ from .passes import look, render_exr
 
 class Lamp:
     """A light, and what its shadow map says. Blender's watts spread over 4 pi: a point light of P watts
-    gives irradiance P / (4 pi d^2), so that irradiance / pi at distance 1 is P / (4 pi^2). A sun's strength
-    is irradiance itself."""
+    gives irradiance P / (4 pi d^2), so that irradiance / pi at distance 1 is P / (4 pi^2). An area light's
+    radiance is P / (pi A), which gives P / pi^2. A sun's strength is irradiance itself."""
 
     def __init__(self, name, data, matrix):
         self.name, self.kind = name, data.type
         self.matrix = matrix
         self.position = matrix.translation.copy()
         self.forward = (matrix.to_3x3() @ Vector((0, 0, -1))).normalized()
-        share = 1 / math.pi if data.type == "SUN" else 1 / (4 * math.pi**2)
+        share = {"SUN": 1 / math.pi, "AREA": 1 / math.pi**2}.get(data.type, 1 / (4 * math.pi**2))
         share *= data.energy * 2 ** getattr(data, "exposure", 0)  # Blender 4.5 and newer
         warmth = data.temperature_color if getattr(data, "use_temperature", False) else (1, 1, 1)
         self.color = [c * w * share for c, w in zip(data.color, warmth)]
@@ -28,19 +28,22 @@ class Lamp:
             self.angle = data.spot_size
             self.cos_outer = math.cos(data.spot_size / 2)
             self.cos_inner = self.cos_outer + (1 - self.cos_outer) * data.spot_blend
+        if data.type == "AREA":
+            # Of disks and ellipses the rectangle of the same area; lights look along -z.
+            share = math.sqrt(math.pi) / 4 if data.shape in ("DISK", "ELLIPSE") else 1 / 2
+            height = data.size_y if data.shape in ("RECTANGLE", "ELLIPSE") else data.size
+            self.half_width = matrix.to_3x3() @ Vector((share * data.size, 0, 0))
+            self.half_height = matrix.to_3x3() @ Vector((0, -share * height, 0))
         self.map_file = None
 
 
 def gather(source, scene, bounds):
-    """The source scene's suns, points and spots; without any, a sun from the side. Copies without size go to
-    `scene`."""
+    """The source scene's lights; without any, a sun from the side. Copies go to `scene`, suns, points and
+    spots without their size."""
     lamps = []
     for instance in bpy.context.evaluated_depsgraph_get().object_instances:
         thing = instance.object
         if thing.type != "LIGHT" or thing.original.hide_render or not thing.data.energy > 0:
-            continue
-        if thing.data.type == "AREA":
-            warn(f"light '{thing.name}' is an area light, which has no counterpart; it is left out")
             continue
         add(scene, lamps, thing.name, thing.data.copy(), instance.matrix_world.copy())
     if not lamps:
@@ -56,7 +59,7 @@ def gather(source, scene, bounds):
 def add(scene, lamps, name, data, matrix):
     if data.type == "SUN":
         data.angle = 0
-    else:
+    elif data.type != "AREA":
         data.shadow_soft_size = 0
     data.use_nodes = False
     thing = bpy.data.objects.new(f"pellucid {name}", data)
@@ -77,7 +80,8 @@ def file_name(name, taken):
 
 
 def render_shadow_map(scene, lamp, bounds, options, taken):
-    """Depths seen from a sun or spot, 0 near to 1 far and where nothing is. `taken`: other lights' files."""
+    """Depths seen from a sun, a spot or the centre of an area, 0 near to 1 far and where nothing is.
+    `taken`: other lights' files."""
     if lamp.kind == "POINT":
         warn(f"light '{lamp.name}' is a point light: no shadow map is rendered for it")
         return
@@ -108,6 +112,10 @@ def render_shadow_map(scene, lamp, bounds, options, taken):
         far = max(1.01 * (max(along) - eye), 1e-3 * bounds.radius)
         near = min(max(0.99 * (min(along) - eye), 1e-3 * far), 0.9 * far)
         camera.matrix_world = Matrix.Translation(lamp.position) @ rotation.to_4x4()
+        if lamp.kind == "AREA":  # all that is before it
+            aside = [max(abs((c - lamp.position).dot(right)), abs((c - lamp.position).dot(up))) /
+                     max((c - lamp.position).dot(lamp.forward), near) for c in bounds.corners()]
+            lamp.angle = 2 * math.atan(1.02 * max(aside))
         camera.data.angle = min(lamp.angle, math.radians(170))
         camera.data.clip_start, camera.data.clip_end = near, far
         lamp.extent = 2 * math.tan(camera.data.angle / 2)  # of the map at distance 1

@@ -84,7 +84,11 @@ def write(path, unit, camera, lamps, sky, materials, eyes, curvature, fallback):
         if lamp.kind == "SUN":
             lines += ['type = "directional"', "to_light = " + value(tuple(-lamp.forward))]
         else:
-            lines += [f'type = "{lamp.kind.lower()}"', "position = " + value(tuple(lamp.position))]
+            kind = "rectangle" if lamp.kind == "AREA" else lamp.kind.lower()
+            lines += [f'type = "{kind}"', "position = " + value(tuple(lamp.position))]
+        if lamp.kind == "AREA":
+            lines += ["half_width = " + value(tuple(lamp.half_width)),
+                      "half_height = " + value(tuple(lamp.half_height))]
         if lamp.kind == "SPOT":
             lines += ["spot_direction = " + value(tuple(lamp.forward)),
                       "spot_cos_inner = " + value(lamp.cos_inner),

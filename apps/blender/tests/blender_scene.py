@@ -85,6 +85,8 @@ lamp.location = (2.5, -3, 2)
 lamp.rotation_euler = (-lamp.location).to_track_quat("-Z", "Y").to_euler()
 if light == "SPOT":
     data.spot_size, data.spot_blend = math.radians(50), 0.4
+if light == "AREA":
+    data.shape, data.size, data.size_y, lamp.scale = "RECTANGLE", 1.5, 0.5, (1, 2, 1)
 scene.collection.objects.link(lamp)
 
 camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))

@@ -160,6 +160,37 @@ TEST_F(BlenderScript, ABlendFileGivesBlendersLambertPicture) {
     }
 }
 
+// Blender takes one point of the light for each pixel: single pixels differ, sums do not.
+TEST_F(BlenderScript, AnAreaLightIsARectangle) {
+    ASSERT_EQ(render("PELLUCID_SCENE='" + path("scene.blend") + " AREA'", "-o '" + path("out") + "'",
+                     "blender_scene.py"),
+              0)
+        << said();
+    io::SceneFile scene = io::readScene(path("out/scene.toml"));
+    ASSERT_EQ(scene.lights.size(), 1u);
+    const PelLight& l = scene.lights[0].light;
+    EXPECT_EQ(l.type, PEL_LIGHT_RECTANGLE);
+    EXPECT_NEAR(std::hypot(l.halfWidth[0], l.halfWidth[1], l.halfWidth[2]), 0.75f, 1e-5f);
+    EXPECT_NEAR(std::hypot(l.halfHeight[0], l.halfHeight[1], l.halfHeight[2]), 0.5f, 1e-5f);
+    scene.ambient = pelAmbientDefaults();
+    for (io::SceneMaterial& m : scene.materials) m.material.scattering = PEL_SCATTERING_NONE;
+    io::writeScene(path("lambert.toml"), scene);
+    const std::vector<float> out = shade(path("out/gbuffer.exr"), path("lambert.toml"));
+    const io::Image g = io::readImage(path("out/gbuffer.exr"));
+    const std::vector<float> blender = rgb(g, "Combined.R", "Combined.G", "Combined.B"),
+                             id = blender::pass(g, "Material Index", "IndexMA");
+    double ours = 0, theirs = 0, both = 0, squares = 0;
+    for (size_t i = 0; i < id.size(); ++i)
+        if (id[i] == 7) {
+            ours += out[3 * i], theirs += blender[3 * i];
+            both += double(out[3 * i]) * blender[3 * i], squares += double(out[3 * i]) * out[3 * i];
+        }
+    std::printf("sum over Blender's %.3f, projection %.3f\n", ours / theirs, both / squares);
+    EXPECT_GT(theirs, 100);
+    EXPECT_NEAR(ours / theirs, 1, 0.02);
+    EXPECT_NEAR(both / squares, 1, 0.02);
+}
+
 TEST_F(BlenderScript, AMeshFileScatters) {
     // A ball of radius 1 with y up, its north pole cut off so that axes can be told apart.
     std::string off;

@@ -190,3 +190,19 @@ def test_history(device, view):
     assert error[1] < 0.6 * error[0]
     with pytest.raises(pel.PellucidError, match="historyWeight"):
         frames(1, 8, history_weight=1)
+
+
+def test_area_lights(device, view, tolerance):
+    # Over the ball of radius 10, far enough to be above all horizons that it lights.
+    def lit(**light):
+        light = pel.Light(position=(0, 0, 1000), color=(1e6, 1e6, 1e6), **light)
+        return shaded(device, view, lambda s: s.set_lights(light), position=view.position)
+
+    point = lit(type="point")
+    assert np.abs(lit(type="sphere", radius=0) - point).max() < tolerance["shadeTerm"]
+    square = lit(type=pel.LightType.RECTANGLE, half_width=(1, 0, 0), half_height=(0, -1, 0))
+    assert np.abs(square - point).max() < 1e-3
+    assert lit(type="rectangle", half_width=(1, 0, 0), half_height=(0, 1, 0)).max() == 0  # from behind
+    assert (lit(type="sphere", radius=500) - point).max() > 0.02  # beyond the terminator
+    with pytest.raises(pel.PellucidError, match="right angles"):
+        lit(type="rectangle", half_width=(1, 0, 0), half_height=(1, 0, 0))

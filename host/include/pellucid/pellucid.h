@@ -914,9 +914,15 @@ typedef enum PelLightSlot {
     PEL_LIGHT_SLOT_COUNT = 5
 } PelLightSlot;
 
-typedef enum PelLightType { PEL_LIGHT_DIRECTIONAL = 0, PEL_LIGHT_POINT = 1, PEL_LIGHT_SPOT = 2 } PelLightType;
+typedef enum PelLightType {
+    PEL_LIGHT_DIRECTIONAL = 0,
+    PEL_LIGHT_POINT = 1,
+    PEL_LIGHT_SPOT = 2,
+    PEL_LIGHT_SPHERE = 3,
+    PEL_LIGHT_RECTANGLE = 4 /* shines from one side, along halfWidth x halfHeight */
+} PelLightType;
 
-/* The cubes are of point and spot lights: one image of six square faces, one below the other, +x -x +y -y +z
+/* The cubes are of lights with a position: one image of six square faces, one below the other, +x -x +y -y +z
  * -z, each laid out as in OpenGL, Vulkan and Direct3D, row 0 first. PelLight.worldToShadow then maps world to
  * the cube's own space: a rotation, with the light at the origin. Taps and filters cross the edges of faces
  * (docs/guide/shading.md). */
@@ -941,12 +947,15 @@ typedef struct PelLight {
     uint32_t structSize;
     PelLightType type;
     float toLight[3];       /* directional: unit vector from the surface to the light */
-    float position[3];      /* point, spot: world */
+    float position[3];      /* all but directional: world; of a sphere or rectangle the centre */
     float spotDirection[3]; /* spot: unit vector in the direction of the light's axis */
     float spotCosInner;     /* cosine of the angle from spotDirection up to which the spot is fully bright */
     float spotCosOuter;     /* and from which it is dark; between them a smoothstep of the cosine */
-    float color[3]; /* directional: irradiance / pi at normal incidence; point, spot: that at distance 1 */
-    float range;    /* point, spot: no light beyond it; 0: no limit */
+    /* directional: irradiance / pi at normal incidence; point, spot: that at distance 1; sphere, rectangle:
+     * that at distance 1 of a point as bright, along the rectangle's axis: radiance * radius^2, radiance *
+     * area / pi */
+    float color[3];
+    float range; /* all but directional: no light beyond it; 0: no limit */
     /* The rest describes the shadow map, if PEL_LIGHT_SHADOW_MAP is set. */
     /* to homogeneous (u, v, z): u, v in [0, 1] over the map, row 0 at v = 0; z as in the map */
     float worldToShadow[16];
@@ -984,6 +993,13 @@ typedef struct PelLight {
     /* PEL_SHADOW_CONTENT_MOMENTS: 0 to below 1, share of light that counts as none, against light that leaks
      * through overlapping shadows; 0.1 */
     float shadowBleeding;
+    float radius; /* sphere: length; 0: a point */
+    /* rectangle: from the centre to the middle of a side, and of the next one, at right angles; lengths */
+    float halfWidth[3];
+    float halfHeight[3];
+    /* 0: the light's maps may change from frame to frame. Else a number that the caller changes when they do:
+     * what is computed from maps alone is kept until then, and shared by the shaders of a device */
+    uint32_t shadowMapVersion;
 } PelLight;
 
 typedef enum PelSpecularModel {

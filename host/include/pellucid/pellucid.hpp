@@ -454,6 +454,20 @@ inline PelLight pointLight(const Float3& position, const Float3& color) {
     for (size_t i = 0; i < 3; ++i) light.position[i] = position[i], light.color[i] = color[i];
     return light;
 }
+inline PelLight sphereLight(const Float3& center, float radius, const Float3& color) {
+    PelLight light = pointLight(center, color);
+    light.type = PEL_LIGHT_SPHERE;
+    light.radius = radius;
+    return light;
+}
+// It shines along halfWidth x halfHeight.
+inline PelLight rectangleLight(const Float3& center, const Float3& halfWidth, const Float3& halfHeight,
+                               const Float3& color) {
+    PelLight light = pointLight(center, color);
+    light.type = PEL_LIGHT_RECTANGLE;
+    for (size_t i = 0; i < 3; ++i) light.halfWidth[i] = halfWidth[i], light.halfHeight[i] = halfHeight[i];
+    return light;
+}
 inline PelCamera cameraAt(const Float3& position) {
     PelCamera camera = pelCameraDefaults();
     for (size_t i = 0; i < 3; ++i) camera.position[i] = position[i];

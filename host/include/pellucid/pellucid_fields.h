@@ -78,16 +78,17 @@
 
 #define PEL_EACH_LIGHT_FIELD(X) \
     X(COLOR, color, 1, 0, PEL_HUGE, PEL_NONE, "", "color", PEL_NO_SLIDER, \
-      "RGB. Directional: irradiance / π at normal incidence; point, spot: that at distance 1")
-/* Of directional lights, of point and spot lights, of spot lights; checked for those alone. */
+      "RGB. Directional: irradiance / π at normal incidence; others: that at distance 1, of a rectangle " \
+      "along its axis")
+/* Of directional lights, of all others, of spots, spheres and rectangles; checked for those alone. */
 #define PEL_EACH_DIRECTIONAL_LIGHT_FIELD(X) \
     X(VECTOR, toLight, (0, 0, 1), -PEL_FINITE, PEL_FINITE, PEL_NONE, "", "to_light", PEL_NO_SLIDER, \
       "directional: from the surface to the light; files: made unit")
 #define PEL_EACH_POSITIONAL_LIGHT_FIELD(X) \
     X(VECTOR, position, (0, 0, 0), -PEL_FINITE, PEL_FINITE, PEL_NONE, "length", "position", PEL_NO_SLIDER, \
-      "point, spot: world") \
+      "all but directional: world; of a sphere or rectangle the centre") \
     X(FLOAT, range, 0, 0, PEL_HUGE, PEL_NONE, "length", "range", PEL_NO_SLIDER, \
-      "point, spot: there is no light beyond; 0: no limit")
+      "all but directional: there is no light beyond; 0: no limit")
 #define PEL_EACH_SPOT_LIGHT_FIELD(X) \
     X(VECTOR, spotDirection, (0, 0, -1), -PEL_FINITE, PEL_FINITE, PEL_NONE, "", "spot_direction", \
       PEL_NO_SLIDER, \
@@ -96,6 +97,16 @@
       "cosine of the angle up to which a spot is fully bright") \
     X(FLOAT, spotCosOuter, 0.8f, -1, 1, PEL_NONE, "", "spot_cos_outer", PEL_NO_SLIDER, \
       "cosine of the angle from which a spot is dark")
+#define PEL_EACH_SPHERE_LIGHT_FIELD(X) \
+    X(FLOAT, radius, 0, 0, PEL_HUGE, PEL_NONE, "length", "radius", PEL_NO_SLIDER, "sphere; 0: a point")
+#define PEL_EACH_RECTANGLE_LIGHT_FIELD(X) \
+    X(VECTOR, halfWidth, (1, 0, 0), -PEL_FINITE, PEL_FINITE, PEL_NONE, "length", "half_width", \
+      PEL_NO_SLIDER, \
+      "rectangle: from its centre to the middle of a side") \
+    X(VECTOR, halfHeight, (0, 1, 0), -PEL_FINITE, PEL_FINITE, PEL_NONE, "length", "half_height", \
+      PEL_NO_SLIDER, \
+      "rectangle: to the middle of the next side, at a right angle; it shines along `half_width` × " \
+      "`half_height`")
 
 /* Of PelLight: its shadow map. */
 #define PEL_EACH_SHADOW_MAP_FIELD(X) \

@@ -57,8 +57,11 @@ void readLight(TomlReader& reader, SceneFile& scene) {
         if (!reader.has(key)) reader.fail(key, std::string("is missing; a ") + type + " light needs it");
     };
     if (light.light.type == PEL_LIGHT_DIRECTIONAL) needs("to_light", "directional");
-    if (light.light.type != PEL_LIGHT_DIRECTIONAL) needs("position", "point or spot");
+    if (light.light.type != PEL_LIGHT_DIRECTIONAL) needs("position", "positional");
     if (light.light.type == PEL_LIGHT_SPOT) needs("spot_direction", "spot");
+    if (light.light.type == PEL_LIGHT_SPHERE) needs("radius", "sphere");
+    if (light.light.type == PEL_LIGHT_RECTANGLE) needs("half_width", "rectangle");
+    if (light.light.type == PEL_LIGHT_RECTANGLE) needs("half_height", "rectangle");
     if (light.light.type == PEL_LIGHT_DIRECTIONAL) makeUnit(reader, "to_light", light.light.toLight);
     if (light.light.type == PEL_LIGHT_SPOT) makeUnit(reader, "spot_direction", light.light.spotDirection);
     if (reader.has("shadow_map") && light.shadowMapFile.empty())

@@ -108,6 +108,8 @@ void lightKeys(Visitor& v, Light& l) {
     PEL_EACH_DIRECTIONAL_LIGHT_FIELD(PELLUCID_FIELD_KEY)
     PEL_EACH_POSITIONAL_LIGHT_FIELD(PELLUCID_FIELD_KEY)
     PEL_EACH_SPOT_LIGHT_FIELD(PELLUCID_FIELD_KEY)
+    PEL_EACH_SPHERE_LIGHT_FIELD(PELLUCID_FIELD_KEY)
+    PEL_EACH_RECTANGLE_LIGHT_FIELD(PELLUCID_FIELD_KEY)
     PEL_EACH_LIGHT_FIELD(PELLUCID_FIELD_KEY)
     v.text("wide_shadow", l.wideShadow);
     v.table("shadow_map", !l.shadowMapFile.empty(), [&](auto& inner) { shadowMapKeys(inner, l); });

@@ -1,0 +1,317 @@
+// Spheres and rectangles as lights, against many small lights in double precision; what they are equal to in
+// the limit; and sizes that are none.
+#include "scattering_frame.h"
+#include "shader_ready.h"
+#include "test.h"
+
+using namespace shade_test;
+
+namespace {
+
+constexpr PelLightType sizes[] = {PEL_LIGHT_SPHERE, PEL_LIGHT_RECTANGLE};
+
+const char* nameOf(PelLightType type) {
+    return type == PEL_LIGHT_SPHERE ? "sphere" : "rectangle";
+}
+
+// Turns lights into spheres or rectangles that look to the origin. `size`: of a half side, or the radius,
+// over the distance to the origin, at most.
+void makeArea(Frame& f, PelLightType type, uint32_t seed, float size) {
+    Random random(seed);
+    for (Light& light : f.lights) {
+        PelLight& l = light.params;
+        l.type = type;
+        l.range = 0;
+        const Vec3 to = vectorOf(l.position);
+        const double distance = length(to);
+        for (float& c : l.color) c = 20000 * random.uniform(0.2f, 1);
+        l.radius = float(distance) * size * random.uniform(0.3f, 1);
+        // Along -position, and a little aside.
+        float tilt[3];
+        random.unit(tilt);
+        const Vec3 axis = reference::normalized(-1 / distance * to + 0.5 * vectorOf(tilt));
+        const Vec3 u = reference::normalized(
+                       cross(axis, std::abs(axis.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0})),
+                   v = cross(axis, u);
+        const double width = distance * size * random.uniform(0.3f, 1),
+                     height = distance * size * random.uniform(0.3f, 1);
+        for (int c = 0; c < 3; ++c)
+            l.halfWidth[c] = float(width * u[c]), l.halfHeight[c] = float(height * v[c]);
+    }
+}
+
+// Without shadows, ambient light and deep scatter.
+Frame areaFrame(uint32_t seed, PelLightType type, float size, uint32_t lights = 1) {
+    Frame f = randomFrame(seed, 64, 24, lights);
+    f.ambient = pelAmbientDefaults();
+    f.slots[PEL_SLOT_CURVATURE] = {};
+    f.shadowLut = false;
+    for (Light& light : f.lights) light.wide = light.map = {};
+    for (auto& [id, m] : f.materials) {
+        m.specular = 0;
+        std::fill_n(m.deepScatterColor, 3, 0.0f);
+    }
+    makeArea(f, type, seed, size);
+    return f;
+}
+
+// Relative to the brightest pixel, to the RMS of all, and to their sum.
+struct Errors {
+    double worst = 0, rms = 0, sum = 0;
+};
+
+Errors errorsOf(const Frame& f) {
+    const std::vector<float> result = shade(f);
+    Errors e;
+    double brightest = 0, square = 0, total = 0;
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        const Rgb truth = shade_test::truth(f, tables(), i).sum();
+        for (int c = 0; c < 3; ++c) {
+            const double difference = result[3 * i + c] - truth[c];
+            e.worst = std::max(e.worst, std::abs(difference));
+            e.rms += difference * difference, e.sum += difference;
+            brightest = std::max(brightest, truth[c]);
+            square += truth[c] * truth[c], total += truth[c];
+        }
+    }
+    e.worst /= brightest, e.rms = std::sqrt(e.rms / square), e.sum /= total;
+    std::printf("worst %.1e, RMS %.1e, sum %+.1e\n", e.worst, e.rms, e.sum);
+    return e;
+}
+
+// Normals by which most pixels show the light: halfway between it and the camera, and up to `aside` off.
+void showHighlights(Frame& f, float aside) {
+    Random random(7);
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        const Vec3 p = f.slots[PEL_SLOT_POSITION].vec(i);
+        float tilt[3];
+        random.unit(tilt);
+        const Vec3 half = reference::normalized(vectorOf(f.lights[0].params.position) - p) +
+                          reference::normalized(vectorOf(f.camera.position) - p);
+        const Vec3 n = reference::normalized(reference::normalized(half) +
+                                             double(random.uniform(0, aside)) * vectorOf(tilt));
+        for (int c = 0; c < 3; ++c) f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i + size_t(c)] = float(n[c]);
+    }
+}
+
+struct Size {
+    PelLightType type;
+    float size;  // of makeArea
+    double rms;
+};
+void PrintTo(const Size& s, std::ostream* out) {
+    *out << nameOf(s.type) << ' ' << s.size;
+}
+
+class AreaSizes : public testing::TestWithParam<Size> {};
+
+TEST_P(AreaSizes, DiffuseLightAgainstManySmallLights) {
+    const Errors e = errorsOf(areaFrame(3, GetParam().type, GetParam().size, 2));
+    const bool sphere = GetParam().type == PEL_LIGHT_SPHERE;
+    EXPECT_LE(e.rms, sphere ? tolerance::areaSphere : tolerance::areaRectangle);
+    EXPECT_LE(e.worst, 4 * (sphere ? tolerance::areaSphere : tolerance::areaRectangle));
+}
+
+TEST_P(AreaSizes, TablesAgainstManySmallLights) {
+    Frame f = areaFrame(4, GetParam().type, GetParam().size);
+    f.slots[PEL_SLOT_CURVATURE] = randomFrame(4, 64, 24, 1).slots[PEL_SLOT_CURVATURE];
+    const Errors e = errorsOf(f);
+    EXPECT_LE(e.rms, tolerance::areaTables * GetParam().size);
+    EXPECT_LE(std::abs(e.sum), 0.2 * tolerance::areaTables * GetParam().size);
+}
+
+TEST_P(AreaSizes, SpecularLightAgainstManySmallLights) {
+    for (const PelSpecularModel model : {PEL_SPECULAR_KSK, PEL_SPECULAR_GGX}) {
+        Frame f = areaFrame(5, GetParam().type, GetParam().size);
+        f.slots[PEL_SLOT_ALBEDO].values.assign(f.pixels() * 3, 0.0f);
+        for (auto& [id, m] : f.materials) m.specular = 1, m.specularModel = model;
+        showHighlights(f, GetParam().size + 0.3f);
+        const Errors e = errorsOf(f);
+        EXPECT_LE(e.rms, GetParam().rms);
+        EXPECT_LE(std::abs(e.sum), 0.7 * GetParam().rms);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, AreaSizes,
+                         testing::Values(Size{PEL_LIGHT_SPHERE, 0.05f, tolerance::areaHighlightSmall},
+                                         Size{PEL_LIGHT_SPHERE, 0.3f, tolerance::areaHighlight},
+                                         Size{PEL_LIGHT_SPHERE, 0.6f, tolerance::areaHighlightLarge},
+                                         Size{PEL_LIGHT_RECTANGLE, 0.05f, tolerance::areaHighlightSmall},
+                                         Size{PEL_LIGHT_RECTANGLE, 0.3f, tolerance::areaHighlight},
+                                         Size{PEL_LIGHT_RECTANGLE, 0.6f, tolerance::areaHighlightLarge}));
+
+double largestDifference(const std::vector<float>& a, const std::vector<float>& b, double scale = 1) {
+    double largest = 0;
+    for (size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(scale * b[i] - double(a[i])));
+    return largest;
+}
+
+TEST(AreaLights, OfNoSizeArePoints) {
+    Frame f = randomFrame(6, 64, 24, 2);
+    for (Light& light : f.lights) light.params.type = PEL_LIGHT_SPHERE, light.params.radius = 0;
+    const auto spheres = shade(f);
+    for (Light& light : f.lights) light.params.type = PEL_LIGHT_POINT;
+    EXPECT_LE(largestDifference(spheres, shade(f)), tolerance::shadeTerm);
+}
+
+// From 10^5 lengths away rectangles are points whose light falls by the cosine to their axis.
+TEST(AreaLights, RectanglesFarAwayArePoints) {
+    Frame f = areaFrame(6, PEL_LIGHT_RECTANGLE, 0.05f);
+    PelLight& l = f.lights[0].params;
+    double along = 0;
+    const Vec3 axis = reference::normalized(cross(vectorOf(l.halfWidth), vectorOf(l.halfHeight)));
+    for (int c = 0; c < 3; ++c) {
+        along -= l.position[c] * axis[c] / 300;
+        l.position[c] *= 1e5f / 300, l.color[c] = 1e10f;
+    }
+    ASSERT_GT(along, 0.3);
+    const auto rectangle = shade(f);
+    l.type = PEL_LIGHT_POINT;
+    EXPECT_LE(largestDifference(rectangle, shade(f), along), 3e-4);  // the frame's extent over the distance
+}
+
+// Irradiance / pi over all normals at one point is radiance times the solid angle, over 4 pi, in the mean.
+TEST(AreaLights, LightFromAllRoundIsThatOfTheSolidAngle) {
+    for (const PelLightType type : sizes)
+        for (const float size : {0.01f, 0.5f, 3.0f}) {
+            SCOPED_TRACE(nameOf(type));
+            Frame f = areaFrame(6, type, 0.1f);
+            f.slots[PEL_SLOT_MATERIAL] = f.slots[PEL_SLOT_ALBEDO] = {};
+            std::fill_n(f.materials[1].albedo, 3, 1.0f);
+            PelLight& l = f.lights[0].params;
+            const float zero[3] = {0, 0, 0}, width[3] = {size, 0, 0}, height[3] = {0, -0.5f * size, 0};
+            std::copy_n(zero, 3, l.position);
+            l.position[2] = type == PEL_LIGHT_SPHERE ? 1.01f * std::max(size, 1.0f) : 1.0f;
+            std::copy_n(width, 3, l.halfWidth), std::copy_n(height, 3, l.halfHeight);
+            l.radius = size;
+            std::fill_n(l.color, 3, 1.0f);
+            std::fill_n(f.slots[PEL_SLOT_POSITION].values.begin(), 3 * f.pixels(), 0.0f);
+            for (size_t i = 0; i < f.pixels(); ++i) {
+                const double z = 1 - 2 * (double(i) + 0.5) / double(f.pixels()), turn = 2.399963 * double(i),
+                             across = std::sqrt(1 - z * z);
+                const Vec3 n{across * std::cos(turn), across * std::sin(turn), z};
+                for (int slot : {PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_BLURRED, PEL_SLOT_NORMAL_GEOMETRIC})
+                    for (int c = 0; c < 3; ++c) f.slots[slot].values[3 * i + size_t(c)] = float(n[c]);
+            }
+            double mean = 0;
+            const auto result = shade(f);
+            for (size_t i = 0; i < f.pixels(); ++i) mean += result[3 * i] / double(f.pixels());
+            const double pi = reference::pi, sine = size / l.position[2], w = size, h = 0.5 * size;
+            const double truth = type == PEL_LIGHT_SPHERE
+                                     ? 2 * pi * (1 - std::sqrt(1 - sine * sine)) / (size * size) / (4 * pi)
+                                     : 4 * std::asin(w * h / std::sqrt((w * w + 1) * (h * h + 1))) * pi /
+                                           (4 * w * h) / (4 * pi);
+            EXPECT_NEAR(mean / truth, 1, type == PEL_LIGHT_SPHERE ? 2e-3 : 2.5e-2) << size;
+        }
+}
+
+TEST(AreaLights, InsideASphereAndBehindARectangle) {
+    Frame f = areaFrame(6, PEL_LIGHT_SPHERE, 0.1f);
+    f.slots[PEL_SLOT_MATERIAL] = f.slots[PEL_SLOT_ALBEDO] = {};
+    std::fill_n(f.materials[1].albedo, 3, 1.0f);
+    PelLight& l = f.lights[0].params;
+    l.radius = 1000;
+    std::fill_n(l.color, 3, 1e6f);
+    for (const bool centre : {false, true}) {  // the last position is the light's
+        if (centre) std::copy_n(l.position, 3, f.slots[PEL_SLOT_POSITION].values.end() - 3);
+        const auto inside = shade(f);
+        for (size_t i = 0; i < inside.size(); ++i) {
+            ASSERT_TRUE(std::isfinite(inside[i]));
+            ASSERT_GE(inside[i], 0);
+        }
+        if (f.materials[1].specular == 0)
+            EXPECT_LE(*std::ranges::max_element(inside), 1.0f) << "the radiance is 1, and albedo too";
+        f.materials[1].specular = 1;
+    }
+    // The camera sees normals that face the light; turned round, a rectangle lights none of them.
+    makeArea(f, PEL_LIGHT_RECTANGLE, 1, 0.5f);
+    const auto before = shade(f);
+    EXPECT_GT(*std::ranges::max_element(before), 0.01f);
+    for (float& v : l.halfWidth) v = -v;
+    for (const float v : shade(f)) ASSERT_EQ(v, 0);
+    // Points in the rectangle and in its plane.
+    for (size_t i = 0; i < f.pixels(); ++i)
+        for (size_t c = 0; c < 3; ++c)
+            f.slots[PEL_SLOT_POSITION].values[3 * i + c] =
+                l.position[c] + float(i) / 100 * l.halfWidth[c] + float(i % 7) / 3 * l.halfHeight[c];
+    for (const float v : shade(f)) ASSERT_TRUE(std::isfinite(v) && v >= 0);
+}
+
+TEST(AreaLights, LightOf64Adds) {
+    Frame f = areaFrame(8, PEL_LIGHT_SPHERE, 0.3f, 64);
+    for (auto& [id, m] : f.materials) m.specular = 0.5f;
+    Frame rectangles = f;
+    makeArea(rectangles, PEL_LIGHT_RECTANGLE, 9, 0.3f);
+    for (size_t i = 0; i < 64; i += 3) f.lights[i] = rectangles.lights[i];
+    for (size_t i = 1; i < 64; i += 9) f.lights[i].params.type = PEL_LIGHT_POINT;
+    const auto all = shade(f);
+    std::vector<float> sum(all.size());
+    for (const Light& light : f.lights) {
+        Frame one = f;
+        one.lights = {light};
+        const auto part = shade(one);
+        for (size_t i = 0; i < sum.size(); ++i) sum[i] += part[i];
+    }
+    EXPECT_LE(largestDifference(all, sum), 1e-5 * *std::ranges::max_element(all));
+}
+
+// Irradiance per pixel is what the shading kernel has without it.
+TEST(AreaLights, IrradiancePerPixel) {
+    for (const PelLightType type : sizes) {
+        Frame f = areaFrame(6, type, 0.5f, 2);
+        const auto direct = shade(f);
+        for (auto& [id, m] : f.materials) m.scattering = PEL_SCATTERING_NONE;
+        EXPECT_LE(largestDifference(direct, shade(f)), tolerance::shadeTerm) << nameOf(type);
+    }
+}
+
+// Methods by tables, from irradiance, and from shadow maps: what is small is a point, and what is not lights
+// beyond the terminator.
+TEST(AreaLights, OfMethodsOfScattering) {
+    for (const PelScattering method :
+         {PEL_SCATTERING_PREINTEGRATED, PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_LIGHT}) {
+        Frame f = scatteringFrame(method, 96, 64);
+        const pellucid::Profile profile = pellucid::Profile::skin();
+        for (auto& [id, m] : f.materials) m.profile = profile.get();
+        f.ambient = pelAmbientDefaults();
+        PelLight& l = f.lights[0].params;
+        l.type = PEL_LIGHT_POINT;
+        for (int c = 0; c < 3; ++c) {
+            l.position[c] = 200 * l.toLight[c], l.color[c] = 200 * 200;
+            l.halfWidth[c] = 0.01f * (c == 1), l.halfHeight[c] = 0.01f * (c == 0 ? 0.8f : c == 2 ? -0.6f : 0);
+        }
+        const auto point = shade(f);
+        l.type = PEL_LIGHT_SPHERE, l.radius = 0.01f;
+        EXPECT_LE(largestDifference(shade(f), point), 1e-3) << method;
+        l.type = PEL_LIGHT_RECTANGLE;
+        const Vec3 axis = reference::normalized(cross(vectorOf(l.halfWidth), vectorOf(l.halfHeight)));
+        if (dot(axis, vectorOf(l.toLight)) > 0)
+            for (float& v : l.halfWidth) v = -v;
+        // It looks to the middle of the picture, where the cosine is 1.
+        EXPECT_LE(largestDifference(shade(f), point), 0.05) << method;
+        l.type = PEL_LIGHT_SPHERE, l.radius = 100;
+        EXPECT_GE(largestDifference(shade(f), point), 0.01) << method;
+    }
+}
+
+TEST(AreaLights, SizesThatAreNone) {
+    const auto refused = [](const char* word, auto change) {
+        PelLight l = pelLightDefaults();
+        l.type = PEL_LIGHT_RECTANGLE;
+        change(l);
+        expectError(PEL_ERROR_INVALID_ARGUMENT, {"PelLight 0", word},
+                    [&] { Shader(device()).set(std::vector{l}); });
+    };
+    const auto sphere = [](float radius) {
+        return [radius](PelLight& l) { l.type = PEL_LIGHT_SPHERE, l.radius = radius; };
+    };
+    for (const float radius : {-1.0f, NAN, INFINITY}) refused("radius", sphere(radius));
+    refused("halfWidth", [](PelLight& l) { l.halfWidth[1] = NAN; });
+    refused("halfHeight", [](PelLight& l) { l.halfHeight[1] = INFINITY; });
+    refused("lengths", [](PelLight& l) { l.halfWidth[0] = 0; });
+    refused("lengths", [](PelLight& l) { l.halfHeight[1] = 1e30f; });
+    refused("right angles", [](PelLight& l) { l.halfHeight[0] = 0.01f; });
+    refused("position", [](PelLight& l) { l.position[2] = NAN; });
+}
+
+}  // namespace

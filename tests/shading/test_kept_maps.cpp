@@ -1,0 +1,118 @@
+// Shadow maps that rest (PelLight.shadowMapVersion): what is computed from them alone is made once for all
+// frames and shaders, and no bit is another.
+#include "scattering_frame.h"
+#include "test.h"
+
+using namespace shade_test;
+
+namespace {
+
+// Tables with a wide shadow that is filtered from the map, and thickness from cells of taps.
+Frame viewFrame() {
+    Frame f = scatteringFrame(PEL_SCATTERING_PREINTEGRATED, 192, 96);
+    f.options.everyPixel = 0;
+    for (auto& [id, m] : f.materials) {
+        std::fill_n(m.deepScatterColor, 3, 0.5f);
+        m.thicknessFilterRadius = 0.2f;  // so few nodes that the frame has cells
+    }
+    return f;
+}
+
+class KeptMaps : public testing::Test {
+  protected:
+    Frame frame_ = viewFrame();
+    Buffer map_{device(), frame_.lights[0].map.values};
+
+    // One view of the scene, and what its frames take.
+    struct View {
+        Shader shader{device()};
+        Buffer target;
+        std::vector<float> picture() const { return target.readAll<float>(); }
+        uint64_t launches() {
+            const uint64_t before = device().stats().launches;
+            shader.execute();
+            return device().stats().launches - before;
+        }
+        uint64_t held(const char* pass) const {
+            for (const PelPassMemory& m : shader.memory())
+                if (std::string_view(m.name) == pass) return m.held;
+            return 0;
+        }
+    };
+    // side: of the camera.
+    void set(View& view, uint32_t version, float side) {
+        Frame f = frame_;
+        f.camera.position[0] = side;
+        f.lights[0].params.shadowMapVersion = version;
+        setFrame(device(), view.shader, f, tables());
+        view.target = setTarget(device(), view.shader, f);
+        view.shader.set(0, PEL_LIGHT_SHADOW_MAP, imageDesc(map_, PEL_FORMAT_R32F, 64, 64));
+        view.shader.commit();
+    }
+    std::vector<float> alone(float side) {
+        View view;
+        set(view, 0, side);
+        view.shader.execute();
+        return view.picture();
+    }
+};
+
+TEST_F(KeptMaps, AreMadeOnceForTwoViews) {
+    View moving, left, right;
+    set(moving, 0, -5);
+    set(left, 1, -5);
+    set(right, 1, 5);
+    const uint64_t all = moving.launches();
+    EXPECT_EQ(left.launches(), all);
+    EXPECT_EQ(right.launches(), all - 3) << "neither bounds nor samples nor cells of taps";
+    EXPECT_EQ(left.launches(), all - 3);
+    EXPECT_EQ(moving.launches(), all);
+    for (const char* pass : {"shadow_bounds", "tap_cells"}) {
+        EXPECT_GT(left.held(pass), 0u) << pass;
+        EXPECT_EQ(right.held(pass), 0u) << pass;
+    }
+    expectSameBits(device(), left.picture(), alone(-5));
+    expectSameBits(device(), right.picture(), alone(5));
+    // What the first has made stays when it goes, and another version is made anew.
+    left.shader = Shader(device());
+    EXPECT_EQ(right.launches(), all - 3);
+    set(right, 2, 5);
+    EXPECT_EQ(right.launches(), all);
+}
+
+TEST_F(KeptMaps, OfANewVersionHaveTheMapsNewContent) {
+    View left, right;
+    set(left, 1, -5);
+    set(right, 1, 5);
+    left.shader.execute();
+    right.shader.execute();
+    std::vector<float> depths = frame_.lights[0].map.values;
+    for (size_t i = 0; i < depths.size(); ++i)
+        if (i % 64 < 20) depths[i] = 0.2f;
+    map_.write(depths.data(), depths.size() * sizeof(float));
+    set(left, 2, -5);
+    set(right, 2, 5);
+    left.shader.execute();
+    right.shader.execute();
+    expectSameBits(device(), left.picture(), alone(-5));
+    expectSameBits(device(), right.picture(), alone(5));
+}
+
+// Another map, or the same one read in another way, under the same number.
+TEST_F(KeptMaps, OfOtherMapsAreOthers) {
+    View first, second;
+    set(first, 1, -5);
+    first.shader.execute();
+    std::vector<float>& depths = frame_.lights[0].map.values;
+    for (float& z : depths) z = z < 0.3f ? 0.5f : z;
+    map_ = Buffer(device(), depths);
+    set(second, 1, -5);
+    second.shader.execute();
+    expectSameBits(device(), second.picture(), alone(-5));
+    frame_.lights[0].params.shadowDepthRange = 90;
+    set(second, 1, -5);
+    second.shader.execute();
+    expectSameBits(device(), second.picture(), alone(-5));
+}
+
+}  // namespace

@@ -1,0 +1,170 @@
+// Penumbrae of lights with a size, from maps that are seen from their centre: of a straight edge over a
+// plane, against the part of the light that is above the edge.
+#include "shade_scene.h"
+#include "test.h"
+
+using namespace shade_test;
+
+namespace {
+
+constexpr uint32_t columns = 256, rows = 16;
+constexpr float lightHeight = 300, extent = 120;  // of the light; length of the row of pixels
+
+float columnX(size_t column) {
+    return (float(column) + 0.5f) / columns * extent - extent / 2;
+}
+
+// A white plane under a light whose centre is over x = 0, and an edge at that x over it: x below 0 is dark.
+struct Edge {
+    PelLightType type = PEL_LIGHT_SPHERE;
+    float radius = 20, height = 60;
+    bool cube = false;
+    PelScattering scattering = PEL_SCATTERING_NONE;
+};
+
+Frame edgeFrame(const Edge& edge) {
+    Frame f;
+    f.width = columns, f.height = rows;
+    f.slots[PEL_SLOT_POSITION].components = f.slots[PEL_SLOT_NORMAL_SHADING].components = 3;
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        const float p[3] = {columnX(i % columns), float(i / columns), 0}, n[3] = {0, 0, 1};
+        f.slots[PEL_SLOT_POSITION].values.insert(f.slots[PEL_SLOT_POSITION].values.end(), p, p + 3);
+        f.slots[PEL_SLOT_NORMAL_SHADING].values.insert(f.slots[PEL_SLOT_NORMAL_SHADING].values.end(), n,
+                                                       n + 3);
+    }
+    PelMaterial m = pelMaterialDefaults();
+    m.scattering = edge.scattering;
+    m.specular = 0;
+    std::fill_n(m.albedo, 3, 1.0f);
+    f.materials[1] = m;
+    f.curvatureLut = f.shadowLut = false;
+    Light light;
+    PelLight& l = light.params;
+    l = pelLightDefaults();
+    l.type = edge.type;
+    l.position[2] = lightHeight;
+    std::fill_n(l.color, 3, lightHeight * lightHeight);
+    l.radius = edge.radius;
+    l.halfWidth[0] = edge.radius, l.halfHeight[1] = -edge.radius;  // downwards
+    const float near = 50, far = 1000, a = 1 / far - 1 / near, b = 1 / near;
+    l.shadowDepthA = a, l.shadowDepthB = b;
+    const uint32_t size = 512;
+    const auto depthOf = [&](float alongX, float distance) {
+        // Of the plane, or of what is over x below 0.
+        const float over = lightHeight - edge.height;
+        return (1 / (alongX < 0 ? std::min(distance, over) : distance) - b) / a;
+    };
+    if (edge.cube) {
+        l.shadowProjection = PEL_SHADOW_CUBE;
+        const float matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -lightHeight, 0, 0, 0, 1};
+        std::copy_n(matrix, 16, l.worldToShadow);
+        MapImage map{PEL_LIGHT_SHADOW_MAP, size, 6 * size, 1, std::vector<float>(size_t(6) * size * size, 1)};
+        for (uint32_t y = 0; y < size; ++y)
+            for (uint32_t x = 0; x < size; ++x)  // the face that looks along -z has u along -x
+                map.values[(size_t(5) * size + y) * size + x] =
+                    depthOf(-(2 * (float(x) + 0.5f) / float(size) - 1), lightHeight);
+        light.maps.push_back(map);
+    } else {
+        l.shadowProjection = PEL_SHADOW_PERSPECTIVE;
+        const float matrix[16] = {
+            0.5f, 0, -0.5f, 0.5f * lightHeight,        0, 0.5f, -0.5f, 0.5f * lightHeight,
+            0,    0, b / a, (1 - b * lightHeight) / a, 0, 0,    -1,    lightHeight};
+        std::copy_n(matrix, 16, l.worldToShadow);
+        light.mapSize = size;
+        light.map.components = 1;
+        for (uint32_t y = 0; y < size; ++y)
+            for (uint32_t x = 0; x < size; ++x)
+                light.map.values.push_back(depthOf(2 * (float(x) + 0.5f) / float(size) - 1, lightHeight));
+    }
+    f.lights.push_back(light);
+    return f;
+}
+
+// The part of the light that a point sees: of a disk or square beyond -x (H - h) / h.
+double visible(const Edge& edge, double x) {
+    const double t = std::clamp(x * (lightHeight - edge.height) / (edge.height * edge.radius), -1.0, 1.0);
+    if (edge.type == PEL_LIGHT_RECTANGLE) return (1 + t) / 2;
+    return 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / reference::pi;
+}
+
+std::vector<float> shadowOf(const Edge& edge) {
+    const Frame f = edgeFrame(edge);
+    Frame bare = f;
+    bare.lights[0].map = {}, bare.lights[0].maps.clear();
+    const auto shadowed = shade(f), lit = shade(bare);
+    std::vector<float> share;
+    for (size_t x = 0; x < columns; ++x) {
+        const size_t at = 3 * (size_t(rows / 2) * columns + x);
+        share.push_back(shadowed[at] / lit[at]);
+    }
+    return share;
+}
+
+// Pixels between 5 % and 95 % of light, as a length.
+double penumbra(const std::vector<float>& share) {
+    return double(std::ranges::count_if(share, [](float s) { return s > 0.05f && s < 0.95f; })) * extent /
+           columns;
+}
+
+TEST(SoftShadow, OfAnEdgeIsThePartOfTheLightAboveIt) {
+    for (const bool cube : {false, true})
+        for (const PelLightType type : {PEL_LIGHT_SPHERE, PEL_LIGHT_RECTANGLE})
+            for (const auto& [radius, height] : {std::pair{20.0f, 60.0f}, {40.0f, 60.0f}, {20.0f, 120.0f}}) {
+                const Edge edge{type, radius, height, cube};
+                const auto share = shadowOf(edge);
+                double square = 0, worst = 0;
+                for (size_t x = 0; x < columns; ++x) {
+                    const double off = share[x] - visible(edge, columnX(x));
+                    square += off * off, worst = std::max(worst, std::abs(off));
+                }
+                std::printf("cube %d type %d radius %g height %g: RMS %.3f, worst %.3f\n", cube, int(type),
+                            double(radius), double(height), std::sqrt(square / columns), worst);
+                EXPECT_LE(std::sqrt(square / columns), tolerance::softShadow);
+                EXPECT_LE(worst, 5 * tolerance::softShadow);
+            }
+}
+
+// The penumbra of the material's filter and that of the light add up as squares.
+TEST(SoftShadow, OfMaterialsWithTables) {
+    Edge edge{PEL_LIGHT_SPHERE, 40, 60, false, PEL_SCATTERING_PREINTEGRATED};
+    const double both = penumbra(shadowOf(edge));
+    edge.scattering = PEL_SCATTERING_NONE;
+    const double light = penumbra(shadowOf(edge));
+    edge.scattering = PEL_SCATTERING_PREINTEGRATED, edge.radius = 0;
+    const double material = penumbra(shadowOf(edge));
+    EXPECT_NEAR(both, std::hypot(light, material), 0.1 * both);
+}
+
+TEST(SoftShadow, WithoutASizeOrAFilterIsSharp) {
+    const auto sharp = shadowOf({PEL_LIGHT_POINT, 0, 60});
+    EXPECT_LT(penumbra(sharp), 3);
+    const auto sphere = shadowOf({PEL_LIGHT_SPHERE, 0, 60});
+    for (size_t x = 0; x < columns; ++x) EXPECT_NEAR(sphere[x], sharp[x], tolerance::shadeTerm);
+    Frame f = edgeFrame({PEL_LIGHT_SPHERE, 40, 60});
+    f.lights[0].params.shadowFilterTexels = 0;
+    const auto unfiltered = shade(f);
+    size_t between = 0;
+    for (size_t x = 0; x < columns; ++x) between += unfiltered[3 * x] > 0.1f && unfiltered[3 * x] < 0.9f;
+    EXPECT_LE(between * extent / columns, 3);
+}
+
+// Where the horizon hides the light's centre, the map does not show what is before the rest.
+TEST(SoftShadow, OfAPointThatSeesTheRimAlone) {
+    Frame f = edgeFrame({PEL_LIGHT_SPHERE, 100, 60});
+    f.slots[PEL_SLOT_NORMAL_GEOMETRIC] = f.slots[PEL_SLOT_NORMAL_SHADING];
+    for (int slot : {PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_GEOMETRIC})
+        for (size_t i = 0; i < f.pixels(); ++i) {
+            f.slots[slot].values[3 * i] = 0.995f;
+            f.slots[slot].values[3 * i + 2] = -0.0998f;
+        }
+    Frame bare = f;
+    bare.lights[0].map = {};
+    const auto lit = shade(f), all = shade(bare);
+    for (size_t x = 0; x < columns; ++x)
+        if (const float at = columnX(x); at < 0 && 0.995f * -at - 0.0998f * lightHeight < 0) {
+            EXPECT_EQ(lit[3 * x], all[3 * x]) << at;
+            EXPECT_GT(all[3 * x], 0.01f);
+        }
+}
+
+}  // namespace
