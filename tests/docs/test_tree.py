@@ -253,8 +253,8 @@ class Tree(unittest.TestCase):
             checked += 1
             types = schema.get("type", [])
             types = types if isinstance(types, list) else [types]
-            if types and not any(isinstance(value, kinds[t]) and (t == "boolean" or not isinstance(value, bool))
-                                 for t in types):
+            boolean = isinstance(value, bool)  # which is an int as well
+            if types and not any(isinstance(value, kinds[t]) and boolean == (t == "boolean") for t in types):
                 wrong.append(f"{where} is {value!r}, not of {types}")
             elif "const" in schema and value != schema["const"] or value not in schema.get("enum", [value]):
                 wrong.append(f"{where} is {value!r}")
