@@ -226,17 +226,23 @@ TEST(LightSpace, LightComesThroughAStripInEveryTile) {
     }
 }
 
-// A slab that is lit from behind: where the medium is known, as much comes through as a random walk has.
+// A slab that is lit from behind, all of it or a disk as wide as it is thick: where the medium is known, as
+// much comes through as a random walk has.
 TEST(LightSpace, SlabsLetThroughWhatRandomWalksDo) {
     constexpr double d = 0.3, path = 1.085 * d, extent = 24;  // mm
     const uint32_t side = sized(48u, 24u);
     const float paths[] = {1.1f * d, 1.1f * d, 1.1f * d}, white[] = {0.8f, 0.8f, 0.8f};
     LitBall lamp = lampFromBehind(extent);
     for (double thickness : {0.3, 0.6, 1.0, 2.5, 4.0}) {
-        const double truth =
-            reference::walkSlab({path, 0.99055}, thickness, 1, 1, sized(100000, 1000), 7).transmitted / 0.8;
-        lamp.maps = {texelsOf(lamp.width, [&](double, double, int) { return 1 - 0.05 * thickness; })};
-        for (PelScattering method : {byAuto, byLight}) {
+        const reference::WalkResult walked =
+            reference::walkSlab({path, 0.99055}, thickness, 1, 1, sized(100000, 1000), 7);
+        for (auto [method, disk] :
+             {std::pair{byAuto, false}, {byLight, false}, {byAuto, true}, {byLight, true}}) {
+            if (disk && thickness < 1) continue;  // few texels
+            const double truth = (disk ? walked.straight : walked.transmitted) / 0.8;
+            lamp.maps = {texelsOf(lamp.width, [&](double s, double t, int) {
+                return disk && std::hypot(s, t) * extent / 2 > thickness ? 1 : 1 - 0.05 * thickness;
+            })};
             Frame f(plane(side, side, 0.1, [](double, double) { return Vec3{}; }), method);
             for (size_t i = 0; i < f.picture.positions.size(); ++i)
                 if (i % 3 < 2) f.picture.positions[i] -= 0.05f * float(side);
@@ -249,7 +255,7 @@ TEST(LightSpace, SlabsLetThroughWhatRandomWalksDo) {
             const std::vector<float> light = f.shade(shown).light;
             EXPECT_NEAR(light[3 * (side / 2 * side + side / 2)], truth,
                         testsAreSmall() ? 0.1 : tolerance::throughSlab + tolerance::throughSlabPart * truth)
-                << thickness << " mm, method " << int(method);
+                << thickness << " mm, method " << int(method) << ", disk " << disk;
         }
     }
 }

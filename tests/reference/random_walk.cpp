@@ -102,12 +102,13 @@ WalkResult walkSlab(const Medium& medium, double thickness, double reach, int bi
         if (d.z > 0) return std::max(0.0, -p.z / d.z);
         return d.z < 0 ? std::max(0.0, (-thickness - p.z) / d.z) : INFINITY;
     };
-    double through = 0;
+    double through = 0, straight = 0;
     const auto one = [&](double& place) {
         Vec3 p{};
         const double weight = walk(medium, p, random.diffuse({0, 0, -1}), random, exit);
         if (p.z < -0.5 * thickness) {
             through += weight;
+            if (std::hypot(p.x, p.y) < thickness) straight += weight;
             return 0.0;
         }
         place = std::hypot(p.x, p.y) / reach;
@@ -117,6 +118,7 @@ WalkResult walkSlab(const Medium& medium, double thickness, double reach, int bi
         return 1 / (pi * reach * reach * (2 * i + 1) / double(bins) / bins);
     });
     result.transmitted = through / double(photons);
+    result.straight = straight / double(photons);
     return result;
 }
 

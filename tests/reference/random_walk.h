@@ -17,6 +17,7 @@ struct WalkResult {
     std::vector<double> error;     // its standard error
     double reflected = 0;          // part of the light that comes out again
     double transmitted = 0;        // of a slab: part that comes out below
+    double straight = 0;           // of that no further aside than the slab is thick
 };
 
 // A ball under a parallel light. Light enters diffusely, with the cosine's distribution, and what comes out
