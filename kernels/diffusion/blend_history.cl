@@ -8,7 +8,6 @@
 // moves), PEL_MOTION_COMPONENTS; PEL_HALF.
 #include "lib/diffusion/gather.clh"
 #include "lib/diffusion/item.clh"
-#include "lib/image/image.clh"
 
 // The history of a pixel, four floats: red, with an id (0: nothing) in its lowest byte; green, with the
 // number of frames in it; blue; distance from the camera.

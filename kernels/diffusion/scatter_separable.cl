@@ -12,7 +12,6 @@
 // (blend_history.cl).
 #include "lib/diffusion/gather.clh"
 #include "lib/diffusion/item.clh"
-#include "lib/image/image.clh"
 
 typedef struct Line {
     __global const PelGatherFrame* frame;
@@ -173,19 +172,13 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void filter_colu
             if (!loadPixel(frame, points, materials, columnOf(frame, tile, item), rowOf(frame, tile, item),
                            &p))
                 continue;
-            const Span to = imageSpan(out, &frame->out, p.x, p.y);
-            if (p.material) {
-                float4 s;
-                if (!betweenSamples(frame, points, nodes, samples, &p, &s))
-                    s = filterPixel(frame, points, rows, 4, p.material, taps, nodes, p.x, p.y, true, &taken),
-                    ++pixels;
-                s = resultOf(points, nodes, &p, s);
-                storeColor(PEL_FORMAT_OUT, to, vec3(s.x, s.y, s.z), 1);
-            } else if (!frame->inPlace) {
-                storeColor(
-                    PEL_FORMAT_OUT, to,
-                    loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, p.x, p.y)), 1);
-            }
+            float4 scattered = (float4)(0.0f);
+            if (p.material && !betweenSamples(frame, points, nodes, samples, &p, &scattered))
+                scattered =
+                    filterPixel(frame, points, rows, 4, p.material, taps, nodes, p.x, p.y, true, &taken),
+                ++pixels;
+            storeGathered(frame, points, nodes, &p, scattered, PEL_FORMAT_IRRADIANCE, irradiance,
+                          PEL_FORMAT_OUT, out);
         }
     }
     __local uint sumsOfGroup[2];

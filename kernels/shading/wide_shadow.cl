@@ -252,11 +252,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
 #endif
             FilterShape shape = filterShape(wideShadow, materials, id, active);
             maskw left = active & notw(known);
-            // Others interpolate between these, so they are the same with skipping and without it.
-            if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING) || apart == 2)
-                left &= sampleLight(from, p).strength > 0.0f;
-#if PEL_AREA_LIGHTS
             const LightSample sample = sampleLight(from, p);
+            // Others interpolate between these, so they are the same with skipping and without it.
+            if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING) || apart == 2) left &= sample.strength > 0.0f;
+#if PEL_AREA_LIGHTS
             // Where the centre is below the horizon its map shows nothing of what is before the rest.
             if (isArea(from)) left &= dot3(n, sample.direction) > 0.0f;
             const floatw penumbra = penumbraOfLight(wideShadow, from, PEL_LIGHT_BUFFER_OF(from->mapBuffer), p,
