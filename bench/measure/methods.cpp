@@ -88,7 +88,8 @@ std::vector<Setting> settings() {
     Setting& light = add("light", "map of 2048 texels", PEL_SCATTERING_LIGHT);
     light.quick = light.shown = true;
     light.tunes = "light";
-    add("light", "half rate", PEL_SCATTERING_LIGHT).request.halfRate = true;
+    Setting& halfLight = add("light", "half rate", PEL_SCATTERING_LIGHT);
+    halfLight.request.halfRate = true, halfLight.tunes = "light-half";
     for (const int size : {512, 1024})
         add("light", "map of " + text(size, "texels"), PEL_SCATTERING_LIGHT).mapSize = size;
     for (const int size : {1024, 2048})
@@ -450,6 +451,7 @@ class Methods {
             row.update({{"group", "budgets"},
                         {"budget_ms", 1e-6 * c.setting.budget * skin},
                         {"took", took == PEL_SCATTERING_SCREEN ? "auto" : io::scatterings[took]},
+                        {"took_half_rate", stats.takenHalfRate != 0},
                         {"took_target_error", stats.takenTargetError},
                         {"expected_ms", stats.expectedMilliseconds},
                         {"expected_error", stats.expectedError}});

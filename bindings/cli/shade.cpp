@@ -208,6 +208,7 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
             {"pixels_invalid", s.pixelsInvalid},
             {"shade_ms", s.deviceMilliseconds},
             {"taken_target_error", s.takenTargetError},
+            {"taken_half_rate", s.takenHalfRate != 0},
             {"expected_ms", s.expectedMilliseconds},
             {"expected_error", s.expectedError},
             {"tuned", s.tuned != 0}};

@@ -17,6 +17,8 @@ bool scatters(const ShaderState& state, const ShaderMaterial& material, bool alo
     return methods >> material.params.scattering & 1 && !scattersOnDisk(material);
 }
 
+bool halfRate(const ShaderPlan& plan) { return plan.state.options.halfRate || plan.taken.halfRate; }
+
 // `alone`: texels are all of the far part.
 template <bool alone>
 class ScatterPass final : public Pass {
@@ -29,8 +31,7 @@ class ScatterPass final : public Pass {
     // Neighbours may be as far away as the profile reaches.
     PassScratch scratch(const ShaderPlan& plan) const override {
         const ImageView& frame = plan.state.images[PEL_SLOT_RADIANCE];
-        const bool half = alone && plan.state.options.halfRate;
-        return {(ownsIrradiance(plan) ? 0 : 3 * sizeof(float)) + (half ? sizeof(float) : 0),
+        return {(ownsIrradiance(plan) ? 0 : 3 * sizeof(float)) + (alone && halfRate(plan) ? sizeof(float) : 0),
                 ScreenScatter::bytesFor(frame.width, frame.height, hasRadii(plan)) +
                     LightSpace::bytesFor(plan.state.lights, !alone),
                 0, true};
@@ -40,7 +41,7 @@ class ScatterPass final : public Pass {
         images_ = takeIrradiance(plan, device, out_, ownsIrradiance(plan));
         addRadii(plan, images_);
         if (!scatter_) scatter_.emplace(device);
-        scatter_->announce({plan.state.lights, alone, plan.state.options.halfRate != 0});
+        scatter_->announce({plan.state.lights, alone, halfRate(plan)});
         materials_.clear();
         for (const auto& [id, material] : plan.state.materials)
             if (scatters(plan.state, material, alone) && material.params.diffusionRadius > 0) {

@@ -311,6 +311,7 @@ PelShaderStats Shader::stats() {
     stats.expectedMilliseconds = plan_.taken.milliseconds;
     stats.expectedError = plan_.taken.error;
     stats.tuned = plan_.taken.own;
+    stats.takenHalfRate = plan_.taken.halfRate;
     stats.scratchBytes = ownBytes() + passes_.bytes();
     if (!executed_) return stats;
     stats.launches = launches_;

@@ -19,11 +19,13 @@ namespace {
 constexpr TunedSetting guessed[] = {{PEL_SCATTERING_NONE, 0, 0, 0, 0.14},
                                     {PEL_SCATTERING_PREINTEGRATED, 0, 79, 0, 0.09},
                                     {PEL_SCATTERING_AUTO, 0.002, 122, 0, 0.0194},
+                                    {PEL_SCATTERING_LIGHT, 0, 2000, 0, 0.0183, true},
                                     {PEL_SCATTERING_LIGHT, 0, 8508, 0, 0.0184}};
 // Of that device: cores, lanes, and MHz by bench/results/pocl-3.1-amd-epyc.json.
 constexpr double guessedLanes = 2 * 16 * 2596.0;
 
 constexpr size_t mostSettings = 64;
+constexpr const char* halfRateLight = "light-half";  // in records
 
 // Numbers of lanes that work at once, times their clock.
 double lanesOf(const PelDeviceInfo& device) {
@@ -73,9 +75,11 @@ Tuning tuningOf(const PelDeviceInfo& device) {
             damaged("a method and four numbers are needed");
         constexpr PelScattering known[] = {PEL_SCATTERING_NONE, PEL_SCATTERING_PREINTEGRATED,
                                            PEL_SCATTERING_AUTO, PEL_SCATTERING_LIGHT};
+        s.halfRate = method == halfRateLight;
+        if (s.halfRate) method = scatteringName(PEL_SCATTERING_LIGHT);
         const auto* const named = std::ranges::find(known, method, scatteringName);
         if (named == std::end(known))
-            damaged("\"", method, "\" is none of none, preintegrated, auto and light");
+            damaged("\"", method, "\" is none of none, preintegrated, auto, light and ", halfRateLight);
         s.method = *named;
         for (const double v : {s.targetError, s.perPixel, s.perFrame, s.error})
             if (!(v >= 0 && v <= 1e9)) damaged(v, " is not between 0 and 1e9");
@@ -116,25 +120,29 @@ uint64_t pixelsOf(const std::vector<uint32_t>& ids, const ShaderState& state, De
 
 TakenSetting keepToBudget(ShaderState& state, uint32_t methods, Device& device, std::string& warnings) {
     std::vector<uint32_t> ids;
-    bool thin = false;
-    for (const auto& [id, m] : state.materials)
+    bool thin = false, full = false;  // materials whose method is given as light keep their rate
+    for (const auto& [id, m] : state.materials) {
+        full |= m.given.scattering == PEL_SCATTERING_LIGHT;
         if (m.given.scattering == PEL_SCATTERING_AUTO && m.params.scattering == PEL_SCATTERING_SCREEN &&
             m.params.scatterTaps == 0)
             ids.push_back(id), thin |= m.params.thinThickness > 0;
+    }
     if (ids.empty()) return {};
     const ImageView& frame = state.images[PEL_SLOT_RADIANCE];
     const Tuning tuning = tuningOf(device.info());
     const bool given = bool(state.images[PEL_SLOT_IRRADIANCE]);
-    const auto possible = [&](PelScattering method) {
-        if (method == PEL_SCATTERING_LIGHT) return (methods >> method & 1) && lightIsMapped(state) && !given;
-        return method != PEL_SCATTERING_PREINTEGRATED || (!thin && !given);
+    const auto possible = [&](const TunedSetting& s) {
+        if (s.method == PEL_SCATTERING_LIGHT)
+            return (methods >> s.method & 1) && lightIsMapped(state) && !given &&
+                   (s.halfRate ? !full || state.options.halfRate : !state.options.halfRate);
+        return s.method != PEL_SCATTERING_PREINTEGRATED || (!thin && !given);
     };
     const double pixels = double(pixelsOf(ids, state, device)),
                  all = double(frame.width) * double(frame.height), budget = state.options.timeBudget;
     const auto time = [&](const TunedSetting& s) { return 1e-6 * (s.perPixel * pixels + s.perFrame * all); };
     const auto faster = [&](const TunedSetting& a, const TunedSetting& b) { return time(a) < time(b); };
     std::vector<TunedSetting> open;
-    std::ranges::copy_if(tuning.settings, std::back_inserter(open), possible, &TunedSetting::method);
+    std::ranges::copy_if(tuning.settings, std::back_inserter(open), possible);
     if (open.empty()) open.push_back({PEL_SCATTERING_NONE, 0, 0, 0, 1});
     TunedSetting taken = *std::ranges::min_element(open, faster);
     if (time(taken) > budget) {
@@ -154,7 +162,7 @@ TakenSetting keepToBudget(ShaderState& state, uint32_t methods, Device& device, 
     }
     if (taken.method == PEL_SCATTERING_AUTO)
         state.options.targetError = std::max(state.options.targetError, float(taken.targetError));
-    return {state.options.targetError, time(taken), taken.error, tuning.own};
+    return {state.options.targetError, time(taken), taken.error, tuning.own, taken.halfRate};
 }
 
 }  // namespace pel

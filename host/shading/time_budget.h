@@ -11,6 +11,7 @@ struct TunedSetting {
     double targetError;         // share of white; 0 where the method has none
     double perPixel, perFrame;  // ns beyond plain lighting: per pixel of the materials, and of the frame
     double error;               // RMS against light, share of white
+    bool halfRate = false;      // PelShaderOptions.halfRate, of light alone
 };
 
 struct Tuning {
@@ -25,7 +26,7 @@ Tuning tuningOf(const PelDeviceInfo& device);
 // For PelShaderStats.
 struct TakenSetting {
     double targetError = 0, milliseconds = 0, error = 0;
-    bool own = false;
+    bool own = false, halfRate = false;
 };
 
 // After chooseMethods(): where materials came to scatter on the screen, they get the method and the state the

@@ -10,12 +10,14 @@ struct Row {
     const char* name;
     PelScattering method;
     double target, perPixel, perFrame, error;
+    bool half = false;
 };
 constexpr Row rows[] = {{"none", PEL_SCATTERING_NONE, 0, 0, 1, 0.05},
                         {"preintegrated", PEL_SCATTERING_PREINTEGRATED, 0, 20, 1, 0.03},
                         {"auto", PEL_SCATTERING_AUTO, 0.02, 60, 2, 0.012},
                         {"auto", PEL_SCATTERING_AUTO, 0.004, 100, 2, 0.010},
                         {"auto", PEL_SCATTERING_AUTO, 0.003, 150, 2, 0.0099},  // no nearer to speak of
+                        {"light-half", PEL_SCATTERING_LIGHT, 0, 900, 3, 0.006, true},
                         {"light", PEL_SCATTERING_LIGHT, 0, 4000, 5, 0.004}};
 
 class TimeBudget : public ::testing::Test {
@@ -37,9 +39,11 @@ class TimeBudget : public ::testing::Test {
         }
         write(text);
     }
-    Shot shot(const LitScene& scene, PelScattering method, float target, float budget = 0) {
+    Shot shot(const LitScene& scene, PelScattering method, float target, float budget = 0,
+              bool half = false) {
         ShadeRequest request;
         request.scattering = method, request.targetError = target, request.timeBudget = budget;
+        request.halfRate = half;
         return shoot(scatter_scene::device(), scene, profile_, 1, request);
     }
     LitScene scene(double ambient = 0) {
@@ -76,7 +80,8 @@ TEST_F(TimeBudget, TakesWhatIsNearestToLightOfWhatFits) {
         EXPECT_EQ(by.stats.tuned, 1u);
         const auto as = taken.method == PEL_SCATTERING_AUTO ? PEL_SCATTERING_SCREEN : taken.method;
         EXPECT_EQ(by.shader.material(1).scattering, as);
-        EXPECT_EQ(by.light, shot(lit, taken.method, float(by.stats.takenTargetError)).light);
+        EXPECT_EQ(by.stats.takenHalfRate, taken.half);
+        EXPECT_EQ(by.light, shot(lit, taken.method, float(by.stats.takenTargetError), 0, taken.half).light);
         EXPECT_EQ(by.shader.warnings(), "");
     }
     const Shot short_ = shot(lit, PEL_SCATTERING_AUTO, 0.003f, 1e-6f);
@@ -85,15 +90,17 @@ TEST_F(TimeBudget, TakesWhatIsNearestToLightOfWhatFits) {
         << short_.shader.warnings();
     // Errors below targetError are not aimed at; maps do not hold ambient light.
     const auto least = [&](const LitScene& s) { return shot(s, PEL_SCATTERING_AUTO, 0.05f, 1e3f).stats; };
-    EXPECT_EQ(least(lit).expectedError, rows[5].error);
+    EXPECT_EQ(least(lit).expectedError, rows[6].error);
     const PelShaderStats around = least(scene(0.2));
     EXPECT_EQ(around.expectedError, rows[3].error);
     EXPECT_EQ(around.takenTargetError, 0.05f);
+    // Where half rate is asked for, light has no other.
+    EXPECT_EQ(shot(lit, PEL_SCATTERING_AUTO, 0.003f, 1e3f, true).stats.expectedError, rows[5].error);
     // The frame is not drawn yet.
     LitScene empty = lit;
     std::ranges::fill(empty.gbuffer.material, uint8_t(0));
     EXPECT_NEAR(shot(empty, PEL_SCATTERING_AUTO, 0.003f, 1e3f).stats.expectedMilliseconds,
-                expected(rows[5], frame), 1e-9);
+                expected(rows[6], frame), 1e-9);
     // Other methods, and no budget.
     for (const PelShaderStats& stats : {shot(lit, PEL_SCATTERING_SCREEN, 0.003f, 1e-6f).stats,
                                         shot(lit, PEL_SCATTERING_AUTO, 0.003f).stats}) {
