@@ -17,7 +17,9 @@ bool scatters(const ShaderState& state, const ShaderMaterial& material, bool alo
     return methods >> material.params.scattering & 1 && !scattersOnDisk(material);
 }
 
-bool halfRate(const ShaderPlan& plan) { return plan.state.options.halfRate || plan.taken.halfRate; }
+bool halfRate(const ShaderPlan& plan) {
+    return plan.state.options.halfRate || plan.taken.halfRate;
+}
 
 // `alone`: texels are all of the far part.
 template <bool alone>
@@ -31,10 +33,11 @@ class ScatterPass final : public Pass {
     // Neighbours may be as far away as the profile reaches.
     PassScratch scratch(const ShaderPlan& plan) const override {
         const ImageView& frame = plan.state.images[PEL_SLOT_RADIANCE];
-        return {(ownsIrradiance(plan) ? 0 : 3 * sizeof(float)) + (alone && halfRate(plan) ? sizeof(float) : 0),
-                ScreenScatter::bytesFor(frame.width, frame.height, hasRadii(plan)) +
-                    LightSpace::bytesFor(plan.state.lights, !alone),
-                0, true};
+        return {
+            (ownsIrradiance(plan) ? 0 : 3 * sizeof(float)) + (alone && halfRate(plan) ? sizeof(float) : 0),
+            ScreenScatter::bytesFor(frame.width, frame.height, hasRadii(plan)) +
+                LightSpace::bytesFor(plan.state.lights, !alone),
+            0, true};
     }
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
