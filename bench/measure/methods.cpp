@@ -475,8 +475,7 @@ class Methods {
                 measureLook(scene, *stage, name, scale);
             });
         }
-        if (scene.name != frozenScenes()[0].name || !request_.only.empty() || !stage) return;
-        measureShares(scene, *stage);
+        if (scene.name == frozenScenes()[0].name) measureShares(scene, stage);
     }
 
     void measureLook(const FrozenScene& scene, const Stage& stage, const std::string& name, double scale) {
@@ -523,22 +522,27 @@ class Methods {
     }
 
     // The shown methods at the usual radius, of a frame in which `share` percent of the skin are left.
-    void measureShares(const FrozenScene& scene, const Stage& stage) {
-        LitScene s = stage.look(scene.request, profile_);
+    void measureShares(const FrozenScene& scene, std::optional<Stage>& stage) {
+        const auto nameOf = [](int share) { return std::to_string(share) + " % of the skin"; };
+        constexpr int shares[] = {100, 50, 10, 0};
+        if (std::ranges::none_of(shares, [&](int share) { return wanted(nameOf(share)); })) return;
+        if (!stage) stage.emplace(device_, scene.body(headFile()), 1);
+        LitScene s = stage->look(scene.request, profile_);
         std::vector<size_t> skin;
         for (size_t i = 0; i < s.covered.size(); ++i)
             if (s.covered[i]) skin.push_back(i);
-        for (const int share : {100, 50, 10, 0}) {
+        for (const int share : shares) {
             while (skin.size() > s.places.size() * size_t(share) / 100)
                 s.gbuffer.material[skin.back()] = 0, skin.pop_back();
-            const std::string name = std::to_string(share) + " % of the skin";
-            attempt(name, "shares", [&] { measureShown(s, name, "shares", request_.quick ? 3 : 7); });
+            const std::string name = nameOf(share);
+            if (wanted(name))
+                attempt(name, "shares", [&] { measureShown(s, name, "shares", request_.quick ? 3 : 7); });
         }
     }
     void measureShown(const LitScene& s, const std::string& name, const char* group, int rounds) {
         std::vector<Contender> contenders;
         for (const Setting& setting : settings())
-            if (setting.shown)
+            if (setting.shown && (wanted(name, setting) || setting.method == "Lambert"))
                 contenders.push_back({setting, shoot(device_, s, profile_, 1, setting.request)});
         run(contenders, name, group, rounds);
         const double plain = timeOfPlain(contenders);

@@ -207,6 +207,7 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
             {"bands", s.bands},
             {"pixels_invalid", s.pixelsInvalid},
             {"shade_ms", s.deviceMilliseconds},
+            {"texels_reached", s.texelsReached},
             {"taken_target_error", s.takenTargetError},
             {"taken_half_rate", s.takenHalfRate != 0},
             {"expected_ms", s.expectedMilliseconds},

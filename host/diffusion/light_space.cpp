@@ -89,11 +89,12 @@ void LightSpace::announce(const std::vector<ShaderLight>& lights, bool hidden, b
 }
 
 void LightSpace::prepare(const std::vector<ShaderLight>& lights, const float origin[3], double narrowest,
-                         size_t tileCount, size_t blocks) {
+                         double widest, size_t tileCount, size_t blocks) {
     maps_ = lightMaps(lights, origin, hidden_ ? narrowest / texelsPerReach : 0);
     if (empty_) return;
     images_.clear();
     for (LightMap& map : maps_) {
+        map.constants.reach = float(widest);
         const cl::Memory& memory = map.image.buffer->memory();
         const auto found =
             std::ranges::find_if(images_, [&](const cl::Memory& m) { return m.get() == memory.get(); });
@@ -147,12 +148,12 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
     };
     cl::Launch seen(screen.program, "light_seen", screen.frame,
                     images.positions ? images.positions : images.depth, images.ids, mapUpload_,
-                    screen.pyramid, seen_);
+                    screen.pyramid, seen_, screen.counters);
     lightBufferArguments(seen, images_);
     const uint32_t across = device_->info().mathWidth == 1 ? (screen.width + 1) / 2 : screen.width;
     launch(seen, forMaps(vectorRange(*device_, across, (screen.height + 1) / 2)));
-    cl::Launch texels(screen.program, "light_texels", mapUpload_, seen_, cells_[0], cells_[1], frameNumber_,
-                      pyramid_);
+    cl::Launch texels(screen.program, "light_texels", mapUpload_, seen_, screen.counters, cells_[0],
+                      cells_[1], frameNumber_, pyramid_);
     lightBufferArguments(texels, images_);
     launch(texels, forMaps(vectorRange(*device_, width, height)));
     for (uint32_t level = 1, count; level < levels; level += count) {
@@ -167,6 +168,16 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
     device_->launch(events, screen.program, "light_classify", summingRange(*device_, screen.tileCount),
                     screen.frame, screen.pyramid, screen.tables, screen.nodes, screen.tiles, mapUpload_,
                     cl_uint(maps_.size()), pyramid_, parts_, screen.counters);
+}
+
+uint64_t LightSpace::texelsOf(const uint32_t (&regions)[PEL_LIGHT_MAPS][4]) const {
+    uint64_t texels = 0;
+    for (size_t k = 0; k < maps_.size(); ++k) {
+        const PelPyramidLevel& map = maps_[k].constants.level[0];
+        const auto& r = regions[k];
+        if (r[0]) texels += uint64_t(r[0] + r[1] - map.width) * (r[2] + r[3] - map.height);
+    }
+    return texels;
 }
 
 void LightSpace::enqueueHidden(const ScreenMemory& screen, std::vector<cl::Event>& events) {

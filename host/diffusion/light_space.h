@@ -23,10 +23,10 @@ class LightSpace {
     // otherwise all texels are the far part of the sum, `half`: at every second pixel of both directions. All
     // maps have one format and one content. Without a map nothing is done.
     void announce(const std::vector<ShaderLight>& lights, bool hidden, bool half);
-    // `narrowest`: smallest reach of the profiles, length. `blocks`: floats for the occluded light of the
+    // `narrowest`, `widest`: reach of the profiles, length. `blocks`: floats for the occluded light of the
     // screen's blocks.
     void prepare(const std::vector<ShaderLight>& lights, const float origin[3], double narrowest,
-                 size_t tileCount, size_t blocks);
+                 double widest, size_t tileCount, size_t blocks);
     bool empty() const { return empty_; }
     // Adds the kernels to a program that reads the same images: building separate programs takes drivers
     // longer.
@@ -40,6 +40,8 @@ class LightSpace {
     // Sums over the texels only; after the irradiance has been copied to the output.
     void enqueueSums(const ScatterImages& images, const ScreenMemory& screen, std::vector<cl::Event>& events);
     static uint64_t bytesFor(const std::vector<ShaderLight>& lights, bool hidden);
+    // Texels of these regions (PEL_LIGHT_REGION), one of each map.
+    uint64_t texelsOf(const uint32_t (&regions)[PEL_LIGHT_MAPS][4]) const;
     size_t bytes() const {
         return pyramid_.bytes() + seen_.bytes() + hiddenSums_.bytes() + samples_.bytes() +
                2 * cells_[0].bytes() + maps_.size() * sizeof(PelLightMap);

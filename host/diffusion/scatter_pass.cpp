@@ -72,6 +72,7 @@ class ScatterPass final : public Pass {
         LightCounts light;
         ScatterCounts counts = scatter_->counts(&light);
         counts.taps += light.texels;
+        stats.texelsReached += light.reached;
         if (alone) counts.tilesTapped = light.tiles, counts.pixelsTapped = light.pixels;
         addScatterCounts(counts, alone ? PEL_SCATTERING_LIGHT : PEL_SCATTERING_SCREEN, stats);
         if constexpr (!alone) {

@@ -35,7 +35,7 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
     frame_.tables = uint32_t(distinct.size());
     const bool hasSides = frame_.facing && frame_.curvature.rowStride;
     if (materials == materials_ && hasSides == hasSides_ && lights_.alone == byTexels_ && tables_) return;
-    narrowest_ = 0;
+    narrowest_ = widest_ = 0;
     std::vector<PelProfileTable> tables;
     std::vector<float> values;
     for (const Material& material : distinct) {
@@ -51,6 +51,7 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
                                                 (lights_.alone ? 1 : nearerByLevels));
         tables.push_back(nodes.table);
         narrowest_ = narrowest_ > 0 ? std::min(narrowest_, double(nodes.table.reach)) : nodes.table.reach;
+        widest_ = std::max(widest_, double(nodes.table.reach));
         values.insert(values.end(), nodes.values.begin(), nodes.values.end());
     }
     if (tables.empty()) tables.emplace_back(), values.resize(12);
@@ -146,11 +147,11 @@ void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const
     sendTables(materials);
     describeLevels(frame_.width, frame_.height, bool(images.radii));
     const PelPyramidLevel& pairs = frame_.level[1];
-    light_.prepare(lights_.lights, frame_.origin, narrowest_, size_t(frame_.tilesX) * frame_.tilesY,
+    light_.prepare(lights_.lights, frame_.origin, narrowest_, widest_, size_t(frame_.tilesX) * frame_.tilesY,
                    size_t(pairs.height + 2 * PEL_PYRAMID_ROWS) * PEL_HIDDEN_PLANES * pairs.stride +
                        2 * PEL_PYRAMID_GUARD);
     tiles_.resize(*device_, size_t(frame_.tilesX) * frame_.tilesY * sizeof(cl_uint));
-    if (!counters_) counters_ = device_->allocate(PEL_LIGHT_COUNTERS * sizeof(cl_uint));
+    if (!counters_) counters_ = device_->allocate(PEL_LIGHT_WORDS * sizeof(cl_uint));
     constants_.send(*device_, frame_);
 }
 
@@ -186,7 +187,7 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
                             const auto&... values) {
         device_->launch(events, programs[program], kernel, range, constants_, values...);
     };
-    device_->fill(counters_.get(), 0, PEL_LIGHT_COUNTERS * sizeof(cl_uint), 0);
+    device_->fill(counters_.get(), 0, PEL_LIGHT_WORDS * sizeof(cl_uint), 0);
     const cl::Range pixels = vectorRange(*device_, frame_.width, frame_.height);
     launch(PYRAMIDS, "surface_points", pixels, images.irradiance,
            images.positions ? images.positions : images.depth, images.ids, images.curvature, images.radii,
@@ -232,11 +233,12 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
 ScatterCounts ScreenScatter::counts(LightCounts* light) {
     struct {
         ScatterCounts screen;
-        LightCounts light;
+        uint32_t pixels, texels, tiles;
+        uint32_t regions[PEL_LIGHT_MAPS][4];
     } counts{};
-    static_assert(sizeof counts == PEL_LIGHT_COUNTERS * sizeof(cl_uint));
+    static_assert(sizeof counts == PEL_LIGHT_WORDS * sizeof(cl_uint));
     if (counters_) device_->read(counters_.get(), 0, sizeof counts, &counts, true);
-    if (light) *light = counts.light;
+    if (light) *light = {counts.pixels, counts.texels, counts.tiles, light_.texelsOf(counts.regions)};
     return counts.screen;
 }
 

@@ -30,6 +30,7 @@ struct ScatterCounts {
 };
 struct LightCounts {
     uint32_t pixels, texels, tiles;
+    uint64_t reached;  // texels of maps
 };
 
 class ScreenScatter {
@@ -76,7 +77,7 @@ class ScreenScatter {
     cl::Memory tables_, nodes_, counters_;
     SizedMemory pyramid_, sums_, tiles_;
     bool hasSides_ = false, byTexels_ = false;  // whether tables_ have directions; for sums over texels only
-    double narrowest_ = 0;                      // reach of the tables, length
+    double narrowest_ = 0, widest_ = 0;         // reach of the tables, length
     size_t nodeBytes_ = 0;
 };
 

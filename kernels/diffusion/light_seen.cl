@@ -7,10 +7,12 @@
 // texel, set to 0 beforehand: the id of the pixel, or PEL_SEEN_OTHER where the pixel does not scatter.
 // Patches of several work-items meet at a texel, so bytes are merged atomically, and the result does not
 // depend on their order: with PEL_HIDDEN the bits of all ids, since only "not 0" matters, otherwise the
-// smallest id. One work-item: PEL_WIDTH pixels of every other row, one lane: every other pixel of it, in a
-// map. Variants: PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1),
+// smallest id. Also output: the part of the map that the profiles reach from what scatters, which is all
+// that light_texels makes (PEL_LIGHT_REGION). One work-item: PEL_WIDTH pixels of every other row, one lane:
+// every other pixel of it, in a map. Variants: PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1),
 // PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT, PEL_HIDDEN.
 #include "lib/diffusion/item.clh"
+#include "lib/diffusion/lanes.clh"
 #include "lib/diffusion/light_space.clh"
 #include "lib/diffusion/pyramid.clh"
 #include "lib/shading/material_id.clh"
@@ -143,16 +145,53 @@ static inline void fetchDepths(__global const PelLightMap* map, __global const u
     }
 }
 
+// Texels around a pixel's own that blocks of texels within a profile's reach may hold, over the reach: a
+// block may be as wide as the reach, and its middle that far away.
+#define BLOCKS_REACH 3.0f
+#define LEAST_TEXELS 16.0f
+
+static inline void widenTo(volatile __global uint* word, uint value) {
+    if (value > *word) atomic_max(word, value);
+}
+
+// Adds PEL_WIDTH pixels of level 0 of the screen's pyramid to the region of the map.
+static inline void widenRegion(__global const PelLightMap* map, __global const float* pixels, uint stride,
+                               maskw on, volatile __global uint* region) {
+    on &= as_uintw(loadw(PEL_PLANE_ID * stride, pixels)) != (uintw)(0);
+    if (!anyw(on)) return;
+    floatw w, reach = map->reach;
+#if PEL_RADII
+    reach *= loadw(PEL_PLANE_RADIUS * stride, pixels);
+#endif
+    const Vec3w at = texelOf(map, loadPlanes3(pixels + PEL_PLANE_X * stride, stride), &w);
+    const float width = (float)map->level[0].width, height = (float)map->level[0].height;
+    const floatw around = BLOCKS_REACH * reach / (map->texel * w) + LEAST_TEXELS;
+    on &= (w > 0.0f) & finitew(at.x) & finitew(at.y) & (at.x > -around) & (at.y > -around) &
+          (at.x < width + around) & (at.y < height + around);
+    if (!anyw(on)) return;
+    widenTo(region, (uint)(width - clamp(floor(minLane(at.x - around, on)), 0.0f, width - 1.0f)));
+    widenTo(region + 1, 1 + (uint)clamp(-floor(minLane(-at.x - around, on)), 0.0f, width - 1.0f));
+    widenTo(region + 2, (uint)(height - clamp(floor(minLane(at.y - around, on)), 0.0f, height - 1.0f)));
+    widenTo(region + 3, 1 + (uint)clamp(-floor(minLane(-at.y - around, on)), 0.0f, height - 1.0f));
+}
+
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_seen(
     __global const PelDiffusionFrame* restrict frame, __global uchar* position, __global uchar* ids,
     __global const PelLightMap* restrict maps, __global const float* restrict pyramid,
-    volatile __global uint* seen PEL_LIGHT_BUFFER_ARGUMENTS) {
+    volatile __global uint* seen, volatile __global uint* counters PEL_LIGHT_BUFFER_ARGUMENTS) {
     const uint across = (frame->width + STEP - 1) / STEP, y = itemOfFolded() / across * EVERY;
     if (y >= frame->height) return;
     __global const PelLightMap* map = maps + get_global_id(2);
     const uint from = itemOfFolded() % across * STEP, x = vectorStart(from, frame->width);
     const intw column = lanesw() + (int)x;
     const maskw mine = (column >= (int)from) & (column < (int)frame->width) & (column % EVERY == 0);
+    __global const PelPyramidLevel* level = &frame->level[0];
+    __global const float* own = pyramid + pyramidRow(level, (int)y) + x;
+    const uint stride = level->stride;
+    PEL_ROLL for (uint down = 0; down < EVERY; ++down)  // rows and columns beyond the picture have no id
+        PEL_ROLL for (uint right = 0; right < STEP; right += PEL_WIDTH)
+            widenRegion(map, own + down * PEL_PYRAMID_PLANES * stride + right, stride, (maskw)(-1),
+                        counters + PEL_LIGHT_REGION(get_global_id(2)));
     const Vec3w p = loadPositions(frame, position, x, y);
 #if PEL_WIDTH == 1
     const Vec3w before = loadPositions(frame, position, x > 0 ? x - 1 : min(x + 1, frame->width - 1), y),
@@ -179,9 +218,6 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_seen(
     id = loadId(PEL_FORMAT_MATERIAL, imageSpan(ids, &frame->ids, x, y));
 #endif
     // A scattering pixel without irradiance is not lit by any light, so its texel shows something else.
-    __global const PelPyramidLevel* level = &frame->level[0];
-    __global const float* own = pyramid + pyramidRow(level, (int)y) + x;
-    const uint stride = level->stride;
     const maskw dark = (loadw(PEL_PLANE_RED * stride, own) == 0.0f) &
                        (loadw(PEL_PLANE_GREEN * stride, own) == 0.0f) &
                        (loadw(PEL_PLANE_BLUE * stride, own) == 0.0f);

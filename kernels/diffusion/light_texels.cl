@@ -1,10 +1,10 @@
 // The finest level of a light's pyramid (shared/light_space.h): the position of the surface that each
 // shadow-map texel shows, and the light that falls on it (docs/mathematics.md, section 10, "Light space").
 //
-// Input: the map, the marks of light_seen, and which cells of texels (PEL_LIGHT_CELL) had flux before.
-// Output: level 0, and which cells have flux now. With PEL_HIDDEN only occluded texels have flux. Without
-// it all texels have, except those of objects that do not scatter, and their ids are stored beside. One
-// work-item: PEL_WIDTH texels of a row. Variants: PEL_HIDDEN, PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT.
+// Input: the map, the marks and the region of light_seen, and which cells of texels (PEL_LIGHT_CELL) had
+// flux before. Output: level 0, and which cells have flux now. Only texels of the region have flux: with
+// PEL_HIDDEN the occluded ones, without it all but those of objects that do not scatter, and their ids are
+// stored beside. One work-item: PEL_WIDTH texels of a row. Variants: PEL_HIDDEN, PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/light_space.clh"
 #include "lib/image/planes.clh"
@@ -74,26 +74,31 @@ static inline Vec3w stepAlong(__global const PelLightMap* map, __global const uc
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_texels(
     __global const PelLightMap* restrict maps, __global const uchar* restrict seen,
-    __global const uchar* restrict before, __global uchar* now, uint frameNumber,
-    __global float* pyramid PEL_LIGHT_BUFFER_ARGUMENTS) {
+    __global const uint* restrict counters, __global const uchar* restrict before, __global uchar* now,
+    uint frameNumber, __global float* pyramid PEL_LIGHT_BUFFER_ARGUMENTS) {
     __global const PelLightMap* map = maps + get_global_id(2);
     __global const PelPyramidLevel* level = &map->level[0];
     const uint across = (level->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
     if (y >= level->height) return;
     const uint x = itemOfFolded() % across * PEL_WIDTH;
+    const uint cell = map->cells + y / PEL_LIGHT_CELL * cellsAcross(map) + x / PEL_LIGHT_CELL;
+    const bool had = cellOfFrame(before[cell], frameNumber - 1);
+    __global const uint* region = counters + PEL_LIGHT_REGION(get_global_id(2));
+    const bool reached = x + PEL_WIDTH > level->width - region[0] && x < region[1] &&
+                         y + region[2] >= level->height && y < region[3];
+    if (!reached && !had) return;
     const size_t at = lightRow(level, 1, (int)y) + x;
     const uint stride = level->stride;
     __global const uchar* first = firstTexel(PEL_LIGHT_BUFFER_OF(map->buffer), &map->map);
     const intw column = lanesw() + (int)x;
     const uintw id = idsOfTexels(seen + map->seen + (size_t)y * level->width + x);
-    maskw there =
-        (column < (int)level->width) & (PEL_HIDDEN ? id == (uintw)(0) : id != (uintw)(PEL_SEEN_OTHER));
+    maskw there = (maskw)(reached ? -1 : 0) & (column < (int)level->width) &
+                  (PEL_HIDDEN ? id == (uintw)(0) : id != (uintw)(PEL_SEEN_OTHER));
     floatw depth = 0.0f;
     if (anyw(there)) {
         depth = texelDepths(map, first, (int)x, (int)y);
         there &= surfaceAt(map, depth);
     }
-    const uint cell = map->cells + y / PEL_LIGHT_CELL * cellsAcross(map) + x / PEL_LIGHT_CELL;
     floatw flux = 0.0f;
     if (anyw(there)) {
         const floatw columns = convert_floatw(column), rows = (float)y;
@@ -142,7 +147,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_texel
     }
     if (anyw(flux > 0.0f))
         now[cell] = (uchar)frameNumber;
-    else if (!cellOfFrame(before[cell], frameNumber - 1))
+    else if (!had)
         return;
     storew(flux, at + PEL_LIGHT_FLUX * stride, pyramid);
 }

@@ -42,6 +42,7 @@ typedef struct PelLightMap {
     float radialRange;  // length per unit of depth where depth is the distance from the light; 0: it is not
     float perExponent;  // depth per log2 of a texel; exponential maps
     float texel;        // length of a texel over the homogeneous coordinate there
+    float reach;        // length: of the widest profile, for a factor of the radius of 1
     float size[2];      // texels across
     float middle;       // of a texel's depth, from its edge: 0.5 where each of the image's is one
     PelUint32 step;     // the image's texels along a side of one here; the depth is that of one of them
@@ -64,7 +65,13 @@ typedef struct PelLightMap {
 #define PEL_COUNT_LIGHT_TILES (PEL_DIFFUSION_COUNTERS + 2)
 #define PEL_LIGHT_COUNTERS (PEL_DIFFUSION_COUNTERS + 3)
 
+// After the counters, for each map the texels that the profiles reach from what scatters on the screen: the
+// map's width less the first column, the last column plus 1, the same of rows; 0: none. The others have no
+// flux.
+#define PEL_LIGHT_REGION(map) (PEL_LIGHT_COUNTERS + 4 * (map))
+#define PEL_LIGHT_WORDS PEL_LIGHT_REGION(PEL_LIGHT_MAPS)
+
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelLightMap) ==
-              4 * (32 + 1 + 3 + 3 + 3 + 3 + 3 + 7 + 8 + 8) + 32 + PEL_LIGHT_LEVELS * 16);
+              4 * (32 + 1 + 3 + 3 + 3 + 3 + 3 + 7 + 9 + 8) + 32 + PEL_LIGHT_LEVELS * 16);
 #endif

@@ -131,6 +131,44 @@ TEST(LightSpace, IsTheSumOverAllTexelsOfAllLights) {
     }
 }
 
+// Of a map only what the profile reaches from the pixels that scatter is made into lit surface, and nothing
+// where none does.
+TEST(LightSpace, OnlyTexelsWithinReachAreMade) {
+    constexpr uint32_t mapSide = 384;
+    const LitBall light = makeBall(Form::parallel, normalized(Vec3{0.7, 0.2, 0.5}), mapSide);
+    const Profile profile = Profile::gaussians({{0.002f, {1, 0.8f, 0.6f}}});
+    const auto exact = reference::gaussiansProfile({{0.002, {1, 0.8, 0.6}}});
+    constexpr uint32_t side = 48;
+    for (PelScattering method : {byLight, byAuto}) {
+        Frame whole = frameOf({light}, side, method, 0, profile);
+        whole.options.targetError = 0;
+        const uint64_t all = whole.shade().stats.texelsReached;
+        EXPECT_GT(all, mapSide * mapSide / 5);  // auto takes texels together
+        EXPECT_LE(all, mapSide * mapSide);
+        ShownImages images(device(), 1, 1);
+        const auto patch = [&](uint32_t left) {
+            Frame f = whole;
+            for (size_t i = 0; i < f.picture.pixels(); ++i)
+                if (i % side < left || i % side >= left + 3 || i / side < side / 2 ||
+                    i / side >= side / 2 + 3)
+                    f.picture.ids[i] = 0;
+            const Shown shown = f.shade(images);
+            if (method == byLight) {
+                const auto truth =
+                    reference::scatterFromLights(f.picture.exact(), {exactLight(light)}, *exact);
+                EXPECT_FALSE(difference(f.picture, shown.light, truth).relative > tolerance::lightPlaces)
+                    << left;  // not a number where nothing is lit
+            }
+            return shown.stats.texelsReached;
+        };
+        for (uint32_t left = 6; left < side - 8; left += 6) {
+            EXPECT_GT(patch(left), 0u) << left;
+            EXPECT_LT(patch(left), all / 2) << left;
+        }
+        EXPECT_EQ(patch(side), 0u);
+    }
+}
+
 // Light adds up: what two lights scatter is what each of them scatters alone.
 TEST(LightSpace, TwoLightsAreTheSumOfEachAlone) {
     const uint32_t side = sized(64u, 20u);

@@ -1236,6 +1236,8 @@ typedef struct PelShaderStats {
     uint64_t tuned;         /* 1: they come from this device's record, 0: from the built-in guess */
     uint64_t pixelsHistory; /* that took light from the last frame (PelShaderOptions.historyWeight) */
     uint64_t takenHalfRate; /* 1: for the time budget, light is summed as with PelShaderOptions.halfRate */
+    /* of shadow maps: within reach of what scatters on the screen. The others are left alone */
+    uint64_t texelsReached;
 } PelShaderStats;
 
 /* What a pass of a shader did in one execution. */
