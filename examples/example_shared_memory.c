@@ -1,7 +1,7 @@
 /* Memory of somebody else that Pellucid uses in place, by way of a cl_mem of the host's own: a dma-buf
  * (cl_khr_external_memory_dma_buf; Vulkan's exported memory is imported the same way). It runs where a driver
  * has it, and says so where none has: then the renderer's images are copied, by pelBufferWrite or a buffer
- * over mapped host memory. docs/guide/hosts.md has the same for Vulkan, deferred_gl for OpenGL. */
+ * over mapped host memory. example_vulkan.cpp has the same for Vulkan, deferred_gl for OpenGL. */
 #define _GNU_SOURCE
 #define CL_TARGET_OPENCL_VERSION 300
 #include <CL/cl.h>
