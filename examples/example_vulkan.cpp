@@ -1,12 +1,14 @@
 // Memory of Vulkan that Pellucid works on in place, without a window. Vulkan fills a G-buffer, a finger lit
 // from its side, as a renderer would draw one, and Pellucid writes radiance into the same memory: shared by
-// cl_khr_external_memory_opaque_fd where the OpenCL device has it and is the same GPU, else mapped memory of
-// the host. Fails unless the picture has the bits of one that is made from a copy; ends with 77 without
-// Vulkan.
+// cl_khr_external_memory, as an opaque descriptor or a dma-buf, where the OpenCL device has it and is the
+// same GPU, else mapped memory of the host. Fails unless the picture has the bits of one that is made from a
+// copy; ends with 77 without Vulkan.
 #define CL_TARGET_OPENCL_VERSION 300
 #include <CL/cl.h>
 #include <CL/cl_ext.h>
 
+#include <unistd.h>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -86,14 +88,32 @@ void fill(vk::Device device, vk::Buffer buffer, uint32_t owner) {
     queue.waitIdle();
 }
 
-// Whether an OpenCL device takes memory of this GPU.
-bool takesMemory(cl_device_id device, const vk::PhysicalDeviceIDProperties& gpu) {
-    static char extensions[1 << 16];
+struct Way {
+    const char *openCl, *vulkan;  // extensions
+    cl_mem_properties import;
+    vk::ExternalMemoryHandleTypeFlagBits handle;
+};
+constexpr Way ways[] = {
+    {"cl_khr_external_memory_opaque_fd", VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME,
+     CL_EXTERNAL_MEMORY_HANDLE_OPAQUE_FD_KHR, vk::ExternalMemoryHandleTypeFlagBits::eOpaqueFd},
+    {"cl_khr_external_memory_dma_buf", VK_EXT_EXTERNAL_MEMORY_DMA_BUF_EXTENSION_NAME,
+     CL_EXTERNAL_MEMORY_HANDLE_DMA_BUF_KHR, vk::ExternalMemoryHandleTypeFlagBits::eDmaBufEXT}};
+
+// How an OpenCL device takes memory of this GPU; nullptr: not at all.
+const Way* wayOf(cl_device_id device, vk::PhysicalDevice gpu, const vk::PhysicalDeviceIDProperties& ids) {
+    static char openCl[1 << 16];
     cl_uchar uuid[CL_UUID_SIZE_KHR];
-    return !clGetDeviceInfo(device, CL_DEVICE_EXTENSIONS, sizeof extensions, extensions, nullptr) &&
-           std::strstr(extensions, "cl_khr_external_memory_opaque_fd") &&
-           !clGetDeviceInfo(device, CL_DEVICE_UUID_KHR, sizeof uuid, uuid, nullptr) &&
-           std::memcmp(uuid, gpu.deviceUUID, sizeof uuid) == 0;
+    if (clGetDeviceInfo(device, CL_DEVICE_EXTENSIONS, sizeof openCl, openCl, nullptr) ||
+        clGetDeviceInfo(device, CL_DEVICE_UUID_KHR, sizeof uuid, uuid, nullptr) ||
+        std::memcmp(uuid, ids.deviceUUID, sizeof uuid) != 0)
+        return nullptr;
+    const auto vulkan = gpu.enumerateDeviceExtensionProperties();
+    for (const Way& way : ways)
+        if (std::strstr(openCl, way.openCl) && std::any_of(vulkan.begin(), vulkan.end(), [&](const auto& e) {
+                return std::strcmp(e.extensionName, way.vulkan) == 0;
+            }))
+            return &way;
+    return nullptr;
 }
 
 // "Acquire" before work on memory of somebody else, "Release" after it.
@@ -109,49 +129,54 @@ void handOver(const char* which, cl_device_id device, cl_command_queue queue, cl
 int run() {
     const vk::ApplicationInfo application("", 0, "", 0, VK_API_VERSION_1_1);
     const vk::UniqueInstance instance = vk::createInstanceUnique({{}, &application});
-    const vk::PhysicalDevice gpu = instance->enumeratePhysicalDevices().at(0);
+    const std::vector<vk::PhysicalDevice> gpus = instance->enumeratePhysicalDevices();
+    if (gpus.empty()) throw vk::IncompatibleDriverError("no device");
+    const vk::PhysicalDevice gpu = gpus[0];
     const auto properties =
         gpu.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceIDProperties>();
     const Device pel;
     void *context = nullptr, *id = nullptr, *queue = nullptr;
     check(pelDeviceGetCl(pel.get(), &context, &id, &queue));
-    const bool shared = takesMemory(cl_device_id(id), properties.get<vk::PhysicalDeviceIDProperties>());
+    const Way* const way = wayOf(cl_device_id(id), gpu, properties.get<vk::PhysicalDeviceIDProperties>());
 
     const float priority = 1;
     const vk::DeviceQueueCreateInfo queues({}, 0, 1, &priority);
-    const std::vector<const char*> extensions(shared, VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
+    std::vector<const char*> extensions;
+    if (way) extensions.push_back(ways[0].vulkan);
+    if (way == &ways[1]) extensions.push_back(way->vulkan);
     const vk::UniqueDevice device = gpu.createDeviceUnique({{}, queues, {}, extensions});
-    const auto handle = vk::ExternalMemoryHandleTypeFlagBits::eOpaqueFd;
+    const auto handle = way ? way->handle : ways[0].handle;
     const vk::ExternalMemoryBufferCreateInfo external(handle);
     const vk::ExportMemoryAllocateInfo exported(handle);
     const auto usage = vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst;
     vk::BufferCreateInfo size({}, allBytes, usage);
-    if (shared) size.pNext = &external;
+    if (way) size.pNext = &external;
     const vk::UniqueBuffer buffer = device->createBufferUnique(size);
     const vk::MemoryRequirements needs = device->getBufferMemoryRequirements(*buffer);
     const vk::PhysicalDeviceMemoryProperties types = gpu.getMemoryProperties();
     using Flag = vk::MemoryPropertyFlagBits;
     const vk::MemoryPropertyFlags wanted =
-        shared ? Flag::eDeviceLocal : Flag::eHostVisible | Flag::eHostCoherent;
+        way ? Flag::eDeviceLocal : Flag::eHostVisible | Flag::eHostCoherent;
     uint32_t type = 0;
     while (!(needs.memoryTypeBits >> type & 1) ||
            (types.memoryTypes.at(type).propertyFlags & wanted) != wanted)
         ++type;
     const vk::UniqueDeviceMemory memory =
-        device->allocateMemoryUnique({needs.size, type, shared ? &exported : nullptr});
+        device->allocateMemoryUnique({needs.size, type, way ? &exported : nullptr});
     device->bindBufferMemory(*buffer, *memory, 0);
 
     Buffer image;
     cl_mem imported = nullptr;
-    if (shared) {
+    if (way) {
         fill(*device, *buffer, VK_QUEUE_FAMILY_EXTERNAL);
         const auto fdOf = reinterpret_cast<PFN_vkGetMemoryFdKHR>(device->getProcAddr("vkGetMemoryFdKHR"));
         const VkMemoryGetFdInfoKHR info = vk::MemoryGetFdInfoKHR(*memory, handle);
         int fd = -1;
-        fdOf(*device, &info, &fd);  // the cl_mem owns the descriptor
-        const cl_mem_properties from[] = {CL_EXTERNAL_MEMORY_HANDLE_OPAQUE_FD_KHR, cl_mem_properties(fd), 0};
+        fdOf(*device, &info, &fd);
+        const cl_mem_properties from[] = {way->import, cl_mem_properties(fd), 0};
         imported = clCreateBufferWithProperties(cl_context(context), from, CL_MEM_READ_WRITE, allBytes,
                                                 nullptr, nullptr);
+        if (way == &ways[1]) close(fd);  // the cl_mem owns an opaque one
         handOver("Acquire", cl_device_id(id), cl_command_queue(queue), imported);
         image = Buffer::fromCl(pel, imported);
     } else {
@@ -167,8 +192,9 @@ int run() {
     // Half a millimetre beyond the terminator.
     const float* const dark = &all[radianceAt / 4 + 4 * (side * side / 2 + side / 2 - 28)];
     const bool right = all == copy.readAll<float>() && dark[0] > dark[2];
-    std::printf("%s fills, %s shades, in %s memory: %s\n", properties.get<>().properties.deviceName.data(),
-                pel.info().name, shared ? "shared" : "mapped", right ? "the picture of a copy" : "WRONG");
+    std::printf("%s fills, %s shades, by %s: %s\n", properties.get<>().properties.deviceName.data(),
+                pel.info().name, way ? way->openCl : "mapped memory",
+                right ? "the picture of a copy" : "WRONG");
     if (imported) {
         handOver("Release", cl_device_id(id), cl_command_queue(queue), imported);
         pel.finish();
