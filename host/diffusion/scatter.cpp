@@ -176,7 +176,6 @@ void Scatter::execute(const PelScatterParams& params, const ScatterImages& image
     std::vector<ImageView> read{images.irradiance, images.positions, images.depth, images.ids, images.out};
     for (const auto& [slot, view] : images_) read.push_back(view);
     copyTextures(read, false);
-    capture(params, images);
     run(params, images, nullptr);
     copyTextures({images.out}, true);
 }
@@ -218,6 +217,7 @@ void Scatter::run(const PelScatterParams& params, const ScatterImages& images,
     checkParams(params);
     checkImages(images);
     const Plan plan = planOf(params, images);
+    if (!keys) capture(params, images);
     ScatterView view;
     std::copy_n(params.inverseViewProjection, 16, view.inverseViewProjection);
     view.tolerance = params.targetError * params.white;

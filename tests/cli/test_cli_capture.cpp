@@ -274,7 +274,7 @@ TEST_F(Capture, RepeatsScatteringAlone) {
         expectRepeats("scatter-1", light);
     }
 
-    // Into an image that holds something, after a warm-up, which is no frame.
+    // Into an image that holds something, after a warm-up and a refused call, which are no frames.
     scene::Scatter scatter(scene::device());
     p.params.accumulate = 1;
     capturing("captures", [&] {
@@ -283,6 +283,7 @@ TEST_F(Capture, RepeatsScatteringAlone) {
                    out = scene::imageOf(scene::device(), p.irradiance, p.width, p.height);
         scatter.setMaterial(1, all[0]);
         scatter.warmUp(scene::device(), p.params, image, places, nullptr, nullptr, out);
+        EXPECT_THROW(scatter.execute(p.params, image, nullptr, nullptr, nullptr, out), pellucid::Error);
         EXPECT_FALSE(fs::exists(path("captures")));
         pellucid::check(pelSetName(scatter.get(), "head"));
         for (int frame = 0; frame < 2; ++frame)
