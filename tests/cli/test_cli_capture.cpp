@@ -258,19 +258,19 @@ TEST_F(Capture, RepeatsScatteringAlone) {
         uint32_t taps;
         const scene::Extra& extra;
     };
-    for (const auto& [method, taps, extra] : {Case{PEL_SCATTERING_SCREEN, 0, plain},
-                                              {PEL_SCATTERING_SCREEN, 0, full},
-                                              {PEL_SCATTERING_SCREEN, 16, byDepth},
-                                              {PEL_SCATTERING_SEPARABLE, 0, full}}) {
+    for (const Case& c : {Case{PEL_SCATTERING_SCREEN, 0, plain},
+                          {PEL_SCATTERING_SCREEN, 0, full},
+                          {PEL_SCATTERING_SCREEN, 16, byDepth},
+                          {PEL_SCATTERING_SEPARABLE, 0, full}}) {
         SCOPED_TRACE(number_);
-        p.params.halfRate = extra.inPlace;
-        p.params.everywhere = !extra.depth.empty();
-        p.params.frameIndex = taps;
-        scene::Material first{1, all[2], 0.9f, scene::controlsOf(method, taps)},
+        p.params.halfRate = c.extra.inPlace;
+        p.params.everywhere = !c.extra.depth.empty();
+        p.params.frameIndex = c.taps;
+        scene::Material first{1, all[2], 0.9f, scene::controlsOf(c.method, c.taps)},
             second{2, all[0], 1.1f, scene::controlsOf(PEL_SCATTERING_SCREEN, 32, 0.25f)};
-        if (extra.inPlace) first.controls.albedoBefore = 0.3f, first.controls.thinThickness = 0.7f;
+        if (c.extra.inPlace) first.controls.albedoBefore = 0.3f, first.controls.thinThickness = 0.7f;
         std::vector<float> light;
-        capturing("captures", [&] { light = scene::run(p, {first, second}, extra).scattered; });
+        capturing("captures", [&] { light = scene::run(p, {first, second}, c.extra).scattered; });
         expectRepeats("scatter-1", light);
     }
 
