@@ -33,6 +33,8 @@ after_skipped { reason = $0; after_skipped = 0 }
     sub(/^SKIPPED \[[0-9]+\] [^ ]+: /, "")
     while (times-- > 0) skip_because(name, $0)
 }
+# Any other program
+/^SKIPPED: / { skip_because(test, substr($0, 10)) }
 /^[^ ]+::.* (FAILED|ERROR)( |$)/ { name = $1; sub(/.*\//, "", name); fail(name) }
 /^Test Passed\./ { good = 1 }
 /^Test Pass Reason:/ { good = 1 }  # ended with 77: skipped

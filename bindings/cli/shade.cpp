@@ -172,13 +172,11 @@ void warnOfNothing(Run& run, const io::SceneFile& scene, const std::vector<PelIm
             "material with thickness_taps and a deep_scatter_color");
 }
 
-void warnOfInvalid(Run& run, const PelShaderStats& stats) {
-    if (stats.pixelsInvalid == 0) return;
-    const std::string share =
-        stats.pixelsInvalid == stats.pixelsShaded ? "all " : io::concat(stats.pixelsInvalid, " of ");
-    run.warn(
-        io::concat(share, stats.pixelsShaded,
-                   " pixels of a material have NaN or Inf in an input or in their result; they are black"));
+void warnOfInvalid(Run& run, uint64_t invalid, uint64_t all, const char* they) {
+    if (invalid == 0) return;
+    run.warn(io::concat(invalid == all ? "all " : io::concat(invalid, " of "), all,
+                        " pixels of a material have NaN or Inf in an input or in their result; they are ",
+                        they));
 }
 
 // The counters as an object of the report.
@@ -213,6 +211,31 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
             {"expected_ms", s.expectedMilliseconds},
             {"expected_error", s.expectedError},
             {"tuned", s.tuned != 0}};
+}
+
+void reportSize(Run& run, const Arguments& a, const io::Image& gbuffer, uint64_t invalid) {
+    run.report["output"] = a.output;
+    if (!a.picture.empty()) run.report["picture"] = a.picture;
+    run.report["width"] = gbuffer.width;
+    run.report["height"] = gbuffer.height;
+    run.report["pixels"] = gbuffer.pixelCount();
+    run.report["pixels_invalid"] = invalid;
+}
+
+// A scene that scatters irradiance alone.
+void scatter(Run& run, const Arguments& a, const io::SceneFile& scene, const std::string& picture,
+             bool hasParts) {
+    if (hasParts || a.stats || a.scratchMib || a.timeBudget > 0)
+        throw UsageError("--outputs, --show, --stats, --scratch-mib, --time-budget: " + a.scene +
+                         " has a [scatter] table, whose result is one image");
+    const std::set<std::string> names = io::namesOf(io::gbufferGroups(scene));
+    const io::Image gbuffer = io::readChannels(a.gbuffer, {names.begin(), names.end()});
+    const io::ScatteredFrame frame = io::scatterFrame(run.device(), gbuffer, scene);
+    warnOfInvalid(run, frame.stats.pixelsInvalid, frame.stats.pixelsCovered, "unchanged");
+    if (picture != a.output) io::writeRadiance(a.output, gbuffer.width, gbuffer.height, frame.light);
+    if (!picture.empty())
+        io::writeImage8(picture, gbuffer.width, gbuffer.height, 3, io::toSrgb8(frame.light, a.tone));
+    reportSize(run, a, gbuffer, frame.stats.pixelsInvalid);
 }
 
 void run(Arguments a) {
@@ -257,6 +280,10 @@ void run(Arguments a) {
     options.scratchBudget = a.scratchMib << 20;
     options.timeBudget = a.timeBudget;
     try {
+        if (scene.scatter) {
+            scatter(run, a, scene, picture, !files.empty() || !outputs.empty());
+            return run.finish();
+        }
         Inputs inputs = frameOf(a.gbuffer, run.device(), scene, luts, options, outputs);
         const io::Image& gbuffer = inputs.gbuffer;
         io::SceneFrame& frame = *inputs.frame;
@@ -268,17 +295,12 @@ void run(Arguments a) {
         for (const std::string& sentence :
              io::unlikely(gbuffer, scene, inputs.images ? &*inputs.images : nullptr))
             run.warn(sentence);
-        warnOfInvalid(run, stats);
+        warnOfInvalid(run, stats.pixelsInvalid, stats.pixelsShaded, "black");
         if (picture != a.output) io::writeRadiance(a.output, gbuffer.width, gbuffer.height, frame.radiance());
         if (!picture.empty()) writeShadePicture(picture, gbuffer, frame, a.show, a.tone);
         for (const auto& [slot, file] : files) writeOutput(file, slot, gbuffer, frame);
-        run.report["output"] = a.output;
-        if (!a.picture.empty()) run.report["picture"] = a.picture;
+        reportSize(run, a, gbuffer, stats.pixelsInvalid);
         for (const auto& [slot, file] : files) run.report["outputs"].push_back(file);
-        run.report["width"] = gbuffer.width;
-        run.report["height"] = gbuffer.height;
-        run.report["pixels"] = gbuffer.pixelCount();
-        run.report["pixels_invalid"] = stats.pixelsInvalid;
         for (const io::SceneMaterial& m : scene.materials) {
             const PelMaterial resolved = frame.material(m.id);
             run.report["materials"].push_back({{"id", m.id},

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "diffusion/scatter_material.h"
+#include "shading/capture.h"
 #include "shading/check_settings.h"
 #include "shading/material.h"
 
@@ -110,8 +111,7 @@ Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImage
             curving.gain[size_t(k)] = float(path);
             if (path > 0) plan.windows[id] = std::max(plan.windows[id], float(windowOfPath * path));
         }
-        const auto found = controls_.find(id);
-        const PelScatterControls c = found == controls_.end() ? pelScatterControlsDefaults() : found->second;
+        const PelScatterControls c = controlsOf(id);
         plan.sources.set(id);
         const bool lines = c.scattering == PEL_SCATTERING_SEPARABLE;
         // Sums over blocks do not support borders.
@@ -180,11 +180,44 @@ void Scatter::execute(const PelScatterParams& params, const ScatterImages& image
     copyTextures({images.out}, true);
 }
 
+// The input as images and materials of a shader.
+void Scatter::capture(const PelScatterParams& params, const ScatterImages& images) {
+    const char* const folder = captureFolder(captureAsked_);
+    if (!folder) return;
+    ShaderState state;
+    for (const auto& [slot, view] : images_) state.images[slot] = view;
+    state.images[PEL_SLOT_IRRADIANCE] = images.irradiance;
+    state.images[PEL_SLOT_POSITION] = images.positions;
+    state.images[PEL_SLOT_DEPTH] = images.depth;
+    state.images[PEL_SLOT_MATERIAL] = images.ids;
+    std::copy_n(params.inverseViewProjection, 16, state.camera.inverseViewProjection);
+    ScatterInput scatter{params, {}};
+    for (const auto& [id, material] : materials_) {
+        ShaderMaterial& to = state.materials[id];
+        to.given = pelMaterialDefaults();
+        to.profile = material.profile;
+        scatter.scales[id] = float(material.scale);
+        const PelScatterControls c = controlsOf(id);
+        to.given.scattering = c.scattering;
+        to.given.scatterTaps = c.scatterTaps;
+        to.given.albedoBefore = c.albedoBefore;
+        std::ranges::copy(c.borderColor, to.given.borderColor);
+        to.given.thinThickness = c.thinThickness;
+    }
+    captureFrame(*device_, state, folder, &scatter);
+}
+
+PelScatterControls Scatter::controlsOf(uint32_t id) const {
+    const auto found = controls_.find(id);
+    return found == controls_.end() ? pelScatterControlsDefaults() : found->second;
+}
+
 void Scatter::run(const PelScatterParams& params, const ScatterImages& images,
                   std::vector<cl::ProgramKey>* keys) {
     checkParams(params);
     checkImages(images);
     const Plan plan = planOf(params, images);
+    if (!keys) capture(params, images);
     ScatterView view;
     std::copy_n(params.inverseViewProjection, 16, view.inverseViewProjection);
     view.tolerance = params.targetError * params.white;
@@ -288,6 +321,7 @@ void Scatter::addBuildJobs(const PelScatterParams& params, const ScatterImages& 
     const Ref<Scatter> copy = make<Scatter>(device_);
     copy->materials_ = materials_;
     copy->controls_ = controls_;
+    copy->captureAsked_ = true;
     for (const auto& [slot, view] : images_) copy->images_[slot] = small(view);
     const ScatterImages all{small(images.irradiance), small(images.positions), small(images.depth),
                             small(images.ids), small(images.out)};

@@ -47,6 +47,8 @@ class Scatter final : public Object {
     Plan planOf(const PelScatterParams& params, const ScatterImages& images) const;
     // With `keys` the programs are named alone.
     void run(const PelScatterParams& params, const ScatterImages& images, std::vector<cl::ProgramKey>* keys);
+    PelScatterControls controlsOf(uint32_t id) const;
+    void capture(const PelScatterParams& params, const ScatterImages& images);
     ImageView image(PelImageSlot slot) const;
     ImageView scratch(size_t index, const ImageView& like);
 
@@ -62,7 +64,7 @@ class Scatter final : public Object {
     std::map<PelImageSlot, ImageView> images_;  // further images, kept between executions
     std::vector<std::pair<PelScattering, std::function<ScatterCounts()>>> counts_;  // of the methods that ran
     std::vector<cl::Event> events_;
-    bool executed_ = false;
+    bool executed_ = false, captureAsked_ = false;
     uint32_t pixels_ = 0;
 };
 

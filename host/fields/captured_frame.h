@@ -39,6 +39,7 @@ struct CapturedEye {
 struct CapturedMaterial {
     uint32_t id = 0;
     PelMaterial material{};
+    float scale = -1;  // of a PelScatter, whose other settings are in `material`
     int profile = -1;
     PelLut curvature = nullptr, shadow = nullptr;
     std::vector<CapturedImage> normalMap;
@@ -51,6 +52,7 @@ struct CapturedLight {
 };
 
 struct CapturedFrame {
+    std::optional<PelScatterParams> scatter;  // of a PelScatter: its materials scatter PEL_SLOT_IRRADIANCE
     PelShaderOptions options{};
     std::array<CapturedImage, PEL_SLOT_COUNT> images;  // inputs
     std::array<bool, PEL_SLOT_COUNT> outputs{};        // set, beside radiance

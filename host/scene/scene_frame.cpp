@@ -115,6 +115,9 @@ SceneFrame::SceneFrame(const Device& device, const Image& gbuffer, const SceneFi
                        const ShadowMaps& shadowMaps, const PelShaderOptions& options,
                        const std::vector<PelImageSlot>& outputs, bool buildOnly)
     : device_(device), wanted_(outputs), shadowMaps_(&shadowMaps), shader_(device) {
+    if (scene.scatter)
+        throw FileError(scene.source,
+                        "has a [scatter] table, and nothing to shade: `pellucid shade` alone reads it");
     setPictures(gbuffer, scene);
     set(scene, luts, options);
     shadowMaps_ = nullptr;

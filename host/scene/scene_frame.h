@@ -170,6 +170,13 @@ class SceneFrame {
     uint32_t updates_ = 0;
 };
 
+// Scatters the irradiance of a scene with SceneFile::scatter. The light is RGB per pixel, interleaved.
+struct ScatteredFrame {
+    std::vector<float> light;
+    PelScatterStats stats;
+};
+ScatteredFrame scatterFrame(const Device& device, const Image& gbuffer, const SceneFile& scene);
+
 // Warnings about values that are probably wrong: depth that is not device depth, objects whose size does not
 // match their profile.
 std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene,

@@ -47,7 +47,7 @@ CapturedImage valuesOf(Device& device, const ImageView& view, uint32_t component
 
 class Capture {
   public:
-    Capture(Device& device, const ShaderState& state);
+    Capture(Device& device, const ShaderState& state, const ScatterInput* scatter);
     CapturedFrame frame;
 
   private:
@@ -71,7 +71,8 @@ class Capture {
     std::vector<Ref<Profile>> profiles_;
 };
 
-Capture::Capture(Device& device, const ShaderState& state) {
+Capture::Capture(Device& device, const ShaderState& state, const ScatterInput* scatter) {
+    if (scatter) frame.scatter = scatter->params;
     frame.options = state.options;
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot) {
         const ImageView& view = state.images[slot];
@@ -88,6 +89,7 @@ Capture::Capture(Device& device, const ShaderState& state) {
         to.id = id;
         to.material = from.given;
         to.material.profile = nullptr;
+        if (scatter) to.scale = scatter->scales.at(id);
         to.profile = numberOf(from.profile);
         to.curvature = handleOf(from.givenCurvatureLut);
         to.shadow = handleOf(from.givenShadowLut);
@@ -119,14 +121,15 @@ Capture::Capture(Device& device, const ShaderState& state) {
 }
 
 // What a scene cannot hold, one sentence a line.
-std::string lost(const ShaderState& state) {
+std::string lost(const ShaderState& state, const ScatterInput* scatter) {
     std::string lines;
     const auto say = [&](auto&&... parts) {
         lines += text(lines.empty() ? "" : "\n", "the capture leaves out ", parts...);
     };
     const PelShaderOptions& o = state.options;
-    if (o.accumulate)
-        say("PelShaderOptions.accumulate and what the radiance image held: the scene shows what is added");
+    if (o.accumulate || (scatter && scatter->params.accumulate))
+        say(scatter ? "PelScatterParams" : "PelShaderOptions",
+            ".accumulate and what the output held: the scene shows what is added");
     if (o.scratchBudget)
         say("PelShaderOptions.scratchBudget: --scratch-mib ", o.scratchBudget >> 20,
             " of the command sets it");
@@ -173,17 +176,24 @@ std::string newFolder(const std::string& parent, const std::string& name) {
 
 }  // namespace
 
-void captureFrame(Device& device, const ShaderState& state, const std::string& folder) {
+const char* captureFolder(bool& asked) {
+    if (std::exchange(asked, true)) return nullptr;
+    const char* folder = std::getenv("PELLUCID_CAPTURE");
+    return folder && *folder ? folder : nullptr;
+}
+
+void captureFrame(Device& device, const ShaderState& state, const std::string& folder,
+                  const ScatterInput* scatter) {
     std::string name = nameInCall();  // the module's calls have names of their own
     for (char& c : name)
         if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-    if (name.empty()) name = "shader";
-    tell(lost(state));
+    if (name.empty()) name = scatter ? "scatter" : "shader";
+    tell(lost(state, scatter));
     try {
         const auto write =
             reinterpret_cast<WriteCapture>(cl::moduleFunction(PELLUCID_CAPTURE, "pellucidCapture"));
         const std::string to = newFolder(folder, name);
-        const Capture capture(device, state);
+        const Capture capture(device, state, scatter);
         if (const std::string wrong = write(capture.frame, to); !wrong.empty())
             tell(text("PELLUCID_CAPTURE: ", wrong));
     } catch (const std::exception& e) {

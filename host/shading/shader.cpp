@@ -186,11 +186,9 @@ void Shader::execute(bool blocking) {
              "something was set after the last pelShaderCommit, or nothing was committed yet");
     if (standsIn_ && (!background_ || background_->done())) commit();
     copyTextures(false);
-    if (!captured_ && !standsIn_) {
-        captured_ = true;
-        if (const char* folder = std::getenv("PELLUCID_CAPTURE"); folder && *folder)
+    if (!standsIn_)
+        if (const char* folder = captureFolder(captureAsked_))
             captureFrame(*device_, inRegion(state_), folder);
-    }
     PassWork work = beginWork(false);
     work.interruptible = blocking && device_->hasProgress();
     for (uint32_t row = 0; row < plan_.tileRows;) {

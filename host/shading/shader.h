@@ -87,7 +87,7 @@ class Shader final : public Object {
     bool committed_ = false, executed_ = false;
     std::unique_ptr<BackgroundBuild> background_;
     bool standsIn_ = false;  // what is committed
-    bool captured_ = false;  // or no capture is wanted
+    bool captureAsked_ = false;
     uint64_t bands_ = 0, programsBuilt_ = 0, launches_ = 0, bytesUploaded_ = 0, uploadedBefore_ = 0;
 
     // An execution: its launches in order, and which of them are a pass's, from `begin` to the next part's.

@@ -1,5 +1,6 @@
 // PELLUCID_CAPTURE: `pellucid shade` makes the same bits of a captured frame as the program it comes from.
 #include "cli_run.h"
+#include "diffusion/scatter_scene.h"
 #include "eye/eye_frame.h"
 #include "io/image/image_file.h"
 #include "shading/scattering_frame.h"
@@ -18,17 +19,23 @@ class Capture : public CommandTest {
         pelSetLogCallback(nullptr, nullptr);
         CommandTest::TearDown();
     }
-    // Commits and executes with the variable set. What the log says is in said_.
-    void capture(Shader& shader, const std::string& folder = "captures") {
+    // Runs `work` with the variable set. What the log says is in said_.
+    template <class Work>
+    void capturing(const std::string& folder, const Work& work) {
         said_.clear();
         pelSetLogCallback([](void* said, PelLogLevel, const char*,
                              const char* line) { static_cast<std::string*>(said)->append(line) += '\n'; },
                           &said_);
         const Variable capture("PELLUCID_CAPTURE", path(folder).c_str());
-        shader.commit();
-        said_.clear();
-        shader.execute();
+        work();
         pelSetLogCallback(nullptr, nullptr);
+    }
+    void capture(Shader& shader, const std::string& folder = "captures") {
+        capturing(folder, [&] {
+            shader.commit();
+            said_.clear();
+            shader.execute();
+        });
     }
     std::vector<float> radianceOf(const std::string& file) const {
         const pellucid::io::Image image = pellucid::io::readImage(file);
@@ -38,10 +45,12 @@ class Capture : public CommandTest {
     // Captures an execution, and compares what the command makes of it.
     void expectRepeats(Shader& shader, const Buffer& target) {
         capture(shader);
+        expectRepeats("shader-1", target.readAll<float>());
+    }
+    void expectRepeats(const std::string& name, const std::vector<float>& expected) {
         EXPECT_EQ(said_, "");
-        const std::vector<float> expected = target.readAll<float>();
         EXPECT_TRUE(std::ranges::any_of(expected, [](float v) { return v > 0; }));
-        done("shade @captures/shader-1/scene.toml -o @again.exr");
+        done("shade @captures/" + name + "/scene.toml -o @again.exr");
         EXPECT_TRUE(sameBits(radianceOf(path("again.exr")), expected));
         fs::rename(path("captures"), path("captures-" + std::to_string(++number_)));
     }
@@ -126,6 +135,7 @@ TEST_F(Capture, RepeatsPackedFormats) {
     });
 }
 
+// Under lights with and without a size, from two sides that share what is made of the shadow map.
 TEST_F(Capture, RepeatsEveryMethodAndProfile) {
     const std::vector<Profile> all = profiles();
     for (const auto scattering :
@@ -137,18 +147,39 @@ TEST_F(Capture, RepeatsEveryMethodAndProfile) {
         const Profile first = all[scattering], second = scattering == PEL_SCATTERING_AUTO ? all[0] : first;
         f.materials[1].profile = first.get();
         f.materials[2].profile = second.get();
+        f.materials[1].specular = 1, f.materials[1].specularModel = PEL_SPECULAR_GGX;
         if (scattering == PEL_SCATTERING_SEPARABLE) {
             f.options.historyWeight = 0.5f;
             f.slots[PEL_SLOT_MOTION] = {3, std::vector<float>(3 * f.pixels(), 0.25f)};
         }
-        expectRepeats(f, [&](Shader& shader) {
-            if (scattering != PEL_SCATTERING_TEXTURE) return;
-            Random random(8);
-            std::vector<float> texels(3 * 16 * 8);
-            for (float& t : texels) t = random.uniform();
-            for (uint32_t id : {1u, 2u})
-                shader.setScatteredTexture(id, imageDesc(Buffer(device(), texels), PEL_FORMAT_RGB32F, 16, 8));
-        });
+        if (scattering == PEL_SCATTERING_SCREEN) {
+            f.options.halfRate = f.options.frameIndex = 1;
+            for (auto& [id, m] : f.materials) m.scatterTaps = 16, m.albedoBefore = 0.5f;
+        }
+        f.lights.resize(3);
+        for (int i = 1; i < 3; ++i) {
+            PelLight& lamp = f.lights[size_t(i)].params;
+            lamp.type = i == 1 ? PEL_LIGHT_SPHERE : PEL_LIGHT_RECTANGLE;
+            lamp.position[0] = 20, lamp.position[2] = 40;
+            lamp.radius = 7, lamp.halfWidth[0] = 5, lamp.halfHeight[1] = -3;
+            std::fill_n(lamp.color, 3, 800.0f);
+        }
+        f.lights[0].params.shadowMapVersion = 1;
+        const Buffer map(device(), f.lights[0].map.values);
+        for (const float side : {-5.0f, 5.0f}) {
+            f.camera.position[0] = side;
+            expectRepeats(f, [&](Shader& shader) {
+                shader.set(0, PEL_LIGHT_SHADOW_MAP, imageDesc(map, PEL_FORMAT_R32F, 64, 64));
+                if (scattering != PEL_SCATTERING_TEXTURE) return;
+                Random random(8);
+                std::vector<float> texels(3 * 16 * 8);
+                for (float& t : texels) t = random.uniform();
+                for (uint32_t id : {1u, 2u})
+                    shader.setScatteredTexture(id,
+                                               imageDesc(Buffer(device(), texels), PEL_FORMAT_RGB32F, 16, 8));
+            });
+            if (scattering != PEL_SCATTERING_PREINTEGRATED) break;
+        }
     }
 }
 
@@ -197,6 +228,74 @@ TEST_F(Capture, RepeatsFormsOfShadowMaps) {
         f.lights = {light, lamp};
         expectRepeats(f);
     }
+}
+
+// What a PelScatter makes of light that somebody else computed.
+TEST_F(Capture, RepeatsScatteringAlone) {
+    namespace scene = scatter_scene;
+    scene::Picture p = scene::ball(72, 10, 0.3, {0.8, 0.6, 0});
+    for (size_t i = 0; i < 72 * 30; ++i)
+        if (p.ids[i]) p.ids[i] = 2;
+    p.params.white = 1.5f;
+    p.params.targetError = 1e-3f;
+    // Pixels of 0.3, depth along z.
+    p.params.inverseViewProjection[0] = p.params.inverseViewProjection[5] = 36 * 0.3f;
+    Random random(4);
+    const auto values = [&](uint32_t components) {
+        std::vector<float> image(components * p.pixels());
+        for (float& v : image) v = random.uniform(0.2f, 1);
+        return image;
+    };
+    scene::Extra plain, full, byDepth;
+    full.weights = values(2), full.albedo = values(3), full.back = values(3), full.curvature = values(1);
+    full.inPlace = true;
+    for (size_t i = 2; i < p.positions.size(); i += 3) byDepth.depth.push_back(p.positions[i]);
+    byDepth.normals = p.positions;
+    for (float& n : byDepth.normals) n /= 10;
+    const std::vector<Profile> all = profiles();
+    struct Case {
+        PelScattering method;
+        uint32_t taps;
+        const scene::Extra& extra;
+    };
+    for (const Case& c : {Case{PEL_SCATTERING_SCREEN, 0, plain},
+                          {PEL_SCATTERING_SCREEN, 0, full},
+                          {PEL_SCATTERING_SCREEN, 16, byDepth},
+                          {PEL_SCATTERING_SEPARABLE, 0, full}}) {
+        SCOPED_TRACE(number_);
+        p.params.halfRate = c.extra.inPlace;
+        p.params.everywhere = !c.extra.depth.empty();
+        p.params.frameIndex = c.taps;
+        scene::Material first{1, all[2], 0.9f, scene::controlsOf(c.method, c.taps)},
+            second{2, all[0], 1.1f, scene::controlsOf(PEL_SCATTERING_SCREEN, 32, 0.25f)};
+        if (c.extra.inPlace) first.controls.albedoBefore = 0.3f, first.controls.thinThickness = 0.7f;
+        std::vector<float> light;
+        capturing("captures", [&] { light = scene::run(p, {first, second}, c.extra).scattered; });
+        expectRepeats("scatter-1", light);
+    }
+
+    // Into an image that holds something, after a warm-up and a refused call, which are no frames.
+    scene::Scatter scatter(scene::device());
+    p.params.accumulate = 1;
+    capturing("captures", [&] {
+        const auto image = scene::imageOf(scene::device(), p.irradiance, p.width, p.height),
+                   places = scene::imageOf(scene::device(), p.positions, p.width, p.height),
+                   out = scene::imageOf(scene::device(), p.irradiance, p.width, p.height);
+        scatter.setMaterial(1, all[0]);
+        scatter.warmUp(scene::device(), p.params, image, places, nullptr, nullptr, out);
+        EXPECT_THROW(scatter.execute(p.params, image, nullptr, nullptr, nullptr, out), pellucid::Error);
+        EXPECT_FALSE(fs::exists(path("captures")));
+        pellucid::check(pelSetName(scatter.get(), "head"));
+        for (int frame = 0; frame < 2; ++frame)
+            scatter.execute(p.params, image, places, nullptr, nullptr, out);
+    });
+    EXPECT_TRUE(contains(said_, "leaves out PelScatterParams.accumulate"));
+    EXPECT_FALSE(fs::exists(path("captures/head-2")));
+    const std::string file = "@captures/head-1/scene.toml";
+    done("shade " + file + " -o @light.exr --picture @light.png");
+    EXPECT_TRUE(fs::exists(path("light.png")));
+    refused("shade " + file + " -o @o.exr --stats", 2, "[scatter] table, whose result is one image");
+    refused("warm-up " + file, 3, "nothing to shade: `pellucid shade` alone");
 }
 
 TEST_F(Capture, RepeatsEyesCubesAndNormalMaps) {
@@ -252,13 +351,11 @@ TEST_F(Capture, WritesTheRegionAlone) {
     setFrame(device(), shader, f, tables());
     const Buffer target = setTarget(device(), shader, f);
     capture(shader);
-    EXPECT_EQ(said_, "");
-    done("shade @captures/shader-1/scene.toml -o @again.exr");
     const std::vector<float> all = target.readAll<float>();
     std::vector<float> region;
     for (size_t y = 3; y < 34; ++y)
         region.insert(region.end(), &all[3 * (70 * y + 7)], &all[3 * (70 * y + 57)]);
-    EXPECT_TRUE(sameBits(radianceOf(path("again.exr")), region));
+    expectRepeats("shader-1", region);
 }
 
 TEST_F(Capture, WritesEachShaderOnceAndNothingOver) {

@@ -170,6 +170,13 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     PelShadowLutDesc& table = scene.luts[1].info.shadow;
     scene.luts[1].file.clear();
     table.closedEnds = 1, table.axis = PEL_AXIS_ROOT, table.sharpening = 4.5f;
+    const auto changeScatter = [](PelScatterParams& s) {
+        PEL_EACH_SCATTER_PARAM_FIELD(CHANGE)
+        s.everywhere = s.halfRate = 1, s.frameIndex = 7;
+    };
+    changeScatter(scene.scatter.emplace(pelScatterParamsDefaults()));
+    skin.scale = 0.3f;
+    scene.channels[PEL_SLOT_IRRADIANCE] = {"E.R", "E.G", "E.B"};
     writeScene(path("out.toml"), scene);
     const SceneFile again = readScene(path("out.toml"));
     // Texts have the shortest digits that identify a float, so equal texts are equal bits.
@@ -193,6 +200,8 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     EXPECT_TRUE(same(again.lights.at(1).light, scene.lights[1].light));
     EXPECT_TRUE(same(material.material, skin.material));
     EXPECT_TRUE(same(again.eyes[0].eye, eye.eye));
+    EXPECT_TRUE(same(again.scatter.value(), *scene.scatter));
+    EXPECT_EQ(material.scale, skin.scale);
     EXPECT_TRUE(same(again.luts.at(1).info.shadow, table));
 }
 
@@ -231,6 +240,9 @@ TEST_F(SceneFileTest, MistakesNameKeyAndWhatIsRight) {
         {"\"directional\"", "\"sphere\"\nposition = [0, 0, 9]", "'radius' in [[light]] is missing"},
         {"\"directional\"", "\"rectangle\"\nposition = [0, 0, 9]", "'half_width' in [[light]] is missing"},
         {"normal_shading", "normal_blurred", "'normal_shading' in [channels] is missing"},
+        {"[camera]", "[scatter]\nwhite = 2\n[camera]", "'irradiance' in [channels] is missing"},
+        {"[camera]", "[scatter]\neverywhere = 2\n[camera]", "'everywhere' in [scatter] is 2; it must be"},
+        {"diffusion_radius = 2.7", "scale = 1", "'scale' is for scenes with a [scatter] table"},
         {"curvature_lut = \"skin\"", "curvature_lut = \"wax\"",
          "asks for the curvature_lut 'wax'; there is only: skin"},
         {"curvature_lut = \"skin\"", "normal_map = \"n.png\"", "'uv' in [channels] is missing"},
@@ -285,6 +297,8 @@ TEST_F(SceneFileTest, EveryKeyIsDocumented) {
     // A key that this file's writer knows stands in backquotes in the page.
     SceneFile scene = readScene(write("s.toml", example()));
     for (auto& names : scene.channels) names.assign(3, "x");
+    scene.scatter = pelScatterParamsDefaults();
+    scene.materials[0].scale = 1;
     scene.luts[1].file.clear();
     const std::string page = read(PELLUCID_SOURCE_DIR "/docs/guide/scene-file.md");
     std::istringstream lines(sceneText(scene));

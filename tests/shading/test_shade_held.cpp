@@ -1,5 +1,6 @@
 // Frames, tables and passes that are submitted behind an event that their caller sets later: calls return,
-// and give the same; nothing behind the end of an output is written.
+// and give the same; nothing behind the end of an output is written. Which calls allocate device memory when
+// they are repeated (docs/guide/hosts.md, "What a call may do").
 #include "diffusion/lit_ball.h"
 #include "held_queue.h"
 #include "pass_scene.h"
@@ -25,10 +26,18 @@ std::vector<float> checked(const Buffer& buffer, size_t floats, const char* what
     return all;
 }
 
+template <class Work>
+uint64_t buffersMadeBy(const Work& work) {
+    const uint64_t before = spy::counts().buffersMade;
+    work();
+    return spy::counts().buffersMade - before;
+}
+
 // Commits and executes twice behind the event, with `change` between; the second frame is that of a shader
-// that never waited.
+// that never waited. The next frame of that one makes no buffer, unless `change` does.
 template <class Make, class Change>
-void expectFrames(const char* what, size_t floats, const Make& make, const Change& change) {
+void expectFrames(const char* what, size_t floats, const Make& make, const Change& change,
+                  bool changeMakesBuffers) {
     const Buffer held = guarded(floats), plain = guarded(floats);
     Shader shader(own());
     make(shader, held);
@@ -42,14 +51,22 @@ void expectFrames(const char* what, size_t floats, const Make& make, const Chang
     change(other);
     other.commit().execute();
     EXPECT_EQ(checked(held, floats, what), checked(plain, floats, what)) << what;
+    if (changeMakesBuffers) return;
+    EXPECT_EQ(buffersMadeBy([&] {
+                  change(other);
+                  other.commit().execute();
+              }),
+              0u)
+        << what;
 }
 
-// What a call makes of a buffer behind the event, and the same at once.
+// What a call makes of a buffer behind the event, and the same at once. `makesBuffers`: also when repeated.
 template <class Call>
-void expectHeld(const char* what, size_t floats, const Call& call) {
+void expectHeld(const char* what, size_t floats, const Call& call, bool makesBuffers = false) {
     const Buffer held = guarded(floats), plain = guarded(floats);
     expectReturns(own(), what, [&](const PelSubmit* submit) { call(held, submit); });
     call(plain, nullptr);
+    EXPECT_EQ(buffersMadeBy([&] { call(plain, nullptr); }) > 0, makesBuffers) << what;
     EXPECT_EQ(checked(held, floats, what), checked(plain, floats, what)) << what;
 }
 
@@ -74,7 +91,8 @@ TEST(ShadeHeld, FramesInBandsWithPasses) {
                 other.ambient.constant[1] = 0.7f;
                 other.materials[1].albedo[0] = 0.3f;
                 setFrame(own(), shader, other, made);
-            });
+            },
+            true);
     }
 }
 
@@ -86,16 +104,21 @@ TEST(ShadeHeld, FramesWithProfilesThatScatter) {
     std::vector<float> normals = p.positions, curvature(p.pixels(), 0.5f);
     for (float& n : normals) n /= float(radius);
     const Profile skin = Profile::skin();
+    const Buffer map(own(), ball.maps[0]);
     for (PelScattering method : {PEL_SCATTERING_PREINTEGRATED, PEL_SCATTERING_SCREEN, PEL_SCATTERING_LIGHT,
                                  PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_AUTO}) {
         const auto lit = [&](Shader& shader, float red, float diffusionRadius) {
             PelMaterial material = whiteMaterial(skin, method);
             material.specular = 0, material.diffusionRadius = diffusionRadius;
-            PelLight light = ball.light;
+            PelLight light = ball.light, lamp = pellucid::pointLight({0, 40, 20}, {200, red, 200});
             light.color[0] = red;
-            shader.setMaterial(1, material).set(light);
-            shader.set(0, PEL_LIGHT_SHADOW_MAP,
-                       imageDesc(Buffer(own(), ball.maps[0]), PEL_FORMAT_R32F, ball.width, ball.height));
+            light.shadowMapVersion = 1;
+            lamp.type = PEL_LIGHT_SPHERE, lamp.radius = 5;
+            PelShaderOptions options = pelShaderOptionsDefaults();
+            options.historyWeight = method == PEL_SCATTERING_SEPARABLE ? 0.5f : 0.0f;
+            options.historyCut = uint32_t(diffusionRadius);
+            shader.set(options).setMaterial(1, material).set({light, lamp});
+            shader.set(0, PEL_LIGHT_SHADOW_MAP, imageDesc(map, PEL_FORMAT_R32F, ball.width, ball.height));
         };
         expectFrames(("scattering method " + std::to_string(method)).c_str(), p.pixels() * 3,
                      [&](Shader& shader, const Buffer& out) {
@@ -111,7 +134,7 @@ TEST(ShadeHeld, FramesWithProfilesThatScatter) {
                          lit(shader, ball.light.color[0], 0);
                          shader.set(PEL_SLOT_RADIANCE, imageDesc(out, PEL_FORMAT_RGB32F, p.width, p.height));
                      },
-                     [&](Shader& shader) { lit(shader, 0.5f, 1.5f); });
+                     [&](Shader& shader) { lit(shader, 0.5f, 1.5f); }, false);
     }
 }
 
@@ -121,12 +144,13 @@ TEST(ShadeHeld, ScatteringAlone) {
     const Buffer e(own(), p.irradiance), x(own(), p.positions), ids(own(), p.ids);
     const auto rgb = [&](const Buffer& b) { return imageDesc(b, PEL_FORMAT_RGB32F, p.width, p.height); };
     const auto id = imageDesc(ids, PEL_FORMAT_R8_UINT, p.width, p.height);
+    const Profile skin = Profile::skin();
     for (PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE}) {
         Scatter scatter(own());
         expectHeld("pelScatterExecute", p.pixels() * 3, [&](const Buffer& out, const PelSubmit* submit) {
             PelScatterControls controls = pelScatterControlsDefaults();
             controls.scattering = method;
-            scatter.setMaterial(1, Profile::skin());
+            scatter.setMaterial(1, skin);
             scatter.setControls(1, controls);
             PelScatterParams params = p.params;
             for (const float targetError : {0.05f, 0.001f}) {
@@ -145,10 +169,13 @@ TEST(ShadeHeld, OtherSubmissions) {
     };
     const auto normals = image(PEL_SLOT_NORMAL_GEOMETRIC, PEL_FORMAT_RGB32F),
                positions = image(PEL_SLOT_POSITION, PEL_FORMAT_RGB32F);
-    expectHeld("pelScreenCurvature", f.pixels(), [&](const Buffer& out, const PelSubmit* submit) {
-        screenCurvature(own(), pelScreenCurvatureParamsDefaults(), normals, positions, nullptr, nullptr,
-                        imageDesc(out, PEL_FORMAT_R32F, f.width, f.height), submit);
-    });
+    expectHeld(
+        "pelScreenCurvature", f.pixels(),
+        [&](const Buffer& out, const PelSubmit* submit) {
+            screenCurvature(own(), pelScreenCurvatureParamsDefaults(), normals, positions, nullptr, nullptr,
+                            imageDesc(out, PEL_FORMAT_R32F, f.width, f.height), submit);
+        },
+        true);
 
     // A square of two triangles, which is the whole texture.
     const std::vector<float> corners{0, 0, 0, 4, 0, 0, 4, 4, 0, 0, 4, 0}, uvs{0, 0, 1, 0, 1, 1, 0, 1},
@@ -159,10 +186,13 @@ TEST(ShadeHeld, OtherSubmissions) {
     integral.numIndices = 6, integral.indices = triangles.data();
     integral.irradiance = light.data(), integral.irradianceAt = PEL_IRRADIANCE_VERTEX;
     const Buffer at(own(), points);
-    expectHeld("pelSurfaceIntegral", 6, [&](const Buffer& out, const PelSubmit* submit) {
-        integral.points = vertexView(at, 2), integral.result = vertexView(out, 2);
-        surfaceIntegral(own(), integral, submit);
-    });
+    expectHeld(
+        "pelSurfaceIntegral", 6,
+        [&](const Buffer& out, const PelSubmit* submit) {
+            integral.points = vertexView(at, 2), integral.result = vertexView(out, 2);
+            surfaceIntegral(own(), integral, submit);
+        },
+        true);
 
     PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
     desc.width = 31, desc.height = 29;
@@ -171,14 +201,17 @@ TEST(ShadeHeld, OtherSubmissions) {
     const Buffer vertices(own(), corners), values(own(), light), drawn = guarded(31 * 29 * 3);
     const PelImageDesc from = imageDesc(drawn, PEL_FORMAT_RGB32F, 31, 29);
     TextureScatter texture(own(), desc);
-    expectHeld("texture scattering", 31 * 29 * 3, [&](const Buffer& out, const PelSubmit* submit) {
-        for (int i = 0; i < 2; ++i) {
-            texture.setPositions(vertexView(vertices, 4), submit);
-            texture.draw(vertexView(values, 4), false, from, submit);
-            texture.execute(pelTextureScatterParamsDefaults(), from, nullptr,
-                            imageDesc(out, PEL_FORMAT_RGB32F, 31, 29), submit);
-        }
-    });
+    expectHeld(
+        "texture scattering", 31 * 29 * 3,
+        [&](const Buffer& out, const PelSubmit* submit) {
+            for (int i = 0; i < 2; ++i) {
+                texture.setPositions(vertexView(vertices, 4), submit);
+                texture.draw(vertexView(values, 4), false, from, submit);
+                texture.execute(pelTextureScatterParamsDefaults(), from, nullptr,
+                                imageDesc(out, PEL_FORMAT_RGB32F, 31, 29), submit);
+            }
+        },
+        true);
     checked(drawn, 31 * 29 * 3, "texture drawing");
 }
 

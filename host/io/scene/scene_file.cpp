@@ -83,7 +83,9 @@ void readEye(TomlReader& reader, SceneFile& scene) {
 
 // Names that must exist and numbers that must differ: checks that involve several keys.
 void checkReferences(const SceneFile& scene, const TomlReader& channels) {
-    if (scene.channels[PEL_SLOT_NORMAL_SHADING].empty())
+    if (scene.scatter && scene.channels[PEL_SLOT_IRRADIANCE].empty())
+        channels.fail("irradiance", "is missing; it is what [scatter] scatters");
+    if (!scene.scatter && scene.channels[PEL_SLOT_NORMAL_SHADING].empty())
         channels.fail("normal_shading", "is missing; nothing can be shaded without normals");
     std::set<uint32_t> ids;
     for (const SceneMaterial& m : scene.materials) {
@@ -95,6 +97,8 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
                 scene.source,
                 concat("'thickness_taps' is ", m.material.thicknessTaps, "; 0, 8, 16 or 32 would be right"),
                 m.line);
+        if (!scene.scatter && m.scale >= 0)
+            throw FileError(scene.source, "'scale' is for scenes with a [scatter] table", m.line);
         if (!m.normalMap.empty() && !m.normalMapLevels.empty())
             throw FileError(scene.source,
                             "'normal_map_levels' cannot stand beside 'normal_map'; leave one out", m.line);
@@ -160,6 +164,8 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
     const LutPreset preset = presetOfVersion(reader.version(lutPresetVersions));
     optionKeys(reader, scene);
     reader.table("camera", true, [&](TomlReader& r) { cameraKeys(r, scene.camera); });
+    reader.table("scatter", true,
+                 [&](TomlReader& r) { scatterKeys(r, scene.scatter.emplace(pelScatterParamsDefaults())); });
     reader.table("ambient", true, [&](TomlReader& r) { ambientKeys(r, scene); });
     reader.table("outputs", true, [&](TomlReader& r) { outputFileKeys(r, scene); });
     reader.tables("curvature_lut", [&](TomlReader& r) { readLut(r, scene, PEL_LUT_CURVATURE, preset); });

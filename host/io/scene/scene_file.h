@@ -2,6 +2,7 @@
 // materials and tables to use (docs/guide/scene-file.md); the fields are those of pellucid.h.
 #pragma once
 #include <array>
+#include <optional>
 #include <string>
 
 #include "io/image/image_file.h"
@@ -25,6 +26,7 @@ enum class ScenePreset { none, faceworks };
 struct SceneMaterial {
     uint32_t id = 1;  // value in the material channel, 1 to 255
     PelMaterial material = pelMaterialDefaults();
+    float scale = -1;  // of SceneFile::scatter: as pelScatterSetMaterial's; -1: follows from unit_mm
     // Name of a SceneLut; "": the profile's; without a profile no direct scattering
     std::string curvatureLut;
     std::string shadowLut;  // name of a SceneLut; "": the profile's; without a profile a plain shadow
@@ -73,6 +75,9 @@ struct SceneFile {
     std::array<std::vector<std::string>, PEL_SLOT_COUNT> channels;
     // Scenes set the fields in optionKeys() of scene_keys.h
     PelShaderOptions options = pelShaderOptionsDefaults();
+    // The frame is that of a PelScatter: irradiance is scattered, and nothing is shaded. Its matrix is the
+    // camera's
+    std::optional<PelScatterParams> scatter;
     std::string reflectionCube;  // image of the surroundings that eyes reflect, as ambientCube; "": none
     std::string environment;     // image of pelShaderSetEnvironment; "": none
     float environmentAxes[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -128,6 +128,7 @@ void materialKeys(Visitor& v, Material& m) {
     v.texts("normal_map_levels", m.normalMapLevels, PEL_MAP_LEVELS, 1);
     v.choice("specular_model", m.material.specularModel, specularModels);
     v.choice("scattering", m.material.scattering, scatterings);
+    v.number("scale", m.scale, {0, PEL_FINITE, -1});
     v.text("scattered_texture", m.scatteredTexture);
 }
 
@@ -139,6 +140,14 @@ void optionKeys(Visitor& v, Scene& scene) {
     v.text("reflection_cube", scene.reflectionCube);
     v.text("environment", scene.environment);
     v.numbers("environment_axes", scene.environmentAxes, 9, range::any);
+}
+
+template <class Visitor, class Params>
+void scatterKeys(Visitor& v, Params& s) {
+    PEL_EACH_SCATTER_PARAM_FIELD(PELLUCID_FIELD_KEY)
+    v.integer("everywhere", s.everywhere, {0, 1});
+    v.integer("frame_index", s.frameIndex, range::any);
+    v.integer("half_rate", s.halfRate, {0, 1});
 }
 
 template <class Visitor, class Eye>

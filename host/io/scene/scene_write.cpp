@@ -37,6 +37,7 @@ std::string sceneText(const SceneFile& scene) {
     table("[channels]", "channels", [&](TomlWriter& w) { channelKeys(w, scene); });
     table("[camera]", "camera", [&](TomlWriter& w) { cameraKeys(w, scene.camera); });
     table("[ambient]", "ambient", [&](TomlWriter& w) { ambientKeys(w, scene); });
+    if (scene.scatter) table("[scatter]", "scatter", [&](TomlWriter& w) { scatterKeys(w, *scene.scatter); });
     if (std::any_of(scene.outputs.begin(), scene.outputs.end(), [](auto& o) { return !o.empty(); }))
         table("[outputs]", "outputs", [&](TomlWriter& w) { outputFileKeys(w, scene); });
     for (const SceneLight& light : scene.lights) {

@@ -23,6 +23,7 @@ class Writer {
         : frame_(frame), folder_(folder + "/") {}
 
     void write() {
+        scene_.scatter = frame_.scatter;
         scene_.options = frame_.options;
         scene_.ambient = frame_.ambient;
         scene_.camera = frame_.camera;
@@ -107,6 +108,7 @@ class Writer {
         SceneMaterial& to = scene_.materials.emplace_back();
         to.id = from.id;
         to.material = from.material;
+        to.scale = from.scale;
         to.profile = profile(from.profile);
         to.curvatureLut = addTable(concat("curvature_", from.id), from.curvature, PEL_LUT_CURVATURE);
         to.shadowLut = addTable(concat("shadow_", from.id), from.shadow, PEL_LUT_SHADOW);
