@@ -9,8 +9,8 @@
 // depend on their order: with PEL_HIDDEN the bits of all ids, since only "not 0" matters, otherwise the
 // smallest id. Also output: the part of the map that the profiles reach from what scatters, which is all
 // that light_texels makes (PEL_LIGHT_REGION). One work-item: PEL_WIDTH pixels of every other row, one lane:
-// every other pixel of it, in a map. Variants: PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1),
-// PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT, PEL_HIDDEN.
+// every other pixel of it, in a map. Variants: PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL
+// (0: everything is id 1), PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT, PEL_HIDDEN.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/lanes.clh"
 #include "lib/diffusion/light_space.clh"

@@ -4,7 +4,8 @@
 // Input: the map, the marks and the region of light_seen, and which cells of texels (PEL_LIGHT_CELL) had
 // flux before. Output: level 0, and which cells have flux now. Only texels of the region have flux: with
 // PEL_HIDDEN the occluded ones, without it all but those of objects that do not scatter, and their ids are
-// stored beside. One work-item: PEL_WIDTH texels of a row. Variants: PEL_HIDDEN, PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT.
+// stored beside. One work-item: PEL_WIDTH texels of a row. Variants: PEL_HIDDEN,
+// PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/light_space.clh"
 #include "lib/image/planes.clh"
