@@ -7,11 +7,17 @@ namespace {
 
 using sample::GBuffer, sample::Vec3, sample::LinearColor;
 
-constexpr double wetReach = 0.9, lidReach = 1.4;  // mm, from the line where an eye meets a lid
-constexpr int window = 11;                        // pixels; of a head in 2160 lines they are 0.13 mm wide
+// From the line where an eye meets a lid, mm.
+constexpr double tears = 0.35, wetReach = 0.9, lidReach = 1.4;
+constexpr int window = 11;  // pixels; of a head in 2160 lines they are 0.13 mm wide
 
 bool isEye(uint32_t id) {
     return id == DEMO_EYES || id == DEMO_RIGHT_EYE;
+}
+
+// Lids stand before the ball: how far they are from a pixel's place as one sees it.
+double apart(Vec3 way) {
+    return length(Vec3{way.x, way.y, 0.3 * way.z});
 }
 
 void multiply(GBuffer& g, int x, int y, LinearColor factor, double share) {
@@ -25,24 +31,22 @@ void around(const GBuffer& g, int x, int y, Use&& use) {
         for (int u = std::max(x - window, 0); u <= std::min(x + window, g.width - 1); ++u) use(u, v);
 }
 
-// The line of tears, whose normals turn from the eye's to the lid's. `away`: from the lid; `share`: 1 at it.
-void setTears(GBuffer& g, int x, int y, Vec3 away, double share) {
-    const Vec3 n = normalize(sample::vectorAt(g.geometricNormal, x, y) + away * (1.4 * share));
-    for (sample::Image* normal : {&g.geometricNormal, &g.shadingNormal, &g.blurredNormal})
-        for (int c = 0; c < 3; ++c) normal->at(c, x, y) = float(c == 0 ? n.x : c == 1 ? n.y : n.z);
-    for (int c = 0; c < 3; ++c) g.albedo.at(c, x, y) = 0.42f - 0.05f * float(c);
+// The line of tears stands half way to the lid; its normals turn up. `share`: 1 at the lid.
+void setTears(GBuffer& g, int x, int y, Vec3 way, Vec3 up, double share) {
+    const Vec3 n = normalize(sample::vectorAt(g.geometricNormal, x, y) + up * (1.4 * share));
+    const double normal[] = {n.x, n.y, n.z}, moved[] = {0.5 * way.x, 0.5 * way.y, 0.5 * way.z};
+    for (int c = 0; c < 3; ++c) {
+        g.position.at(c, x, y) += float(moved[c]);
+        for (sample::Image* of : {&g.geometricNormal, &g.shadingNormal, &g.blurredNormal})
+            of->at(c, x, y) = float(normal[c]);
+        g.albedo.at(c, x, y) = 0.42f - 0.05f * float(c);
+    }
 }
 
 // `way`: to the eye.
 void setMargin(GBuffer& g, int x, int y, Vec3 way, Vec3 up, double share) {
-    const bool upperLid = dot(way, up) < -0.3 * length(way);
-    const bool caruncle =
-        way.x * g.position.at(0, x, y) > 0.6 * length(way) * std::abs(g.position.at(0, x, y));
-    multiply(g, x, y,
-             caruncle   ? LinearColor{0.96, 0.56, 0.54}
-             : upperLid ? LinearColor{0.45, 0.35, 0.33}
-                        : LinearColor{0.97, 0.74, 0.73},
-             share);
+    const bool upperLid = dot(way, up) < -0.3 * apart(way);
+    multiply(g, x, y, upperLid ? LinearColor{0.45, 0.35, 0.33} : LinearColor{0.97, 0.72, 0.71}, share);
     g.specular.at(0, x, y) *= float(1 + share);
     g.roughness.at(0, x, y) *= float(1 - 0.5 * share);
 }
@@ -68,22 +72,17 @@ std::vector<float> dressEyes(GBuffer& g, Vec3 up) {
             around(g, x, y, [&](int u, int v) {
                 const uint32_t other = ids[index(u, v)];
                 if (eye ? other != DEMO_SKIN : !isEye(other)) return;
-                Vec3 d = sample::vectorAt(g.position, u, v) - from;
-                if (!eye) d.z *= 0.3;  // lids stand before the ball
-                if (length(d) < length(way)) way = d;
+                const Vec3 d = sample::vectorAt(g.position, u, v) - from;
+                if (apart(d) < apart(way)) way = d;
             });
-            const double distance = length(way), share = 1 - distance / (eye ? wetReach : lidReach);
+            const double distance = apart(way), share = 1 - distance / lidReach;
             if (share <= 0) continue;
-            const bool below = dot(way, up) < -0.3 * distance;
             if (!eye) setMargin(g, x, y, way, up, std::min(1.0, 1.5 * share));
             if (!eye) continue;
-            wet[i] = float(share);
-            // As high as it is deep, but a pixel at least.
-            const double pixel = x > 0 ? length(sample::vectorAt(g.position, x - 1, y) - from) : 0;
-            const double high = std::max(0.35, 1.5 * std::min(pixel, wetReach));
-            if (!below || distance > high) continue;
+            wet[i] = float(std::max(0.0, 1 - distance / wetReach));
+            if (distance > tears || dot(way, up) > -0.5 * distance) continue;
             g.material[i] = DEMO_TEARS;
-            setTears(g, x, y, normalize(-way), 1 - distance / high);
+            setTears(g, x, y, way, up, 1 - distance / tears);
         }
     return wet;
 }
