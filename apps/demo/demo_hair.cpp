@@ -1,7 +1,6 @@
 #include "demo/demo_hair.h"
 
 #include <algorithm>
-#include <numbers>
 #include <optional>
 
 namespace pellucid::demo {
@@ -21,13 +20,17 @@ class Hair {
     explicit Hair(const sample::Scene& skin) : skin_(skin) {}
     std::vector<Strand> strands;
 
-    // `side`: 1 for the left eye, which is at positive x.
+    // `side`: 1 for the left eye, which is at positive x. Lashes stand in clumps of two or three, whose tips
+    // meet.
     void addLashes(const sample::EyeLook& eye, double side) {
-        constexpr int upper = 80, lower = 40;
-        for (int i = 0; i < upper + lower; ++i) {
-            const bool above = i < upper;
-            const double along = 1.38 * (above ? i + 0.5 : i - upper + 0.5) / (above ? upper : lower) - 0.5;
-            addLash(eye, side, along, above ? 1 : -1, i);
+        constexpr int upper = 34, lower = 17;
+        for (int clump = 0; clump < upper + lower; ++clump) {
+            const bool above = clump < upper;
+            const int count = above ? 2 + clump % 2 : 2, of = above ? upper : lower;
+            const double middle = ((above ? clump : clump - upper) + 0.3 + 0.4 * scattered(clump, 0)) / of;
+            const double along = 1.36 * middle - 0.5, apart = 0.45 / of;
+            for (int i = 0; i < count; ++i)
+                addLash(eye, side, along, along + (i - 0.5 * (count - 1)) * apart, above ? 1 : -1, clump, i);
         }
     }
 
@@ -53,8 +56,50 @@ class Hair {
         }
     }
 
+    // Short hair, combed away from the crown.
+    void addCap(const Scalp& scalp) {
+        constexpr double perArea = 1.3;  // strands a mm^2
+        const sample::Mesh& mesh = skin_.mesh();
+        const sample::Bounds& head = skin_.bounds();
+        const double e = scalp.eyeDistance;
+        const Vec3 crown{0.1 * e, head.high.y, head.centre().z - 0.45 * e};
+        double sum = 0;
+        int i = 0;
+        for (size_t t = 0; t < mesh.materials.size(); ++t) {
+            if (mesh.materials[t] != DEMO_SKIN) continue;
+            const Vec3 a = corner(mesh.positions, mesh.triangles[3 * t]),
+                       b = corner(mesh.positions, mesh.triangles[3 * t + 1]),
+                       c = corner(mesh.positions, mesh.triangles[3 * t + 2]);
+            if (scalp.height((a + b + c) * (1 / 3.0)) <= -0.1) continue;
+            for (sum += 0.5 * length(cross(b - a, c - a)) * perArea; i < sum; ++i) {
+                double v = scattered(i, 0), w = scattered(i, 1);
+                if (v + w > 1) v = 1 - v, w = 1 - w;
+                const Vec3 root = a + (b - a) * v + (c - a) * w;
+                const double inside = scalp.cover(root);
+                if (inside <= scattered(i, 2)) continue;
+                const Vec3 n = normalize(corner(mesh.normals, mesh.triangles[3 * t]));
+                addShort(root, n, crown, 0.5 + 0.5 * inside, i);
+            }
+        }
+    }
+
   private:
     static constexpr int segments = 4;
+    static Vec3 corner(const std::vector<float>& values, uint32_t v) {
+        return {values[3 * size_t(v)], values[3 * size_t(v) + 1], values[3 * size_t(v) + 2]};
+    }
+    void addShort(Vec3 root, Vec3 n, Vec3 crown, double size, int i) {
+        const double a = scattered(i, 1) - 0.5, b = scattered(i, 2), length = 11 * size * (0.7 + 0.6 * b);
+        const Vec3 combed = sample::perpendicular(n, root - crown), aside = cross(n, combed);
+        const Vec3 way = normalize(combed + aside * (0.7 * a));
+        std::vector<Vec3> points;
+        for (int k = 0; k <= segments; ++k) {
+            const double u = double(k) / segments;
+            points.push_back(root +
+                             (way * u + n * (u * (0.5 - 0.33 * u)) + aside * (0.25 * a * u * u)) * length);
+        }
+        addStrand(points, 0.075, n);
+    }
     struct FrontHit {
         Vec3 position, normal;
         uint32_t material;
@@ -82,26 +127,30 @@ class Hair {
         }
         return {};
     }
-    // `along`: from -1 at the inner corner, where none grow, to 1 at the outer one.
-    void addLash(const sample::EyeLook& eye, double side, double along, double up, int i) {
-        const double x = eye.centre.x + side * along * eye.radius;
-        const auto edge = lidEdge(eye, x, up);
+    // `clumped`, `along`: of the clump and the root, from -1 at the inner corner, where none grow, to 1 at
+    // the outer one.
+    void addLash(const sample::EyeLook& eye, double side, double clumped, double along, double up, int clump,
+                 int i) {
+        const auto edge = lidEdge(eye, eye.centre.x + side * along * eye.radius, up);
         if (!edge) return;
-        const double length = eye.radius * (up > 0 ? 0.52 + 0.16 * along : 0.26 + 0.06 * along) *
-                              (0.75 + 0.4 * scattered(i, 0));
-        const double fan = side * (0.45 * along + 0.25 * (scattered(i, 1) - 0.5));
-        const double rise = up > 0 ? 0.75 : 0.45;
+        const double a = scattered(clump, 1), b = scattered(clump, 2), own = scattered(3 * clump + i, 0);
+        const double outer = std::clamp(along + 0.2, 0.0, 0.8);
+        const double length = eye.radius * (up > 0 ? 0.46 + 0.3 * outer : 0.22 + 0.12 * outer) *
+                              (0.72 + 0.36 * a) * (0.8 + 0.3 * own);
+        const double fan = side * (0.55 * clumped + 0.3 * (b - 0.5));
+        const double rise = (up > 0 ? 0.55 : 0.35) + 0.25 * a;
+        const double together = 0.8 * side * (clumped - along) * eye.radius;
         std::vector<Vec3> points;
         for (int k = 0; k <= segments; ++k) {
             const double u = double(k) / segments;
             // Forward first, then up.
-            points.push_back(*edge + Vec3{0, up * 0.25, 0} +
-                             Vec3{fan * u, up * (rise * u * u - 0.15 * u), 0.95 * u - 0.35 * u * u} * length);
+            points.push_back(*edge + Vec3{together * u, up * 0.25, 0} +
+                             Vec3{fan * u, up * (rise * u * u - 0.15 * u), 1.05 * u - 0.35 * u * u} * length);
         }
-        addStrand(points, up > 0 ? 0.065 : 0.045);
+        addStrand(points, up > 0 ? 0.1 : 0.055);
     }
-    void addStrand(std::vector<Vec3> points, double radius) {
-        if (points.size() == segments + 1) strands.push_back({std::move(points), radius});
+    void addStrand(std::vector<Vec3> points, double radius, Vec3 normal = {0, 0, 1}) {
+        if (points.size() == segments + 1) strands.push_back({std::move(points), radius, normal});
     }
 
     const sample::Scene& skin_;
@@ -109,57 +158,16 @@ class Hair {
 
 }  // namespace
 
-std::vector<Strand> strandsOf(const sample::Scene& head, const std::vector<sample::EyeLook>& eyes) {
-    if (eyes.size() != 2) return {};
-    Hair hair(head);
-    const double distance = length(eyes[0].centre - eyes[1].centre);
-    for (const sample::EyeLook& eye : eyes) {
+std::vector<Strand> strandsOf(const sample::Scene& skin, const DemoHead& head) {
+    if (head.eyes.size() != 2) return {};
+    Hair hair(skin);
+    for (const sample::EyeLook& eye : head.eyes) {
         const double side = eye.centre.x > 0 ? 1 : -1;
         hair.addLashes(eye, side);
-        hair.addBrow(eye.centre, side, distance);
+        hair.addBrow(eye.centre, side, head.scalp.eyeDistance);
     }
+    hair.addCap(head.scalp);
     return hair.strands;
-}
-
-sample::Image coverageOf(const std::vector<Strand>& strands, const sample::Camera& camera,
-                         const sample::GBuffer& g) {
-    constexpr double tolerance = 0.3;  // mm: roots lie in the skin
-    constexpr double thinnest = 0.15;  // at the tip, of the radius
-    sample::Image cover(g.width, g.height, 1);
-    const sample::Matrix4 toClip = camera.viewProjection(double(g.width) / g.height);
-    const double pixelsPerSlope = 0.5 * g.height / std::tan(camera.verticalFov * std::numbers::pi / 360);
-    // Pixels, and the depth along the camera's axis.
-    const auto project = [&](Vec3 p) {
-        const Vec3 c = toClip.project(p);
-        return Vec3{(0.5 + 0.5 * c.x) * g.width, (0.5 - 0.5 * c.y) * g.height,
-                    dot(p - camera.eye, camera.forward())};
-    };
-    for (const Strand& strand : strands)
-        for (size_t k = 0; k + 1 < strand.points.size(); ++k) {
-            const Vec3 a = project(strand.points[k]), ab = project(strand.points[k + 1]) - a;
-            if (!(a.z > 0)) continue;  // behind the camera
-            const double square = ab.x * ab.x + ab.y * ab.y;
-            const double reach = strand.radius * pixelsPerSlope / a.z + 1;
-            const auto last = [&](double from, double by) { return std::max(from, from + by) + reach; };
-            const auto first = [&](double from, double by) {
-                return std::max(0, int(std::min(from, from + by) - reach));
-            };
-            for (int y = first(a.y, ab.y); y < std::min<double>(g.height, last(a.y, ab.y)); ++y)
-                for (int x = first(a.x, ab.x); x < std::min<double>(g.width, last(a.x, ab.x)); ++x) {
-                    const double dx = x + 0.5 - a.x, dy = y + 0.5 - a.y;
-                    const double t = (dx * ab.x + dy * ab.y) / square;
-                    if (!(t >= 0 && t < 1)) continue;
-                    const double depth = a.z + t * ab.z;
-                    if (depth > g.viewDepth.at(0, x, y) + tolerance) continue;
-                    const double along = (double(k) + t) / double(strand.points.size() - 1);
-                    const double half = strand.radius * (1 - (1 - thinnest) * along) * pixelsPerSlope / depth;
-                    const double off = std::abs(dx * ab.y - dy * ab.x) / std::sqrt(square);
-                    const double part = std::max(0.0, std::min(off + 0.5, half) - std::max(off - 0.5, -half));
-                    float& sum = cover.at(0, x, y);
-                    sum += float(part) * (1 - sum);
-                }
-        }
-    return cover;
 }
 
 }  // namespace pellucid::demo

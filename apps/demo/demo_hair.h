@@ -1,16 +1,29 @@
-// Brows and lashes of the demo's head: strands on its skin, drawn over the shaded picture. In the G-buffer
-// they would leave gaps in the skin across which no light scatters.
+// Hair of the demo's head: brows, lashes and short hair on the scalp, as strands that are drawn over the
+// shaded picture. In the G-buffer they would leave gaps in the skin across which no light scatters.
 #pragma once
 #include "demo/demo_head.h"
 #include "sample/gbuffer.h"
+#include "sample/sky.h"
 
 namespace pellucid::demo {
 
 // For a head that looks to +z with y up, as the project's own do; none without two eyes.
-std::vector<Strand> strandsOf(const sample::Scene& head, const std::vector<sample::EyeLook>& eyes);
+std::vector<Strand> strandsOf(const sample::Scene& skin, const DemoHead& head);
 
-// The share of each pixel that strands cover, hidden parts left out: one plane.
-sample::Image coverageOf(const std::vector<Strand>& strands, const sample::Camera& camera,
-                         const sample::GBuffer& gbuffer);
+// What lights strands.
+struct StrandLight {
+    struct Lamp {
+        sample::Vec3 toLight;       // unit
+        sample::LinearColor color;  // irradiance / pi, as PelLight
+    };
+    std::vector<Lamp> lamps;
+    sample::Sky sky;  // without panels
+    const sample::Scene* occluders = nullptr;
+};
+
+// Strands before black, hidden parts left out: red, green and blue of their light, and the share of each
+// pixel that they cover.
+sample::Image drawStrands(const std::vector<Strand>& strands, const StrandLight& light,
+                          const sample::Camera& camera, const sample::GBuffer& gbuffer);
 
 }  // namespace pellucid::demo

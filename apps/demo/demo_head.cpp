@@ -1,6 +1,8 @@
 #include "demo/demo_head.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <numbers>
 
 #include "io/mesh/mesh_parts.h"
 
@@ -54,21 +56,34 @@ std::vector<sample::SkinZone> zonesOf(const io::PartedMesh& head, const Bounds (
         centre.z -= 0.3 * radii.z * e;
         zones.push_back({centre, radii * e, color, edge, specular, roughness, relief});
     };
-    add(0, lipLine - 0.005 * e, {0.39, 0.165, 0.9}, {0.88, 0.58, 0.60}, 0.2, 2.2, 0.55, 0.3);
+    add(0, lipLine - 0.005 * e, {0.39, 0.165, 0.9}, {0.86, 0.56, 0.58}, 0.25, 2.2, 0.6, 0.3);
+    zones.back().furrows = 0.09;
+    const Vec3 nose = foremost(head.mesh, 0, noseTip, 0.08 * e);
     for (const double side : {-1.0, 1.0}) {
-        add(side * 0.5 * e, left.y, {0.33, 0.2, 0.4}, {0.98, 0.86, 0.84}, 1);
-        add(side * 0.66 * e, left.y - 0.66 * e, {0.5, 0.42, 0.7}, {1.02, 0.84, 0.84}, 1, 1, 1, 2);
+        add(side * 0.5 * e, left.y, {0.33, 0.2, 0.4}, {0.97, 0.84, 0.83}, 1);
+        // Cheeks, from beside the nose along the cheekbone: two that overlap have no round outline.
+        add(side * 0.5 * e, left.y - 0.6 * e, {0.4, 0.36, 0.7}, {1.01, 0.91, 0.91}, 1, 1, 1, 1.5);
+        add(side * 0.78 * e, left.y - 0.52 * e, {0.62, 0.36, 0.9}, {1.01, 0.87, 0.87}, 1, 1, 1, 1.5);
         const double x = side > 0 ? skin.high.x : skin.low.x;
         zones.push_back({{x, left.y - 0.25 * e, skin.centre().z - 0.1 * e},
                          Vec3{0.35, 0.75, 0.6} * e,
-                         {1.02, 0.80, 0.78},
+                         {1.02, 0.76, 0.74},
                          1});
+        add(side * 0.37 * e, lipLine, {0.16, 0.12, 0.5}, {0.93, 0.84, 0.82}, 1);  // the mouth's corner
+        // Nostril: what little light comes out again has passed through its walls, and is red.
+        zones.push_back({{side * 0.165 * e, noseTip - 0.1 * e, nose.z - 0.23 * e},
+                         Vec3{0.09, 0.09, 0.13} * e,
+                         {0.34, 0.17, 0.15},
+                         0.6,
+                         0.3});
+        add(side * 0.2 * e, noseTip, {0.16, 0.2, 0.4}, {1.01, 0.88, 0.88}, 1);  // the nose's wing
     }
-    add(0, noseTip, {0.3, 0.3, 0.5}, {1.02, 0.86, 0.86}, 1);
-    const LinearColor same{1, 1, 1};
-    add(0, noseTip + 0.3 * e, {0.35, 0.8, 0.9}, same, 1, 1.8, 0.75, 2.5);
-    add(0, left.y + 0.9 * e, {1, 0.7, 0.9}, same, 1, 1.6, 0.8, 1.7);
-    add(0, lipLine - 0.45 * e, {0.4, 0.3, 0.6}, same, 1, 1.5, 0.85);
+    add(0, noseTip, {0.26, 0.26, 0.5}, {1.02, 0.85, 0.85}, 1);
+    add(0, noseTip + 0.3 * e, {0.35, 0.8, 0.9}, {1, 1, 1}, 1, 1.8, 0.75, 2.5);
+    // A forehead is yellower than the rest, the beard's region bluer.
+    add(0, left.y + 0.9 * e, {1.3, 0.8, 1.2}, {1, 0.985, 0.90}, 1, 1.6, 0.8, 1.7);
+    add(0, lipLine - 0.15 * e, {0.75, 0.75, 1}, {0.94, 0.955, 0.99}, 1);
+    add(0, lipLine - 0.45 * e, {0.4, 0.3, 0.6}, {1, 0.97, 0.98}, 1, 1.5, 0.85);
     // Brows: an arc over each eye, darkest in the middle, of spots that overlap.
     constexpr int spots = 9;
     for (const double side : {-1.0, 1.0})
@@ -127,6 +142,30 @@ io::SceneEye modelOf(const sample::EyeLook& look, uint32_t material) {
 
 }  // namespace
 
+double Scalp::height(Vec3 p) const {
+    // The hairline's height over the eyes, by the angle from the front in degrees: forehead, temple,
+    // sideburn, ear, nape.
+    constexpr double line[][2] = {{0, 1.28},   {22, 1.31},  {40, 1.34},  {52, 1.05}, {61, 0.62},
+                                  {67, 0.28},  {73, 0.0},   {80, -0.1},  {86, 0.0},  {108, 0.0},
+                                  {120, -0.5}, {140, -0.9}, {181, -0.95}};
+    const Vec3 middle = skin.centre();
+    const Vec3 toEar = p - Vec3{std::copysign(skin.high.x, p.x), betweenEyes.y - 0.28 * eyeDistance,
+                                middle.z - 0.1 * eyeDistance};
+    const Vec3 ear = Vec3{0.27, 0.46, 0.46} * eyeDistance;  // radii
+    if (std::hypot(toEar.x / ear.x, toEar.y / ear.y, toEar.z / ear.z) < 1) return -1;
+    const double angle = std::atan2(std::abs(p.x), p.z - middle.z) * 180 / std::numbers::pi;
+    size_t i = 1;
+    while (line[i][0] < angle) ++i;
+    const double t = (angle - line[i - 1][0]) / (line[i][0] - line[i - 1][0]);
+    const double at = line[i - 1][1] + (line[i][1] - line[i - 1][1]) * t * t * (3 - 2 * t);
+    return (p.y - betweenEyes.y) / eyeDistance - at;
+}
+
+double Scalp::cover(Vec3 p) const {
+    constexpr double fade = 0.16;  // the hairline is thin and ragged
+    return std::clamp(height(p) / fade, 0.0, 1.0);
+}
+
 bool hasHeadParts(const std::string& path) {
     if (std::filesystem::path(path).extension() != ".obj") return false;
     return io::loadParts(path, 0).part("skin") >= 0;
@@ -153,8 +192,8 @@ DemoHead loadDemoHead(const std::string& path, int levels) {
                                 : name == "cut"              ? DEMO_CUT
                                                              : DEMO_SKIN);
     }
-    out.looks.resize(6);
-    out.looks[DEMO_SKIN - 1].albedo = {0.76f, 0.54f, 0.44f};
+    out.looks.resize(7);
+    out.looks[DEMO_SKIN - 1].albedo = {0.72f, 0.50f, 0.40f};
     out.looks[DEMO_EYES - 1].kind = out.looks[DEMO_RIGHT_EYE - 1].kind = sample::Look::Kind::Eye;
     // Behind closed lips hardly any light comes: a fifth of teeth's and tongue's own albedo.
     out.looks[DEMO_TEETH - 1] = {sample::Look::Kind::Plain, {0.15f, 0.14f, 0.12f}};
@@ -168,12 +207,14 @@ DemoHead loadDemoHead(const std::string& path, int levels) {
         eye.radius = 0.5 * (ball.high.y - ball.low.y);
         // The cornea bulges: the ball's middle is behind that of its box.
         eye.centre = {ball.centre().x, ball.centre().y, ball.low.z + eye.radius};
-        eye.irisRadius = 0.42 * eye.radius;
-        eye.pupilRadius = 0.16 * eye.radius;
         out.eyes.push_back(eye);
         out.eyeModels.push_back(modelOf(eye, &ball == eyes ? DEMO_EYES : DEMO_RIGHT_EYE));
     }
     if (hasFace) out.zones = zonesOf(head, eyes, lipLineOf(upperTeeth), skin);
+    if (out.eyes.size() == 2) {
+        const Vec3 left = out.eyes[0].centre, right = out.eyes[1].centre;
+        out.scalp = {(left + right) * 0.5, length(left - right), skin};
+    }
     out.frame = skin;
     out.mesh = std::move(head.mesh);
     out.cornerUvs = std::move(head.cornerUvs);

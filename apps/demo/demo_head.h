@@ -14,13 +14,27 @@ enum DemoMaterial : uint32_t {
     DEMO_TEETH = 3,
     DEMO_TONGUE = 4,
     DEMO_CUT = 5,
-    DEMO_RIGHT_EYE = 6
+    DEMO_RIGHT_EYE = 6,
+    DEMO_TEARS = 7  // along the lower lids, in G-buffers alone
 };
 
 // A hair: points from root to tip, mm, and the radius at the root, from which it tapers.
 struct Strand {
     std::vector<sample::Vec3> points;
     double radius;
+    sample::Vec3 normal{0, 0, 1};  // unit, of the skin at the root
+};
+
+// Where hair grows.
+struct Scalp {
+    sample::Vec3 betweenEyes;
+    double eyeDistance = 0;
+    sample::Bounds skin;
+
+    // How far `p` is above the hairline, over the distance between the eyes; negative on face, neck and ears.
+    double height(sample::Vec3 p) const;
+    // The share of skin that hair shades there: 0 to 1.
+    double cover(sample::Vec3 p) const;
 };
 
 struct DemoHead {
@@ -29,9 +43,10 @@ struct DemoHead {
     std::vector<uint32_t> materials;      // DemoMaterial per triangle; empty: all skin
     std::vector<sample::Look> looks;      // of the ids 1, 2, ...
     std::vector<sample::SkinZone> zones;  // lips, cheeks, ears, nose
-    std::vector<Strand> strands;          // brows and lashes, by strandsOf in demo_hair.h
-    std::vector<sample::EyeLook> eyes;    // painted, for renderers without models
+    std::vector<Strand> strands;          // by strandsOf in demo_hair.h
+    std::vector<sample::EyeLook> eyes;    // their whites
     std::vector<io::SceneEye> eyeModels;  // the same as PelEye, around DEMO_EYES and DEMO_RIGHT_EYE
+    Scalp scalp;                          // of a head with two eyes
     sample::HeadPose pose;
     sample::Bounds frame;  // what the picture shows: a neck that was cut off is left out
 };

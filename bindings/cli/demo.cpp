@@ -108,15 +108,12 @@ std::vector<DemoViewRequest> requests(const Arguments& a) {
     parseSize(a.size, key.width, key.height);
     key.name = "key";
     key.framing.azimuth = 25;
-    key.lights = {{"Key", 80, 25, {0.98f, 0.90f, 0.81f}},
-                  {"Fill", -5, 5, {0.05f, 0.06f, 0.07f}, false, false},
-                  {"Rim", -132, 25, {0.22f, 0.25f, 0.30f}}};
+    key.lights = {{"Key", 54, 22, {0.92f, 0.845f, 0.76f}}, {"Rim", -132, 25, {0.22f, 0.25f, 0.30f}}};
     key.skyScale = 0.16f;
     back = key;
     back.name = "backlit";
-    back.lights = {{"Key", 150, 10, {2.0f, 1.88f, 1.73f}, true, false},
-                   {"Fill", 5, 5, {0.08f, 0.09f, 0.11f}, false, false}};
-    back.skyScale = 0.08f;
+    back.lights = {{"Key", 174, 8, {2.8f, 2.64f, 2.43f}, false}};
+    back.skyScale = 0.13f;
     return {key, back};
 }
 
@@ -213,7 +210,7 @@ void run(Arguments a) {
 
     const sample::Scene scene(sample::MeshView{mesh.positions, mesh.normals, mesh.uvs, curvature.values,
                                                mesh.triangles, head.materials});
-    head.strands = demo::strandsOf(scene, head.eyes);
+    head.strands = demo::strandsOf(scene, head);
     std::vector<ShadedView> views;
     for (const DemoViewRequest& request : wanted)
         views.push_back(shadeView(run, stages, luts, scene, head, request, a));

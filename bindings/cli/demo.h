@@ -14,7 +14,7 @@ struct DemoView {
     io::Image gbuffer;
     io::SceneFile scene;
     io::ShadowMaps images;  // by the names of their files in the scene: shadow maps, surroundings
-    sample::Image hair;     // the share of each pixel that brows and lashes cover; they are drawn afterwards
+    sample::Image hair;     // of drawStrands: it is drawn over the picture
     double gbufferMilliseconds = 0, shadowMapMilliseconds = 0;
 };
 
@@ -23,7 +23,6 @@ struct DemoLight {
     std::string name;
     double azimuth, elevation;  // degrees, as in sample::headDirection
     float color[3];             // irradiance / pi
-    bool shadow = true;         // a soft lamp beside the camera needs none
     bool box = true;            // it is seen in reflections, as a soft box
 };
 

@@ -11,12 +11,14 @@ io::Picture developed(const DemoView& view, std::vector<float> radiance) {
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const size_t i = size_t(y) * width + x;
-            // Dark brown, lit about as what it covers.
-            for (size_t c = 0; c < 3; ++c) radiance[3 * i + c] *= 1 - (0.86f + 0.04f * c) * view.hair.data[i];
-            if (material[i] > 0) continue;
-            const float r = std::hypot(x - 0.5f * width, y - 0.45f * height) / height;
-            const float grey = 0.012f + 0.03f * std::exp(-3 * r * r);
-            radiance[3 * i] = 0.9f * grey, radiance[3 * i + 1] = grey, radiance[3 * i + 2] = 1.15f * grey;
+            if (material[i] == 0) {
+                const float r = std::hypot(x - 0.5f * width, y - 0.45f * height) / height;
+                const float grey = 0.012f + 0.03f * std::exp(-3 * r * r);
+                radiance[3 * i] = 0.9f * grey, radiance[3 * i + 1] = grey, radiance[3 * i + 2] = 1.15f * grey;
+            }
+            for (int c = 0; c < 3; ++c)
+                radiance[3 * i + c] =
+                    radiance[3 * i + c] * (1 - view.hair.at(3, x, y)) + view.hair.at(c, x, y);
         }
     return {width, height, io::toSrgb8(radiance)};
 }

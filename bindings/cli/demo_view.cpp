@@ -2,6 +2,7 @@
 
 #include "command.h"
 #include "demo/demo_hair.h"
+#include "demo/dress_gbuffer.h"
 #include "sample/occlusion.h"
 #include "sample/shadow_map.h"
 #include "sample/sky.h"
@@ -55,25 +56,6 @@ sample::Camera framed(const sample::Scene& mesh, const DemoHead& head, const sam
     return camera;
 }
 
-// Where tears gather: 1 where an eye meets a lid, 0 from `reach` on.
-std::vector<float> wetLine(const sample::GBuffer& g) {
-    constexpr double reach = 0.9;  // mm
-    constexpr int window = 8;      // pixels
-    std::vector<float> wet(g.material.size());
-    const auto at = [&](int x, int y) { return sample::vectorAt(g.position, x, y); };
-    const auto id = [&](int x, int y) { return g.material[size_t(y) * size_t(g.width) + size_t(x)]; };
-    for (int y = 0; y < g.height; ++y)
-        for (int x = 0; x < g.width; ++x) {
-            if (id(x, y) != demo::DEMO_EYES && id(x, y) != demo::DEMO_RIGHT_EYE) continue;
-            double nearest = reach;
-            for (int v = std::max(y - window, 0); v <= std::min(y + window, g.height - 1); ++v)
-                for (int u = std::max(x - window, 0); u <= std::min(x + window, g.width - 1); ++u)
-                    if (id(u, v) == demo::DEMO_SKIN) nearest = std::min(nearest, length(at(u, v) - at(x, y)));
-            wet[size_t(y) * size_t(g.width) + size_t(x)] = float(1 - nearest / reach);
-        }
-    return wet;
-}
-
 void addShadow(DemoView& view, const sample::Scene& mesh, const DemoLight& lamp,
                const sample::DirectionalLight& direction, io::SceneLight& light) {
     sample::ShadowMap map;
@@ -90,8 +72,7 @@ void addShadow(DemoView& view, const sample::Scene& mesh, const DemoLight& lamp,
 }
 
 // A studio: the sky, soft boxes, and a window to the left of the camera.
-void addSurroundings(DemoView& view, const DemoHead& head, const DemoViewRequest& request) {
-    constexpr int height = 128;
+sample::Sky studio(const DemoHead& head, const DemoViewRequest& request) {
     constexpr double boxRadiance = 2.4;  // over the lamp's light: 0.28 sr, which add a fifth of it
     sample::Sky sky;
     sky.up = head.pose.up;
@@ -104,9 +85,14 @@ void addSurroundings(DemoView& view, const DemoHead& head, const DemoViewRequest
                  0.22,
                  0.35,
                  {boxRadiance * lamp.color[0], boxRadiance * lamp.color[1], boxRadiance * lamp.color[2]}});
-    const double window = 6 * request.skyScale;
+    const double window = 40 * request.skyScale;
     sky.panels.push_back(
-        {sample::headDirection(head.pose, -35, 30), 0.35, 0.5, {window, 1.04 * window, 1.15 * window}});
+        {sample::headDirection(head.pose, -18, 18), 0.12, 0.18, {window, 1.04 * window, 1.15 * window}});
+    return sky;
+}
+
+void addSurroundings(DemoView& view, const DemoHead& head, const sample::Sky& sky) {
+    constexpr int height = 128;
     const std::vector<float> pixels = sample::equirectangular(sky, head.pose.front, height);
     view.scene.environment = view.name + "_studio.exr";
     io::Image& image = view.images[view.scene.environment];
@@ -133,6 +119,8 @@ std::vector<io::SceneMaterial> materialsOf(const DemoHead& head) {
         materials[demo::DEMO_TEETH - 1].material = materials[demo::DEMO_TONGUE - 1].material =
             glossy(0.05f, 0.2f);
         materials[demo::DEMO_CUT - 1].material = glossy(0, 1);
+        materials[demo::DEMO_TEARS - 1].material = glossy(0.6f, 0.25f);
+        materials[demo::DEMO_TEARS - 1].material.specularModel = PEL_SPECULAR_GGX;
     }
     return materials;
 }
@@ -162,8 +150,6 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     sample::GBufferOptions look;
     look.looks = head.looks, look.zones = head.zones, look.eyes = head.eyes;
     look.detail.roughness = skinRoughness;
-    for (sample::EyeLook& eye : look.eyes)
-        eye.irisRadius = eye.pupilRadius = 1e-3;  // the models have their own
     view.scene.eyes = head.eyeModels;
     if (!head.looks.empty()) {  // a young face: fine pores, hardly a fold; the zones are enough
         look.detail.blotchAmount = 0.02;
@@ -174,7 +160,11 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     sample::GBuffer g;
     view.gbufferMilliseconds =
         milliseconds([&] { g = sample::renderGBuffer(mesh, camera, width, height, look); });
-    view.hair = demo::coverageOf(head.strands, camera, g);
+    std::vector<float> wetness;
+    if (!head.eyeModels.empty()) {
+        wetness = demo::dressEyes(g, head.pose.up);
+        demo::shadeScalp(g, head.scalp);
+    }
     view.gbuffer.width = width;
     view.gbuffer.height = height;
     const auto add = [&](PelImageSlot slot, const char* name, const char* components,
@@ -191,8 +181,10 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     add(PEL_SLOT_SPECULAR, "Specular", "V", g.specular.data);
     add(PEL_SLOT_AMBIENT_OCCLUSION, "AmbientOcclusion", "V", sample::ambientOcclusion(mesh, g).data);
     add(PEL_SLOT_MATERIAL, "Material", "I", std::vector<float>(g.material.begin(), g.material.end()));
-    if (!head.eyeModels.empty()) add(PEL_SLOT_WETNESS, "Wetness", "V", wetLine(g));
+    if (!wetness.empty()) add(PEL_SLOT_WETNESS, "Wetness", "V", wetness);
 
+    demo::StrandLight onHair;
+    onHair.occluders = &mesh;
     for (const DemoLight& lamp : request.lights) {
         const sample::DirectionalLight direction{
             sample::headDirection(head.pose, lamp.azimuth, lamp.elevation)};
@@ -200,11 +192,15 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
         light.light.type = PEL_LIGHT_DIRECTIONAL;
         copy(light.light.toLight, direction.toLight);
         std::ranges::copy(lamp.color, light.light.color);
-        if (lamp.shadow) addShadow(view, mesh, lamp, direction, light);
+        addShadow(view, mesh, lamp, direction, light);
         view.scene.lights.push_back(light);
+        onHair.lamps.push_back({direction.toLight, {lamp.color[0], lamp.color[1], lamp.color[2]}});
     }
 
-    addSurroundings(view, head, request);
+    const sample::Sky sky = studio(head, request);
+    addSurroundings(view, head, sky);
+    onHair.sky = sky, onHair.sky.panels.clear();
+    view.hair = demo::drawStrands(head.strands, onHair, camera, g);
     copy(view.scene.camera.position, camera.eye);
     std::ranges::copy(camera.inverseViewProjection(aspect).toFloats(),
                       view.scene.camera.inverseViewProjection);
@@ -231,7 +227,7 @@ DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3
         view.scene.channels[PEL_SLOT_WETNESS].clear();
         std::ranges::fill(view.hair.data, 0.0f);
         for (float& id : ids)
-            if (id == float(demo::DEMO_EYES) || id == float(demo::DEMO_RIGHT_EYE)) id = demo::DEMO_SKIN;
+            if (id == float(demo::DEMO_EYES) || id >= float(demo::DEMO_RIGHT_EYE)) id = demo::DEMO_SKIN;
     }
     for (size_t c = 0; c < 3; ++c) {
         std::vector<float>& albedo = pixelsOf(PEL_SLOT_ALBEDO, c);

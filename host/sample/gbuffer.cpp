@@ -37,17 +37,26 @@ struct Detail {
           pores(s.poreWavelength, 100, s.seed),
           folds(s.foldWavelength, 32, s.seed + 1),
           blood(s.blotchWavelength, 32, s.seed + 2),
-          pigment(0.6 * s.blotchWavelength, 32, s.seed + 3) {}
+          pigment(0.6 * s.blotchWavelength, 32, s.seed + 3),
+          furrows(s.furrowWavelength, 32, s.seed + 4) {}
 
     SkinDetail settings;
-    WaveField pores, folds, blood, pigment;
+    WaveField pores, folds, blood, pigment, furrows;
+
+    // The slope of lines that run up and down: a field that is stretched along them.
+    Vec3 furrowSlope(Vec3 p, const Footprint& pixel) const {
+        constexpr double stretch = 6;
+        Vec3 slope;
+        furrows.slope({p.x, p.y / stretch, p.z / stretch}, &pixel, 1, &slope);
+        const Vec3 across{slope.x, 0, 0};
+        return across - pixel.normal * dot(across, pixel.normal);
+    }
 };
 
 class Renderer {
   public:
     Renderer(const Scene& scene, const Camera& camera, const GBufferOptions& options, GBuffer& out)
         : mesh_(scene.mesh()), view_(camera, out.width, out.height), options_(options), out_(out) {
-        toClip_ = camera.viewProjection(double(out.width) / out.height);
         if (options.detail.enabled) detail_.emplace(options.detail);
     }
 
@@ -98,7 +107,6 @@ class Renderer {
         for (int c = 0; c < out_.uv.channels; ++c)
             out_.uv.at(c, x, y) = float(interpolate(mesh_.uvs, hit, 2, c));
         out_.viewDepth.at(0, x, y) = float(depth);
-        out_.deviceDepth.at(0, x, y) = float(toClip_.project(position).z);
         out_.coverage.at(0, x, y) = 1;
         out_.material[size_t(y) * size_t(out_.width) + size_t(x)] =
             mesh_.materials.empty() ? 1 : mesh_.materials[hit.triangle];
@@ -117,7 +125,7 @@ class Renderer {
         const Look look = id - 1 < options_.looks.size() ? options_.looks[id - 1] : Look();
         Vec3 shading = geometric, blurred = geometric;
         Vec3 albedo{look.albedo[0], look.albedo[1], look.albedo[2]};
-        double specular = 1, roughness = 1, relief = 1;
+        double specular = 1, roughness = 1, relief = 1, furrows = 0;
         if (look.kind == Look::Kind::Eye) albedo = eyeColor(position);
         if (look.kind == Look::Kind::Skin) {
             for (const SkinZone& zone : options_.zones) {
@@ -128,6 +136,7 @@ class Renderer {
                 specular *= 1 + weight * (zone.specular - 1);
                 roughness *= 1 + weight * (zone.roughness - 1);
                 relief *= 1 + weight * (zone.relief - 1);
+                furrows += weight * zone.furrows;
             }
         }
         if (detail_ && look.kind == Look::Kind::Skin) {
@@ -143,7 +152,9 @@ class Renderer {
             detail_->folds.slope(position, both, 2, folds);
             const SkinDetail& s = detail_->settings;
             const double poreSlope = relief * s.poreSlope, width = roughness * s.roughness;
-            shading = normalize(geometric - pores[0] * poreSlope - folds[0] * s.foldSlope);
+            Vec3 slope = pores[0] * poreSlope + folds[0] * s.foldSlope;
+            if (furrows > 0) slope = slope + detail_->furrowSlope(position, pixel) * furrows;
+            shading = normalize(geometric - slope);
             blurred = normalize(geometric - pores[1] * poreSlope - folds[1] * s.foldSlope);
             // The squared roughness is the mean square slope of a surface's facets.
             roughness *= std::sqrt(1 + poreSlope * poreSlope * lost / (width * width));
@@ -164,7 +175,6 @@ class Renderer {
 
     const Mesh& mesh_;
     View view_;
-    Matrix4 toClip_;
     GBufferOptions options_;
     std::optional<Detail> detail_;
     GBuffer& out_;
@@ -187,7 +197,6 @@ GBuffer renderGBuffer(const Scene& scene, const Camera& camera, int width, int h
         *image = Image(width, height, 1);
     if (!scene.mesh().uvs.empty()) out.uv = Image(width, height, 2);
     out.viewDepth = Image(width, height, 1, backgroundDepth);
-    out.deviceDepth = Image(width, height, 1, 1);
     out.material.assign(size_t(width) * size_t(height), 0);
     if (out.material.empty()) return out;
 

@@ -32,8 +32,9 @@ struct SkinDetail {
     double roughness = 0.35;      // of the material: slopes too fine for a pixel add to it
     double foldWavelength = 9;    // mm: what is left in the blurred normal
     double foldSlope = 0.05;
-    double blotchWavelength = 14;  // mm, of pigment and blood
-    double blotchAmount = 0.06;    // root mean square of their relative change
+    double furrowWavelength = 1.3;  // mm, where a zone has furrows
+    double blotchWavelength = 14;   // mm, of pigment and blood
+    double blotchAmount = 0.06;     // root mean square of their relative change
     uint32_t seed = 1;
 };
 
@@ -47,7 +48,7 @@ struct GBufferOptions {
 
 constexpr float backgroundDepth = 1e10f;  // mm, of viewDepth where nothing was hit
 
-// Background pixels have 0 everywhere, but for the two depths. Unit vectors, mm.
+// Background pixels have 0 everywhere, but for the depth. Unit vectors, mm.
 struct GBuffer {
     int width = 0, height = 0;
     Image position;         // 3, world, mm
@@ -62,7 +63,6 @@ struct GBuffer {
     Image roughness;      // 1, factor of the material's roughness: zones, and relief that the pixel blurs
     Image uv;             // 2, or empty when the mesh has none
     Image viewDepth;      // 1, mm along the camera's axis; backgroundDepth where nothing was hit
-    Image deviceDepth;    // 1, z / w of Camera::projection, 0 near to 1 far and background
     Image coverage;       // 1, 1 or 0
     std::vector<uint32_t> material;  // id per pixel, 0 background
 };

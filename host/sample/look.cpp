@@ -23,21 +23,14 @@ LinearColor SkinZone::colorAt(Vec3 p) const {
 }
 
 LinearColor EyeLook::at(Vec3 p) const {
-    const Vec3 out = normalize(p - centre, gaze);
-    const double along = dot(out, gaze);
-    // Distance from the axis on the ball, as if it had its radius.
-    const double r = radius * std::acos(std::clamp(along, -1.0, 1.0));
-    const double blend = 0.06 * radius;
-    // Fibres: a few waves round the axis.
-    const Vec3 side = perpendicular(gaze, {0, 1, 0}), across = cross(gaze, side);
-    const double angle = std::atan2(dot(out, side), dot(out, across));
-    const double fibres = 0.8 + 0.2 * std::sin(31 * angle + 2 * std::sin(7 * angle)) * std::sin(13 * angle);
-    const double ring = 1 - 0.6 * smoothstep(0.75 * irisRadius, irisRadius, r);  // the limbus is dark
-    LinearColor color = iris;
-    for (double& c : color) c *= fibres * ring;
-    color = mix(color, sclera, smoothstep(irisRadius - 0.3 * blend, irisRadius + blend, r));
-    return mix({0.01, 0.01, 0.01}, color,
-               smoothstep(pupilRadius - 0.2 * blend, pupilRadius + 0.2 * blend, r));
+    const Vec3 out = normalize(p - centre, gaze), up = perpendicular(gaze, {0, 1, 0});
+    const double across = std::abs(dot(out, cross(gaze, up))), height = dot(out, up);
+    const double corner = smoothstep(0.35, 0.85, across);
+    // Veins run from the corners to the iris, and waver.
+    const double phase = 44 * height + 1.7 * std::sin(9 * across + 7 * height) + 0.9 * std::sin(31 * across);
+    const double vein = corner * std::pow(std::abs(std::cos(phase)), 16);
+    return {sclera[0] * (1 - 0.06 * vein), sclera[1] * (1 - 0.24 * corner - 0.22 * vein),
+            sclera[2] * (1 - 0.28 * corner - 0.2 * vein)};
 }
 
 }  // namespace pellucid::sample

@@ -15,18 +15,17 @@ struct SkinZone {
     double specular = 1;          // of the material's
     double roughness = 1;         // of the material's: below 1 is oil, or a wet film
     double relief = 1;            // of the slope of pores
+    double furrows = 0;           // root mean square of the slope of lines that run up and down, as on lips
     double weight(Vec3 p) const;  // 1 in the middle, 0 outside
     LinearColor colorAt(Vec3 p) const;
 };
 
-// An eyeball whose iris and pupil are painted on.
+// The white of an eye, which is pink with fine veins towards the corners.
 struct EyeLook {
-    Vec3 centre;            // mm
-    Vec3 gaze{0, 0, 1};     // unit
-    double radius = 12;     // mm
-    double irisRadius = 6;  // mm, of an adult
-    double pupilRadius = 2;
-    LinearColor sclera{0.72, 0.66, 0.61}, iris{0.17, 0.11, 0.06};
+    Vec3 centre;         // mm
+    Vec3 gaze{0, 0, 1};  // unit
+    double radius = 12;  // mm
+    LinearColor sclera{0.84, 0.79, 0.74};
     LinearColor at(Vec3 p) const;  // the albedo
 };
 

@@ -53,4 +53,5 @@ TEST_F(Demo, ShadeMakesTheSamePicturesAndSomebodyLookedAtThem) {
         EXPECT_EQ(gloss(id), std::pair(0.0f, 1.0f)) << "eyes, and where the head is cut: " << id;
     for (const uint32_t id : {3u, 4u})
         EXPECT_EQ(gloss(id), std::pair(0.05f, 0.2f)) << "teeth and tongue: " << id;
+    EXPECT_GT(gloss(7).first, 0) << "tears";
 }

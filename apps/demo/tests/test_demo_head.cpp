@@ -1,5 +1,6 @@
 // The demo's heads: what is made of the meshes that come with the project, and how hair is drawn.
 #include "demo/demo_hair.h"
+#include "demo/dress_gbuffer.h"
 #include "sample/scene.h"
 #include "test.h"
 
@@ -28,14 +29,25 @@ double pixelsCovered(const Strand& strand, float depthOfAll) {
     sample::GBuffer g;
     g.width = g.height = size;
     g.viewDepth = sample::Image(size, size, 1, depthOfAll);
-    const sample::Image cover = demo::coverageOf({strand}, camera, g);
+    const sample::Image drawn = demo::drawStrands({strand}, {}, camera, g);
     double sum = 0;
-    for (const float share : cover.data) {
+    for (size_t i = 0; i < drawn.planeSize(); ++i) {
+        const float share = drawn.plane(3)[i];
         EXPECT_GE(share, 0);
         EXPECT_LE(share, 1);
         sum += share;
     }
     return sum;
+}
+
+// The red light of a hair that runs to the right, over what it covers.
+double lightOn(const demo::StrandLight& light) {
+    sample::GBuffer g;
+    g.width = g.height = size;
+    g.viewDepth = sample::Image(size, size, 1, 1e10f);
+    const sample::Image drawn =
+        demo::drawStrands({{{{-5, 0, 0}, {0, 0, 0}, {5, 0, 0}}, 0.2}}, light, camera, g);
+    return drawn.at(0, 120, 99) / drawn.at(3, 120, 99);
 }
 
 }  // namespace
@@ -88,13 +100,21 @@ TEST_P(DemoHeads, LipsAreRedderGlossierAndSmootherThanCheeks) {
     }
 }
 
-// Brows grow above the eyes out of the skin, lashes from the lids' edges; none starts or ends in the head.
+// Brows grow above the eyes out of the skin, lashes from the lids' edges, short hair on the scalp; none
+// starts or ends in the head.
 TEST_P(DemoHeads, HairGrowsOutOfTheSkin) {
-    const std::vector<Strand> strands = demo::strandsOf(scene, head.eyes);
-    int brows[2] = {}, lashes[2] = {};
+    const std::vector<Strand> strands = demo::strandsOf(scene, head);
+    int brows[2] = {}, lashes[2] = {}, cap = 0;
     for (const Strand& strand : strands) {
         const Vec3 root = strand.points.front(), tip = strand.points.back();
         const bool onLeft = root.x > 0;
+        if (head.scalp.height(root) > 0) {
+            if (cap++ % 97) continue;  // there are many
+            EXPECT_LT(scene.nearest(root).distance, 0.01);
+            EXPECT_GT(dot(strand.normal, tip - root), 0);
+            EXPECT_LT(scene.nearest(tip).distance, 6);
+            continue;
+        }
         const sample::EyeLook& eye = head.eyes[(head.eyes[0].centre.x > 0) == onLeft ? 0 : 1];
         const bool brow = root.y > eye.centre.y + 0.8 * eye.radius;
         ++(brow ? brows : lashes)[onLeft];
@@ -115,7 +135,18 @@ TEST_P(DemoHeads, HairGrowsOutOfTheSkin) {
         EXPECT_GT(brows[side], 200);
         EXPECT_GT(lashes[side], 90);
     }
+    EXPECT_GT(cap, 30000);
     EXPECT_TRUE(demo::strandsOf(scene, {}).empty());
+}
+
+TEST_P(DemoHeads, HairLeavesTheFaceAndTheEarsFree) {
+    const Vec3 middle = head.scalp.betweenEyes, crown{0, head.frame.high.y, head.frame.centre().z};
+    const double e = head.scalp.eyeDistance;
+    EXPECT_EQ(head.scalp.cover(crown), 1);
+    EXPECT_EQ(head.scalp.cover({0, middle.y, head.frame.low.z}), 1) << "the back";
+    EXPECT_EQ(head.scalp.cover({0, middle.y + 1.2 * e, head.frame.high.z - 0.5 * e}), 0) << "the forehead";
+    for (const double side : {-1.0, 1.0})
+        EXPECT_EQ(head.scalp.cover({side * head.frame.high.x, middle.y, crown.z}), 0) << "an ear";
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, DemoHeads, testing::Values("head_female", "head_male"),
@@ -138,4 +169,53 @@ TEST(Hair, IsHiddenBehindWhatIsBeforeIt) {
     EXPECT_GT(pixelsCovered(strand, 99.9f), 0) << "a root in the skin";
     EXPECT_EQ(pixelsCovered(strand, 99), 0) << "skin before it";
     EXPECT_EQ(pixelsCovered({{{-3, 0, 200}, {3, 0, 200}}, 0.1}, 1e10f), 0) << "behind the camera";
+}
+
+TEST(Hair, IsLitByWhatReachesIt) {
+    demo::StrandLight light;
+    const double sky = lightOn(light);
+    EXPECT_GT(sky, 0);
+    light.lamps = {{{0, 0, 1}, {1, 1, 1}}};
+    const double lit = lightOn(light);
+    EXPECT_GT(lit, 2 * sky);
+    light.lamps[0].color[0] = 2;
+    EXPECT_NEAR(lightOn(light) - sky, 2 * (lit - sky), 1e-6);
+    const sample::Scene roof(sample::makeRectangle(-20, 20, -20, 20, 5).view());
+    light.occluders = &roof;
+    EXPECT_EQ(lightOn(light), sky) << "in the shadow";
+    light.occluders = nullptr;
+    light.lamps[0].toLight = {0, 0, -1};
+    EXPECT_EQ(lightOn(light), sky) << "light from behind the skin";
+}
+
+// An eye above y = 0 and skin below, or the other way round, five pixels a mm.
+TEST(Eyes, LidsAreMoistAndHoldALineOfTears) {
+    for (const bool lower : {true, false}) {
+        sample::GBuffer g;
+        g.width = 2, g.height = 40;
+        g.material.assign(80, demo::DEMO_SKIN);
+        for (sample::Image* three :
+             {&g.position, &g.geometricNormal, &g.shadingNormal, &g.blurredNormal, &g.albedo})
+            *three = sample::Image(2, 40, 3);
+        g.specular = g.roughness = sample::Image(2, 40, 1, 1);
+        std::ranges::fill(g.albedo.data, 0.5f);
+        for (int y = 0; y < 40; ++y)
+            for (int x = 0; x < 2; ++x) {
+                g.position.at(0, x, y) = 0.2f * float(x), g.position.at(1, x, y) = 0.2f * (19.5f - float(y));
+                g.geometricNormal.at(2, x, y) = 1;
+                if ((y < 20) == lower) g.material[size_t(2 * y + x)] = demo::DEMO_EYES;
+            }
+        const std::vector<float> wet = demo::dressEyes(g, {0, 1, 0});
+        const int eye = lower ? 19 : 20, skin = lower ? 20 : 19, away = lower ? -1 : 1;
+        EXPECT_GT(wet[size_t(2 * eye)], wet[size_t(2 * (eye + 2 * away))]);
+        EXPECT_EQ(wet[size_t(2 * (eye + 5 * away))], 0);
+        EXPECT_EQ(g.material[size_t(2 * eye)], lower ? demo::DEMO_TEARS : demo::DEMO_EYES);
+        EXPECT_EQ(g.material[size_t(2 * (eye + 2 * away))], demo::DEMO_EYES);
+        EXPECT_EQ(g.shadingNormal.at(1, 0, eye) > 0.3f, lower) << "tears face up";
+        EXPECT_LT(g.albedo.at(1, 0, skin), g.albedo.at(0, 0, skin)) << "pink";
+        EXPECT_EQ(g.albedo.at(0, 0, skin) < 0.35f, !lower) << "roots of lashes";
+        EXPECT_GT(g.specular.at(0, 0, skin), 1);
+        EXPECT_LT(g.roughness.at(0, 0, skin), 1);
+        EXPECT_EQ(g.albedo.at(1, 0, skin - 8 * away), 0.5f);
+    }
 }

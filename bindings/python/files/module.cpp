@@ -86,9 +86,7 @@ py::object loadHead(const std::string& path, int levels) {
     for (const sample::EyeLook& eye : head.eyes) {
         using namespace py::literals;
         eyes.append(py::dict("centre"_a = list(eye.centre), "gaze"_a = list(eye.gaze),
-                             "radius"_a = eye.radius, "iris_radius"_a = eye.irisRadius,
-                             "pupil_radius"_a = eye.pupilRadius, "sclera"_a = eye.sclera,
-                             "iris"_a = eye.iris));
+                             "radius"_a = eye.radius, "sclera"_a = eye.sclera));
     }
     d["eyes"] = eyes;
     return d;

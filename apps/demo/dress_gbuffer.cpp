@@ -1,0 +1,100 @@
+#include "demo/dress_gbuffer.h"
+
+#include <algorithm>
+
+namespace pellucid::demo {
+namespace {
+
+using sample::GBuffer, sample::Vec3, sample::LinearColor;
+
+// From the line where an eye meets a lid, mm.
+constexpr double tears = 0.35, wetReach = 0.9, lidReach = 1.4;
+constexpr int window = 11;  // pixels; of a head in 2160 lines they are 0.13 mm wide
+
+bool isEye(uint32_t id) {
+    return id == DEMO_EYES || id == DEMO_RIGHT_EYE;
+}
+
+// Lids stand before the ball: how far they are from a pixel's place as one sees it.
+double apart(Vec3 way) {
+    return length(Vec3{way.x, way.y, 0.3 * way.z});
+}
+
+void multiply(GBuffer& g, int x, int y, LinearColor factor, double share) {
+    for (int c = 0; c < 3; ++c) g.albedo.at(c, x, y) *= float(1 + share * (factor[size_t(c)] - 1));
+}
+
+// The pixels around the place (x, y).
+template <class Use>
+void around(const GBuffer& g, int x, int y, Use&& use) {
+    for (int v = std::max(y - window, 0); v <= std::min(y + window, g.height - 1); ++v)
+        for (int u = std::max(x - window, 0); u <= std::min(x + window, g.width - 1); ++u) use(u, v);
+}
+
+// The line of tears stands half way to the lid; its normals turn up. `share`: 1 at the lid.
+void setTears(GBuffer& g, int x, int y, Vec3 way, Vec3 up, double share) {
+    const Vec3 n = normalize(sample::vectorAt(g.geometricNormal, x, y) + up * (1.4 * share));
+    const double normal[] = {n.x, n.y, n.z}, moved[] = {0.5 * way.x, 0.5 * way.y, 0.5 * way.z};
+    for (int c = 0; c < 3; ++c) {
+        g.position.at(c, x, y) += float(moved[c]);
+        for (sample::Image* of : {&g.geometricNormal, &g.shadingNormal, &g.blurredNormal})
+            of->at(c, x, y) = float(normal[c]);
+        g.albedo.at(c, x, y) = 0.42f - 0.05f * float(c);
+    }
+}
+
+// `way`: to the eye.
+void setMargin(GBuffer& g, int x, int y, Vec3 way, Vec3 up, double share) {
+    const bool upperLid = dot(way, up) < -0.3 * apart(way);
+    multiply(g, x, y, upperLid ? LinearColor{0.45, 0.35, 0.33} : LinearColor{0.97, 0.72, 0.71}, share);
+    g.specular.at(0, x, y) *= float(1 + share);
+    g.roughness.at(0, x, y) *= float(1 - 0.5 * share);
+}
+
+}  // namespace
+
+std::vector<float> dressEyes(GBuffer& g, Vec3 up) {
+    std::vector<float> wet(g.material.size());
+    const std::vector<uint32_t> ids = g.material;
+    const auto index = [&](int x, int y) { return size_t(y) * size_t(g.width) + size_t(x); };
+    std::vector<char> near(ids.size());
+    for (int y = 0; y < g.height; ++y)
+        for (int x = 0; x < g.width; ++x)
+            if (isEye(ids[index(x, y)])) around(g, x, y, [&](int u, int v) { near[index(u, v)] = 1; });
+    for (int y = 0; y < g.height; ++y)
+        for (int x = 0; x < g.width; ++x) {
+            const size_t i = index(x, y);
+            const bool eye = isEye(ids[i]);
+            if (!near[i] || !(eye || ids[i] == DEMO_SKIN)) continue;
+            // The way to the nearest of skin, or of the eye.
+            const Vec3 from = sample::vectorAt(g.position, x, y);
+            Vec3 way{INFINITY, 0, 0};
+            around(g, x, y, [&](int u, int v) {
+                const uint32_t other = ids[index(u, v)];
+                if (eye ? other != DEMO_SKIN : !isEye(other)) return;
+                const Vec3 d = sample::vectorAt(g.position, u, v) - from;
+                if (apart(d) < apart(way)) way = d;
+            });
+            const double distance = apart(way), share = 1 - distance / lidReach;
+            if (share <= 0) continue;
+            if (!eye) setMargin(g, x, y, way, up, std::min(1.0, 1.5 * share));
+            if (!eye) continue;
+            wet[i] = float(std::max(0.0, 1 - distance / wetReach));
+            if (distance > tears || dot(way, up) > -0.5 * distance) continue;
+            g.material[i] = DEMO_TEARS;
+            setTears(g, x, y, way, up, 1 - distance / tears);
+        }
+    return wet;
+}
+
+void shadeScalp(GBuffer& g, const Scalp& scalp) {
+    for (int y = 0; y < g.height; ++y)
+        for (int x = 0; x < g.width; ++x) {
+            if (g.material[size_t(y) * size_t(g.width) + size_t(x)] != DEMO_SKIN) continue;
+            const double cover = scalp.cover(sample::vectorAt(g.position, x, y));
+            multiply(g, x, y, {0.4, 0.4, 0.4}, cover);
+            g.specular.at(0, x, y) *= float(1 - 0.6 * cover);
+        }
+}
+
+}  // namespace pellucid::demo
