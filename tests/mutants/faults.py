@@ -26,7 +26,8 @@ ARRAY = r"^ *(?!return|case)(?:[\w:<>]+[*&]? )+\w+\[(\d+)\]"  # its length: one 
 # Guards around what changes nothing where no lane takes part: they save time.
 SAVES_TIME = r"(?:!SKIPPING \|\| )?anyw\("
 ENDS_EARLY = r"(?:SKIPPING && )?!anyw\("
-COMMUTATIVE = re.compile(r"\b(?:f?(?:min|max)w?|add3|dot3?|hypot|gcd)$")
+# With one lane, loadw(i, p) is p[i], which is i[p]; with more the other order does not compile.
+COMMUTATIVE = re.compile(r"\b(?:f?(?:min|max)w?|add3|dot3?|hypot|gcd|loadw|sameShape|distance)$")
 TIME_ALONE = r"\b(?:PEL_PREFETCH|reserve)\("
 # Comments, the texts of literals (not a quote between digits), and preprocessor lines.
 HIDDEN_C = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|(?P<text>"(?:\\.|[^"\\\n])*"'
