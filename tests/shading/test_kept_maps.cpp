@@ -120,6 +120,29 @@ TEST_F(KeptMaps, OfANewVersionHaveTheMapsNewContent) {
     expectSameBits(device(), right.picture(), alone(5));
 }
 
+TEST_F(KeptMaps, OfAViewOfNothingAreThoseOfAll) {
+    const Frame whole = frame_;
+    frame_.slots[PEL_SLOT_MATERIAL].components = 1;
+    frame_.slots[PEL_SLOT_MATERIAL].values.assign(frame_.pixels(), 0);
+    View nothing, second;
+    set(nothing, 1, -5);
+    nothing.shader.execute();
+    frame_ = whole;
+    set(second, 1, -5);
+    second.shader.execute();
+    expectSameBits(device(), second.picture(), alone(-5));
+}
+
+TEST_F(KeptMaps, CellsOfTapsBelongToAFilter) {
+    View first, second;
+    set(first, 1, -5);
+    const uint64_t all = first.launches();
+    for (auto& [id, m] : frame_.materials) m.thicknessFilterRadius = 0.4f;
+    set(second, 1, -5);
+    EXPECT_EQ(second.launches(), all - 1) << "bounds";
+    expectSameBits(device(), second.picture(), alone(-5));
+}
+
 // Another map, or the same one read in another way, under the same number: one thing changes after the other.
 TEST_F(KeptMaps, OfOtherMapsAreOthers) {
     PelLight& light = frame_.lights[0].params;
