@@ -256,8 +256,8 @@ def meanings(path, text, m):
     yield from each(m, "neighbour left out", r"(?<=[\w)]) [-+] 1(?=\])", "")
 
 
-NOTHING_CHANGES = re.compile(r"\breserve\(|static_assert|\btemplate\b|__attribute__|PEL_API|\boperator\b"
-                             r"|^\s*(?:from|import)\b|\bassert\b|#pragma|noexcept")
+NOTHING_CHANGES = re.compile(r"\breserve\(|(?i:prefetch)\(|static_assert|\btemplate\b|__attribute__|PEL_API"
+                             r"|\boperator\b|^\s*(?:from|import)\b|\bassert\b|#pragma|noexcept")
 
 
 def faults(path, text, meaning=False):
