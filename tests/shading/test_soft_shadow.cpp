@@ -207,21 +207,23 @@ TEST(SoftShadow, NothingIsBeyondAMap) {
 
 // Where the horizon hides the light's centre, the map does not show what is before the rest.
 TEST(SoftShadow, OfAPointThatSeesTheRimAlone) {
-    Frame f = edgeFrame({PEL_LIGHT_SPHERE, 100, 60});
-    f.slots[PEL_SLOT_NORMAL_GEOMETRIC] = f.slots[PEL_SLOT_NORMAL_SHADING];
-    for (int slot : {PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_GEOMETRIC})
-        for (size_t i = 0; i < f.pixels(); ++i) {
-            f.slots[slot].values[3 * i] = 0.995f;
-            f.slots[slot].values[3 * i + 2] = -0.0998f;
-        }
-    Frame bare = f;
-    bare.lights[0].map = {};
-    const auto lit = shade(f), all = shade(bare);
-    for (size_t x = 0; x < columns; ++x)
-        if (const float at = columnX(x); at < 0 && 0.995f * -at - 0.0998f * lightHeight < 0) {
-            EXPECT_EQ(lit[3 * x], all[3 * x]) << at;
-            EXPECT_GT(all[3 * x], 0.01f);
-        }
+    for (const bool cube : {false, true}) {
+        Frame f = edgeFrame({PEL_LIGHT_SPHERE, 100, 60, cube});
+        f.slots[PEL_SLOT_NORMAL_GEOMETRIC] = f.slots[PEL_SLOT_NORMAL_SHADING];
+        for (int slot : {PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_GEOMETRIC})
+            for (size_t i = 0; i < f.pixels(); ++i) {
+                f.slots[slot].values[3 * i] = 0.995f;
+                f.slots[slot].values[3 * i + 2] = -0.0998f;
+            }
+        Frame bare = f;
+        bare.lights[0].map = {}, bare.lights[0].maps.clear();
+        const auto lit = shade(f), all = shade(bare);
+        for (size_t x = 0; x < columns; ++x)
+            if (const float at = columnX(x); at < 0 && 0.995f * -at - 0.0998f * lightHeight < 0) {
+                EXPECT_EQ(lit[3 * x], all[3 * x]) << at;
+                EXPECT_GT(all[3 * x], 0.01f);
+            }
+    }
 }
 
 }  // namespace
