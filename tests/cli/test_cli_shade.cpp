@@ -2,6 +2,9 @@
 #include "cli_shade.h"
 #include "io/image/color_map.h"
 
+#include <functional>
+#include <regex>
+
 using namespace pellucid;
 using namespace shade_files;
 
@@ -151,4 +154,33 @@ TEST_F(WarmUp, OfALargeFrameThatScatters) {
     for (int i = 0; i < 3; ++i) light.light.worldToShadow[4 * i + 3] = 0.5f;
     light.light.shadowDepthRange = 100;
     expectNothingLeftToCompile("PELLUCID_CACHE=auto POCL_CACHE_DIR=@cache", "light_texels.so");
+}
+
+// What commands say in JSON, but times and what the device has.
+TEST_F(Shade, ReportsOfCommandsAreThoseThatWereKept) {
+    write("m.off", octahedron());
+    const std::regex changes("ms|.*_ms|device|warnings|passes|launches|bytes.*");
+    const std::function<void(nlohmann::json&)> drop = [&](nlohmann::json& part) {
+        for (auto at = part.begin(); at != part.end();)
+            if (part.is_object() && std::regex_match(at.key(), changes)) {
+                at = part.erase(at);
+            } else {
+                if (at->is_structured()) drop(*at);
+                ++at;
+            }
+    };
+    std::string all;
+    for (const char* line :
+         {"profile list", "profile show jade", "profile fit marble --gaussians 3",
+          "profile skin --melanin 0.1", "lut curvature --size 8x8 -o @a.exr",
+          "lut shadow --size 8x8 --profile marble -o @b.exr", "lut specular --size 8x8 -o @c.exr",
+          "lut eye --size 8x8x4 -o @e.exr", "curvature @m.off -o @c.npy",
+          "shade @g.exr --scene @s.toml -o @o.exr --stats", "compare @a.exr @b.exr --exposure 2"}) {
+        nlohmann::json report = reportOf(line);
+        drop(report);
+        all += line + ('\n' + report.dump(1)) + '\n';
+    }
+    for (size_t at; (at = all.find(path(""))) != std::string::npos;) all.replace(at, path("").size(), "@");
+    write("reports.txt", all);
+    expectKeptText("reports.txt", "reports.txt");
 }
