@@ -169,18 +169,16 @@ TEST_F(Shade, ReportsOfCommandsAreThoseThatWereKept) {
                 ++at;
             }
     };
-    std::string all;
+    nlohmann::json all;
     for (const char* line :
          {"profile list", "profile show jade", "profile fit marble --gaussians 3",
           "profile skin --melanin 0.1", "lut curvature --size 8x8 -o @a.exr",
           "lut shadow --size 8x8 --profile marble -o @b.exr", "lut specular --size 8x8 -o @c.exr",
           "lut eye --size 8x8x4 -o @e.exr", "curvature @m.off -o @c.npy",
-          "shade @g.exr --scene @s.toml -o @o.exr --stats", "compare @a.exr @b.exr --exposure 2"}) {
-        nlohmann::json report = reportOf(line);
-        drop(report);
-        all += line + ('\n' + report.dump(1)) + '\n';
-    }
-    for (size_t at; (at = all.find(path(""))) != std::string::npos;) all.replace(at, path("").size(), "@");
-    write("reports.txt", all);
-    expectKeptText("reports.txt", "reports.txt");
+          "shade @g.exr --scene @s.toml -o @o.exr --stats", "compare @a.exr @b.exr --exposure 2"})
+        drop(all[line] = reportOf(line));
+    std::string text = all.dump(1);
+    for (size_t at; (at = text.find(path(""))) != std::string::npos;) text.replace(at, path("").size(), "@");
+    write("reports.json", text);
+    expectKeptText("reports.json", "reports.json");
 }
