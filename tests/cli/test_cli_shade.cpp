@@ -172,9 +172,14 @@ TEST_F(Shade, ReportsOfCommandsAreThoseThatWereKept) {
     nlohmann::json all;
     for (const char* line :
          {"profile list", "profile show jade", "profile fit marble --gaussians 3",
-          "profile skin --melanin 0.1", "lut curvature --size 8x8 -o @a.exr",
-          "lut shadow --size 8x8 --profile marble -o @b.exr", "lut specular --size 8x8 -o @c.exr",
-          "lut eye --size 8x8x4 -o @e.exr", "curvature @m.off -o @c.npy",
+          "profile skin --melanin 0.1", "lut curvature -o @a.exr",
+          "lut curvature --preset faceworks --size 64x64 --axis root -o @b.exr",
+          "lut curvature --preset faceworks --size 32x8 -o @c.exr",
+          "lut curvature --size 8x6 --form arc --axis linear -o @d.exr",
+          "lut shadow --profile marble -o @c.exr",
+          "lut shadow --size 16x8 --width-min 4 --width-max 40 --open-ends -o @d.exr",
+          "lut shadow --preset faceworks --diffusion-radius 1.5 -o @d.exr",
+          "lut specular --size 8x8 -o @d.exr", "lut eye --size 8x8x4 -o @e.exr", "curvature @m.off -o @c.npy",
           "shade @g.exr --scene @s.toml -o @o.exr --stats", "compare @a.exr @b.exr --exposure 2"})
         drop(all[line] = reportOf(line));
     std::string text = all.dump(1);
