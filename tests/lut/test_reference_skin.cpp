@@ -115,7 +115,7 @@ TEST(Skin, MatchingFunctionsAndDaylightAreTheStandards) {
     EXPECT_NEAR(day[1] / all, 0.3290, 2e-4);
 }
 
-// No number of the tables was mistyped since they were compared with their sources.
+// The sums of the columns as they were when they were compared with their sources.
 TEST(Skin, SpectraAddUp) {
     constexpr double sums[] = {37950,       4675218,     5580497,    2254754,    845315,
                                14.28130005, 21.36548603, 21.3689721, 21.3722901, 6323.180008};
