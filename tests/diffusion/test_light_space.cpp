@@ -258,8 +258,7 @@ TEST(LightSpace, SlabsLetThroughWhatRandomWalksDo) {
             EXPECT_NEAR(light, truth,
                         testsAreSmall() ? 0.1 : tolerance::throughSlab + tolerance::throughSlabPart * truth)
                 << thickness << " mm, method " << int(method) << ", disk " << disk;
-            // Half of a profile twice as wide, by a radius per pixel; the thinnest slab is .06 off, by coarser
-            // blocks.
+            // Half of a profile twice as wide, by a radius per pixel; coarser blocks make the thinnest .06.
             f.material.diffusionRadius = 2 * f.profile.info().radius;
             for (size_t i = 0; i < f.picture.pixels(); ++i)
                 for (const float weight : {1.0f, 0.5f}) f.images[PEL_SLOT_SCATTER_WEIGHT].push_back(weight);
