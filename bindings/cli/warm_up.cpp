@@ -23,7 +23,7 @@ void run(const Arguments& a) {
     if (!groups && a.scenes.empty())
         groups = PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABULATED_LUTS | PEL_PROGRAMS_CURVATURE;
     const PelDeviceStats before = run.device().stats();
-    if (groups) warmUpPrograms(run.device(), groups, {}, a.threads);
+    warmUpPrograms(run.device(), groups, {}, a.threads);
     for (const std::string& scene : a.scenes) {
         run.note("building what " + scene + " needs");
         try {

@@ -29,7 +29,7 @@ void KeptMaps::allocate(const Ref<Device>& device, MapsKey key, size_t bytes) {
         return;
     }
     own_ = Ref<Buffer>();
-    if (shared_ && key_ == key.bytes() && shared_->buffer->bytes() >= bytes) return;
+    if (shared_ && key_ == key.bytes()) return;
     shared_.reset();
     key_ = key.bytes();
     first_ = false;

@@ -240,10 +240,8 @@ class ShadowBounds final : public Pass {
                  " are the most");
         plan.bounds = cl::Memory();
         MapsKey key("shadow_bounds");
-        for (const BoundedMap& map : plan.boundedMaps) {
+        for (const BoundedMap& map : plan.boundedMaps)
             key.addMap(plan.state.lights[plan.filteredLights[map.filtered]], map.cascade);
-            key.add(&map.offset, sizeof map.offset);
-        }
         // One vector more, since the last row's vectors reach beyond its end.
         bounds_.allocate(device, std::move(key), (floats + device->info().mathWidth) * sizeof(float));
         plan.bounds = bounds_.memory();

@@ -49,11 +49,24 @@ class CommandTest : public FolderTest {
     // PELLUCID_KEEP_PICTURES=1.
     void expectKept(const std::string& made, const std::string& name, const std::string& maxRmse) const {
         const std::string kept = PELLUCID_SOURCE_DIR "/tests/cli/pictures/" + name;
-        const char* keep = std::getenv("PELLUCID_KEEP_PICTURES");
-        if (keep && *keep)
-            std::filesystem::copy_file(path(made), kept, std::filesystem::copy_options::overwrite_existing);
-        else
-            done("compare @" + made + " '" + kept + "' --max-rmse " + maxRmse);
+        if (!keeps(made, kept)) done("compare @" + made + " '" + kept + "' --max-rmse " + maxRmse);
+    }
+    // The same of a text: words and numbers.
+    void expectKeptText(const std::string& made, const std::string& name) const {
+        const std::string kept = PELLUCID_SOURCE_DIR "/tests/cli/pictures/" + name;
+        if (keeps(made, kept)) return;
+        std::ifstream one(path(made)), two(kept);
+        std::string word, known;
+        while (two >> known) {
+            ASSERT_TRUE(one >> word) << "instead of " << known;
+            const char *begin = word.c_str(), *from = known.c_str();
+            begin += *begin == '[', from += *from == '[';
+            char *end = nullptr, *to = nullptr;
+            const double value = std::strtod(begin, &end), wanted = std::strtod(from, &to);
+            EXPECT_NEAR(value, wanted, 1e-3 * std::abs(wanted) + 1e-5) << name;
+            EXPECT_STREQ(end, to) << name;
+        }
+        EXPECT_FALSE(one >> word) << word;
     }
 
     // The keys that every report has.
@@ -83,5 +96,12 @@ class CommandTest : public FolderTest {
     }
 
   private:
+    bool keeps(const std::string& made, const std::string& kept) const {
+        const char* keep = std::getenv("PELLUCID_KEEP_PICTURES");
+        if (!keep || !*keep) return false;
+        return std::filesystem::copy_file(path(made), kept,
+                                          std::filesystem::copy_options::overwrite_existing);
+    }
+
     std::string scratch_;
 };

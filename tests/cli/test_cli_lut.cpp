@@ -62,34 +62,11 @@ TEST_F(CliLut, LutFilesHoldTheLibrarysTexels) {
               Lut(device_, desc).clippedTexels());
 }
 
-// The default tables are those that a material makes of its profile, --preset faceworks makes those of
-// FaceWorks; an option of its own takes precedence.
 TEST_F(CliLut, OptionsBecomeDescriptions) {
-    const std::pair<std::string, nlohmann::json> rows[] = {
-        {"curvature", {{"form", "sphere"}, {"axis", "root"}, {"width", 64}}},
-        {"curvature --preset faceworks --size 32x8", {{"form", "arc"}, {"axis", "linear"}, {"height", 8}}},
-        {"curvature --preset faceworks --size 32x8 --axis root", {{"axis", "root"}}},
-        {"curvature --size 8x6 --form arc --axis linear", {{"form", "arc"}, {"axis", "linear"}}},
-        {"shadow", {{"closed_ends", true}, {"axis", "root"}, {"width", 128}, {"height", 32}}},
-        {"shadow --open-ends", {{"closed_ends", false}}},
-        {"shadow --preset faceworks",
-         {{"closed_ends", false}, {"axis", "linear"}, {"width", 512}, {"width_min", 8}}},
-        {"shadow --size 16x8 --width-min 4 --width-max 40 --diffusion-radius 1.5",
-         {{"width", 16}, {"height", 8}, {"width_min", 4}, {"width_max", 40}, {"diffusion_radius", 1.5}}}};
-    for (const auto& [options, expected] : rows) {
-        const auto report = reportOf("lut " + options + " -o @t.exr");
-        for (const auto& [key, value] : expected.items()) EXPECT_EQ(report[key], value) << options << key;
-    }
     EXPECT_STREQ(info("curvature --size 8x6 --profile ketchup").profile, "ketchup");
     EXPECT_EQ(info("shadow --size 8x6 --sharpening 5").shadow.sharpening, 5.0f);
     EXPECT_EQ(info("specular --size 8x6").kind, PEL_LUT_SPECULAR);
     done("lut shadow -o @s.tga --size 8x6");
-    // What followed from the profile is shown.
-    const auto shown = reportOf("lut shadow --profile marble -o @p.exr");
-    const PelProfileInfo marble = Profile::named("marble").info();
-    const float narrowest = 1.3f * *std::max_element(marble.width, marble.width + 3);
-    EXPECT_NEAR(shown["width_min"].get<float>(), narrowest, 1e-3);
-    EXPECT_NEAR(shown["width_max"].get<float>(), 1000 * narrowest, 1e-3 * 1000 * narrowest);
 }
 
 TEST_F(CliLut, TablesOfCaustics) {
@@ -121,23 +98,9 @@ TEST_F(CliLut, ATableAsAPictureHasTheTablesValues) {
         EXPECT_NEAR(255 * picture[i], 255 * io::encodeSrgb(std::clamp(table[i], 0.0f, 1.0f)), 0.51) << i;
 }
 
-TEST_F(CliLut, ProfilesAreListedShownDrawnAndFitted) {
-    EXPECT_GE(reportOf("profile list")["profiles"].size(), 9u);
-    for (const auto& [name, singular] : {std::pair{"skin", false}, {"skin-burley", true}, {"marble", false}})
-        EXPECT_EQ(reportOf(std::string("profile show ") + name)["singular"], singular) << name;
+// What the reports say: test_cli_shade.cpp.
+TEST_F(CliLut, ProfilesAreShownDrawnAndFitted) {
     EXPECT_TRUE(contains(done("profile show marble").out, "d mm  R per mm^2"));
-    const auto shown = reportOf("profile show marble");
-    EXPECT_EQ(shown["kind"], "dipole");
-    ASSERT_EQ(shown["values"].size(), 7u);
-    const Profile marble = Profile::named("marble");
-    for (const auto& row : shown["values"]) {
-        const std::vector<double> at{row["distance_mm"].get<double>()};
-        const auto radial = marble.radial(at), line = marble.lineSpread(at);
-        for (size_t c = 0; c < 3; ++c) {
-            EXPECT_NEAR(row["radial_per_mm2"][c].get<double>() / radial[c], 1, 1e-6);
-            EXPECT_NEAR(row["line_spread_per_mm"][c].get<double>() / line[c], 1, 1e-6);
-        }
-    }
     done("profile plot jade -o @jade.png");
     expectKept("jade.png", "profile.png", "0.0003");
     done("profile fit marble --gaussians 3 -o @fit.toml");

@@ -2,6 +2,9 @@
 #include "cli_shade.h"
 #include "io/image/color_map.h"
 
+#include <functional>
+#include <regex>
+
 using namespace pellucid;
 using namespace shade_files;
 
@@ -151,4 +154,36 @@ TEST_F(WarmUp, OfALargeFrameThatScatters) {
     for (int i = 0; i < 3; ++i) light.light.worldToShadow[4 * i + 3] = 0.5f;
     light.light.shadowDepthRange = 100;
     expectNothingLeftToCompile("PELLUCID_CACHE=auto POCL_CACHE_DIR=@cache", "light_texels.so");
+}
+
+// What commands say in JSON, but times and what the device has.
+TEST_F(Shade, ReportsOfCommandsAreThoseThatWereKept) {
+    std::filesystem::copy_file(PELLUCID_SOURCE_DIR "/data/heads/head_male.obj", path("m.obj"));
+    const std::regex changes("ms|.*_ms|device|warnings|passes|launches|bytes.*");
+    const std::function<void(nlohmann::json&)> drop = [&](nlohmann::json& part) {
+        for (auto at = part.begin(); at != part.end();)
+            if (part.is_object() && std::regex_match(at.key(), changes)) {
+                at = part.erase(at);
+            } else {
+                if (at->is_structured()) drop(*at);
+                ++at;
+            }
+    };
+    nlohmann::json all;
+    for (const char* line :
+         {"profile list", "profile show jade", "profile fit marble --gaussians 3",
+          "profile skin --melanin 0.1", "lut curvature -o @a.exr",
+          "lut curvature --preset faceworks --size 64x64 --axis root -o @b.exr",
+          "lut curvature --preset faceworks --size 32x8 -o @c.exr",
+          "lut curvature --size 8x6 --form arc --axis linear -o @d.exr",
+          "lut shadow --profile marble -o @c.exr",
+          "lut shadow --size 16x8 --width-min 4 --width-max 40 --open-ends -o @d.exr",
+          "lut shadow --preset faceworks --diffusion-radius 1.5 -o @d.exr",
+          "lut specular --size 8x8 -o @d.exr", "lut eye --size 8x8x4 -o @e.exr", "curvature @m.obj -o @c.npy",
+          "shade @g.exr --scene @s.toml -o @o.exr --stats", "compare @a.exr @b.exr --exposure 2"})
+        drop(all[line] = reportOf(line));
+    std::string text = all.dump(1);
+    for (size_t at; (at = text.find(path(""))) != std::string::npos;) text.replace(at, path("").size(), "@");
+    write("reports.json", text);
+    expectKeptText("reports.json", "reports.json");
 }

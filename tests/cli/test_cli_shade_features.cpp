@@ -95,6 +95,25 @@ TEST_F(ShadeFeatures, CurvatureFromThePictureItself) {
         scene_.channels[PEL_SLOT_CURVATURE] = {curvature};
         return shaded();
     };
+    // As the library measures it from the same images, without differences between materials.
+    add(PEL_SLOT_MATERIAL, {"Two.V"}, [](int x, int, size_t) { return x < 2 ? 0 : x < 7 ? 1 : 2; });
+    const std::vector<float> sphere = gbuffer_.interleaved(positionNames);
+    const Names apartNames = {"Apart.X", "Apart.Y", "Apart.Z"};
+    add(PEL_SLOT_POSITION, apartNames, [&](int x, int y, size_t c) {
+        return sphere[size_t(3 * (y * width + x)) + c] + (c == 0 && x >= 7 ? 0.2f : 0.0f);
+    });
+    scene_.materials.push_back(scene_.materials[0]);
+    scene_.materials[1].id = 2;
+    const Device device;
+    const auto image = [&](const Names& names, PelFormat format) {
+        return imageDesc(Buffer(device, gbuffer_.interleaved(names)), format, width, height);
+    };
+    const Buffer measured(device, size_t(width) * height * sizeof(float));
+    screenCurvature(device, pelScreenCurvatureParamsDefaults(), image(normalNames, PEL_FORMAT_RGB32F),
+                    image(apartNames, PEL_FORMAT_RGB32F), nullptr, image({"Two.V"}, PEL_FORMAT_R32F),
+                    imageDesc(measured, PEL_FORMAT_R32F, width, height));
+    gbuffer_.addInterleaved(Names{"Measured.V"}, measured.readAll<float>());
+    EXPECT_EQ(of("screen"), of("Measured.V"));
     EXPECT_GT(farthest(of("screen"), of("Flat.V")), 0.01);
     // Of geometric normals where there are some.
     add(PEL_SLOT_NORMAL_GEOMETRIC, {"G.X", "G.Y", "G.Z"}, [](int, int, size_t c) { return c == 2; });

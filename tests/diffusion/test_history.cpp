@@ -72,6 +72,17 @@ ClipFrame plateFrame(uint32_t index, uint32_t shift, uint8_t plateId, double nea
     return c;
 }
 
+// Stripes and two materials that fill the picture, moved by columns and rows.
+Picture movedWall(Vec3 by, uint32_t side) {
+    const double size = 0.25;
+    Picture p = plane(side, side - 4, size, [&](double x, double y) {
+        const double e = std::fmod(x - by.x * size + 100, 4) < 2 ? 0.6 : 0.4;
+        return Vec3{e, 0.8 * e, 0.3 + 0.05 * (y - by.y * size)};
+    });
+    for (uint32_t i = 0; i < p.pixels(); ++i) p.ids[i] = p.place(i).y - by.y * size > 2 ? 2 : 1;
+    return p;
+}
+
 uint64_t covered(const Picture& p) {
     return p.pixels() - uint64_t(std::ranges::count(p.ids, 0));
 }
@@ -79,14 +90,21 @@ uint64_t covered(const Picture& p) {
 }  // namespace
 
 TEST(History, EqualsTheOracle) {
-    const Vec3 step{2.3, -1.6, 0.8};  // into the picture
-    for (const auto& [method, taps] : {std::pair{disk, 8u}, {separable, 9u}})
+    const struct {
+        Picture (*moved)(Vec3 by, uint32_t side);
+        Vec3 step;
+        PelScattering method;
+        uint32_t taps;
+    } clips[] = {{movedBall, {2.3, -1.6, 0.8}, disk, 8},  // into the picture
+                 {movedBall, {2.3, -1.6, 0.8}, separable, 9},
+                 {movedWall, {2.3, -1.6, 0}, disk, 8},
+                 {movedWall, {-1.3, 1.7, 0}, disk, 8}};
+    for (const auto& [moved, step, method, taps] : clips)
         for (const uint32_t half : {0u, 1u}) {
             ShownImages shown(device(), 1, 1);
             std::vector<reference::HistoryPixel> history;
             for (uint32_t k = 0; k < 5; ++k) {
-                ClipFrame c =
-                    clipFrame(movedBall((k - 5.0) * step, sized(44u, 20u)), method, taps, k, -1 * step);
+                ClipFrame c = clipFrame(moved((k - 5.0) * step, sized(44u, 20u)), method, taps, k, -1 * step);
                 c.frame.options.halfRate = half;
                 const Picture& p = c.frame.picture;
                 std::vector<reference::Rgb> gathered;
@@ -134,6 +152,14 @@ TEST(History, AtRestComesCloserToAllTaps) {
         std::printf("rms %.2e after one frame, %.2e after 16\n", first, last);
         EXPECT_LT(last, 0.45 * first);
     }
+}
+
+// More of them than a byte counts.
+TEST(History, GoesOnForHundredsOfFrames) {
+    const Picture p = movedBall({}, 16);
+    ShownImages shown(device(), 1, 1);
+    for (uint32_t k = 0; k < 300; ++k)
+        ASSERT_EQ(shade(clipFrame(p, disk, 8, k, {}), shown).stats.pixelsHistory, k ? covered(p) : 0) << k;
 }
 
 // What a frame does not hold itself round a pixel, the ones before it do not bring.

@@ -115,6 +115,17 @@ TEST(Skin, MatchingFunctionsAndDaylightAreTheStandards) {
     EXPECT_NEAR(day[1] / all, 0.3290, 2e-4);
 }
 
+// The sums of the columns as they were when they were compared with their sources.
+TEST(Skin, SpectraAddUp) {
+    constexpr double sums[] = {37950,       4675218,     5580497,    2254754,    845315,
+                               14.28130005, 21.36548603, 21.3689721, 21.3722901, 6323.180008};
+    for (size_t column = 0; column < std::size(sums); ++column) {
+        double sum = 0;
+        for (const pel::SkinSpectrum& s : pel::skinSpectra) sum += double((&s.nanometres)[column]);
+        EXPECT_NEAR(sum / sums[column], 1, 1e-7) << column;
+    }
+}
+
 TEST(Skin, OxygenatedBloodShowsItsTwoBands) {
     PelSkin skin = pelSkinDefaults();
     skin.oxygenation = 1;

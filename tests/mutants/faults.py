@@ -22,11 +22,14 @@ OPERATOR = {"*": "/", "/": "*", "%": "/", "*=": "/=", "/=": "*=",
 WORD = both_ways("true/false True/False min/max fmin/fmax minw/maxw floor/ceil sin/cos any/all front/back "
                  "any_of/all_of continue/break")
 MESSAGE = r"\b(?:fail|invalidArgument|badFile|warn|note|printf|fprintf|print|throw [\w:]+|raise [\w.]+)\("
-ARRAY = r"^ *(?!return|case)(?:[\w:<>]+[*&]? )+\w+\[(\d+)\]"  # its length: one more changes nothing
+# Declarations of arrays, whose lengths are no faults: one more changes nothing.
+ARRAY = (r"^ *(?!return|case)(?:[\w:<>]+[*&]? )+\w+(?:\[\w+\])+(?:, \w+(?:\[\w+\])+)*"
+         r"|^ *(?:const )?std::array<.*?, \d+> \w+(?=[;{]| =)")
 # Guards around what changes nothing where no lane takes part: they save time.
 SAVES_TIME = r"(?:!SKIPPING \|\| )?anyw\("
 ENDS_EARLY = r"(?:SKIPPING && )?!anyw\("
-COMMUTATIVE = re.compile(r"\b(?:f?(?:min|max)w?|add3|dot3?|hypot|gcd)$")
+# With one lane, loadw(i, p) is p[i], which is i[p]; with more the other order does not compile.
+COMMUTATIVE = re.compile(r"\b(?:f?(?:min|max)w?|add3|dot3?|hypot|gcd|loadw|sameShape|distance)$")
 TIME_ALONE = r"\b(?:PEL_PREFETCH|reserve)\("
 # Comments, the texts of literals (not a quote between digits), and preprocessor lines.
 HIDDEN_C = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|(?P<text>"(?:\\.|[^"\\\n])*"'
@@ -156,7 +159,8 @@ def candidates(path, text, m):
     def line(match, end):
         return m[m.rfind("\n", 0, match.start()) + 1:end]
 
-    lengths = {found.start(1) for found in re.finditer(ARRAY, m, re.M)}
+    lengths = {found.start() + length.start(1) for found in re.finditer(ARRAY, m, re.M)
+               for length in re.finditer(r"(?:\[|, )(\d+)[\]>]", found[0])}
     yield from each(m, "constant", r"(?<![\w.'])(?:0[xX][0-9a-fA-F]+|(?:\d+\.\d*|\d+)(?:[eE][-+]?\d+)?|\.\d+)"
                     r"[fFuUlL]*(?![\w.'])", lambda match: None if match.start() in lengths else number(match))
     for match in re.finditer(r" (<=|>=|==|!=|<|>)(?= )", m):
@@ -252,8 +256,8 @@ def meanings(path, text, m):
     yield from each(m, "neighbour left out", r"(?<=[\w)]) [-+] 1(?=\])", "")
 
 
-NOTHING_CHANGES = re.compile(r"\breserve\(|static_assert|\btemplate\b|__attribute__|PEL_API|\boperator\b"
-                             r"|^\s*(?:from|import)\b|\bassert\b|#pragma|noexcept")
+NOTHING_CHANGES = re.compile(r"\breserve\(|(?i:prefetch)\(|static_assert|\btemplate\b|__attribute__|PEL_API"
+                             r"|\boperator\b|^\s*(?:from|import)\b|\bassert\b|#pragma|noexcept")
 
 
 def faults(path, text, meaning=False):

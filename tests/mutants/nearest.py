@@ -9,7 +9,7 @@ import re
 import threading
 from pathlib import Path
 
-from workplace import PASSED, TREE, WORK, say
+from workplace import CHECKS, PASSED, TREE, WORK, say
 
 SAME_SUBJECT = 2  # factor for each word that the paths of a test and of a file share
 COMPILED = 1  # processor seconds for each kernel that a fault is in
@@ -55,6 +55,7 @@ class Tests:
         self.measured = json.loads(self.file.read_text()) if self.file.exists() else {}
         self.programs = {p.stem: p for folder in ("tests/*", "apps/*/tests")
                          for p in TREE.glob(f"{folder}/test_*.cpp")}
+        self.programs |= {name: TREE / name for name in CHECKS}
         self.scripts = {str(p.relative_to(TREE)): p for folder in ("bindings/python", "apps/*")
                         for p in TREE.glob(f"{folder}/tests/test_*.py")}
         self.words = {name: {*words_of(f"{p.stem} {p.parent.name} {p.read_text()}")}

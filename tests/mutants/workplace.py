@@ -14,6 +14,10 @@ WORK = ROOT / "build" / "mutants"
 TREE = (WORK / "tree").resolve()
 BUILD = TREE / "build" / "release"
 PASSED = (0, 77)  # 77: something was skipped
+# Scripts that compare the command or the headers with the pages, and what they are given.
+COMMAND = BUILD / "bin/pellucid"
+CHECKS = {"tests/cli/test_command_pages.py": COMMAND, "tests/docs/test_tree.py": COMMAND,
+          "docs/field_tables": "--check"}
 
 
 def say(*words):
@@ -86,14 +90,17 @@ class Workplace:
                                  "-DCMAKE_BUILD_TYPE=Release", *launcher], 600, WORK / "build.log")
             if status:
                 sys.exit((WORK / "build.log").read_text())
+        targets = ["pellucid_cli" if target in CHECKS else target for target in targets]
         return command(["ninja", "-C", BUILD, *targets], 3000, WORK / "build.log")[0] == 0
 
     def test(self, name, limit, log, **extra):
-        """A test program, or a file of Python tests."""
+        """A test program, one of CHECKS, or a file of Python tests."""
         environment = {"POCL_CACHE_DIR": WORK / "pocl", "XDG_CACHE_HOME": WORK / "cache",
-                       "TMPDIR": WORK / "tmp", "PELLUCID_COMMAND": BUILD / "bin/pellucid", **extra}
+                       "TMPDIR": WORK / "tmp", "PELLUCID_COMMAND": COMMAND, **extra}
         words = [BUILD / "bin" / name, "--gtest_fail_fast", "--gtest_brief=1", "--gtest_color=no"]
-        if name.endswith(".py"):
+        if name in CHECKS:
+            words = [sys.executable, TREE / name, CHECKS[name]]
+        elif name.endswith(".py"):
             environment["PYTHONPATH"] = BUILD / "python"
             words = [WORK / "python-environment/bin/python", "-m", "pytest", "-x", "-q", "-p",
                      "no:cacheprovider", "--tb=short", "--rootdir", TREE, TREE / name]

@@ -112,6 +112,20 @@ TEST_P(AreaSizes, DiffuseLightAgainstManySmallLights) {
     EXPECT_LE(e.worst, 4 * (sphere ? tolerance::areaSphere : tolerance::areaRectangle));
 }
 
+// Of normals by which the horizon goes through the light.
+TEST(AreaLights, OfASmallSphereAtTheHorizon) {
+    constexpr float size = 0.002f;
+    Frame f = areaFrame(3, PEL_LIGHT_SPHERE, size);
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        const Vec3 to = reference::normalized(vectorOf(f.lights[0].params.position) -
+                                              f.slots[PEL_SLOT_POSITION].vec(i)),
+                   aside = reference::normalized(cross(to, Vec3{0.36, 0.48, 0.8}));
+        const Vec3 n = reference::normalized(aside + size * (double(i % 41) / 20 - 1) * to);
+        for (int c = 0; c < 3; ++c) f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i + size_t(c)] = float(n[c]);
+    }
+    EXPECT_LE(errorsOf(f).rms, 10 * tolerance::areaSphere) << "normals are floats";
+}
+
 TEST_P(AreaSizes, TablesAgainstManySmallLights) {
     Frame f = areaFrame(4, GetParam().type, GetParam().size);
     f.slots[PEL_SLOT_CURVATURE] = randomFrame(4, 64, 24, 1).slots[PEL_SLOT_CURVATURE];
@@ -222,7 +236,7 @@ TEST(AreaLights, InsideASphereAndBehindARectangle) {
         if (f.materials[1].specular == 0) {
             EXPECT_LE(*std::ranges::max_element(inside), 1.0f) << "the radiance is 1, and albedo too";
         }
-        f.materials[1].specular = 1;
+        f.materials[1].specular = 1, f.materials[1].roughness = 0;
     }
     // The camera sees normals that face the light; turned round, a rectangle lights none of them.
     makeArea(f, PEL_LIGHT_RECTANGLE, 1, 0.5f);

@@ -15,11 +15,14 @@ float columnX(size_t column) {
 }
 
 // A white plane under a light whose centre is over x = 0, and an edge at that x over it: x below 0 is dark.
+// slope: of the plane, along x and y.
 struct Edge {
     PelLightType type = PEL_LIGHT_SPHERE;
     float radius = 20, height = 60;
     bool cube = false;
     PelScattering scattering = PEL_SCATTERING_NONE;
+    float slope[2] = {0, 0};
+    float planeAt(float x, float y) const { return slope[0] * x + slope[1] * y; }
 };
 
 Frame edgeFrame(const Edge& edge) {
@@ -27,7 +30,10 @@ Frame edgeFrame(const Edge& edge) {
     f.width = columns, f.height = rows;
     f.slots[PEL_SLOT_POSITION].components = f.slots[PEL_SLOT_NORMAL_SHADING].components = 3;
     for (size_t i = 0; i < f.pixels(); ++i) {
-        const float p[3] = {columnX(i % columns), float(i / columns), 0}, n[3] = {0, 0, 1};
+        const float x = columnX(i % columns), y = float(i / columns),
+                    perLength = 1 / std::hypot(edge.slope[0], edge.slope[1], 1.0f),
+                    p[3] = {x, y, edge.planeAt(x, y)},
+                    n[3] = {-perLength * edge.slope[0], -perLength * edge.slope[1], perLength};
         f.slots[PEL_SLOT_POSITION].values.insert(f.slots[PEL_SLOT_POSITION].values.end(), p, p + 3);
         f.slots[PEL_SLOT_NORMAL_SHADING].values.insert(f.slots[PEL_SLOT_NORMAL_SHADING].values.end(), n,
                                                        n + 3);
@@ -44,16 +50,20 @@ Frame edgeFrame(const Edge& edge) {
     l.type = edge.type;
     l.position[2] = lightHeight;
     std::fill_n(l.color, 3, lightHeight * lightHeight);
-    l.radius = edge.radius;
-    l.halfWidth[0] = edge.radius, l.halfHeight[1] = -edge.radius;  // downwards
+    if (edge.type == PEL_LIGHT_RECTANGLE)
+        l.halfWidth[0] = edge.radius, l.halfHeight[1] = -edge.radius;  // downwards
+    else
+        l.radius = edge.radius;
     const float near = 50, far = 1000, a = 1 / far - 1 / near, b = 1 / near;
     l.shadowDepthA = a, l.shadowDepthB = b;
     const uint32_t size = 512;
-    const auto depthOf = [&](float alongX, float distance) {
+    const auto depthOf = [&](float alongX, float alongY) {
         // Of the plane, or of what is over x below 0.
-        const float over = lightHeight - edge.height;
+        const float over = lightHeight - edge.height,
+                    distance = lightHeight / (1 + edge.planeAt(alongX, alongY));
         return (1 / (alongX < 0 ? std::min(distance, over) : distance) - b) / a;
     };
+    const auto middle = [&](uint32_t texel) { return 2 * (float(texel) + 0.5f) / float(size) - 1; };
     if (edge.cube) {
         l.shadowProjection = PEL_SHADOW_CUBE;
         const float matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -lightHeight, 0, 0, 0, 1};
@@ -61,8 +71,7 @@ Frame edgeFrame(const Edge& edge) {
         MapImage map{PEL_LIGHT_SHADOW_MAP, size, 6 * size, 1, std::vector<float>(size_t(6) * size * size, 1)};
         for (uint32_t y = 0; y < size; ++y)
             for (uint32_t x = 0; x < size; ++x)  // the face that looks along -z has u along -x
-                map.values[(size_t(5) * size + y) * size + x] =
-                    depthOf(-(2 * (float(x) + 0.5f) / float(size) - 1), lightHeight);
+                map.values[(size_t(5) * size + y) * size + x] = depthOf(-middle(x), -middle(y));
         light.maps.push_back(map);
     } else {
         l.shadowProjection = PEL_SHADOW_PERSPECTIVE;
@@ -73,8 +82,7 @@ Frame edgeFrame(const Edge& edge) {
         light.mapSize = size;
         light.map.components = 1;
         for (uint32_t y = 0; y < size; ++y)
-            for (uint32_t x = 0; x < size; ++x)
-                light.map.values.push_back(depthOf(2 * (float(x) + 0.5f) / float(size) - 1, lightHeight));
+            for (uint32_t x = 0; x < size; ++x) light.map.values.push_back(depthOf(middle(x), middle(y)));
     }
     f.lights.push_back(light);
     return f;
@@ -82,13 +90,13 @@ Frame edgeFrame(const Edge& edge) {
 
 // The part of the light that a point sees: of a disk or square beyond -x (H - h) / h.
 double visible(const Edge& edge, double x) {
-    const double t = std::clamp(x * (lightHeight - edge.height) / (edge.height * edge.radius), -1.0, 1.0);
+    const double below = edge.height - edge.planeAt(float(x), rows / 2),
+                 t = std::clamp(x * (lightHeight - edge.height) / (below * edge.radius), -1.0, 1.0);
     if (edge.type == PEL_LIGHT_RECTANGLE) return (1 + t) / 2;
     return 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / reference::pi;
 }
 
-std::vector<float> shadowOf(const Edge& edge) {
-    const Frame f = edgeFrame(edge);
+std::vector<float> shadowIn(const Frame& f) {
     Frame bare = f;
     bare.lights[0].map = {}, bare.lights[0].maps.clear();
     const auto shadowed = shade(f), lit = shade(bare);
@@ -100,28 +108,38 @@ std::vector<float> shadowOf(const Edge& edge) {
     return share;
 }
 
+std::vector<float> shadowOf(const Edge& edge) {
+    return shadowIn(edgeFrame(edge));
+}
+
 // Pixels between 5 % and 95 % of light, as a length.
 double penumbra(const std::vector<float>& share) {
     return double(std::ranges::count_if(share, [](float s) { return s > 0.05f && s < 0.95f; })) * extent /
            columns;
 }
 
+void expectPartAbove(const Edge& edge) {
+    const auto share = shadowOf(edge);
+    double square = 0, worst = 0;
+    for (size_t x = 0; x < columns; ++x) {
+        const double off = share[x] - visible(edge, columnX(x));
+        square += off * off, worst = std::max(worst, std::abs(off));
+    }
+    std::printf("cube %d type %d radius %g height %g slope %g %g: RMS %.3f, worst %.3f\n", edge.cube,
+                int(edge.type), double(edge.radius), double(edge.height), double(edge.slope[0]),
+                double(edge.slope[1]), std::sqrt(square / columns), worst);
+    EXPECT_LE(std::sqrt(square / columns), tolerance::softShadow);
+    EXPECT_LE(worst, 5 * tolerance::softShadow);
+}
+
 TEST(SoftShadow, OfAnEdgeIsThePartOfTheLightAboveIt) {
-    for (const bool cube : {false, true})
+    for (const bool cube : {false, true}) {
         for (const PelLightType type : {PEL_LIGHT_SPHERE, PEL_LIGHT_RECTANGLE})
-            for (const auto& [radius, height] : {std::pair{20.0f, 60.0f}, {40.0f, 60.0f}, {20.0f, 120.0f}}) {
-                const Edge edge{type, radius, height, cube};
-                const auto share = shadowOf(edge);
-                double square = 0, worst = 0;
-                for (size_t x = 0; x < columns; ++x) {
-                    const double off = share[x] - visible(edge, columnX(x));
-                    square += off * off, worst = std::max(worst, std::abs(off));
-                }
-                std::printf("cube %d type %d radius %g height %g: RMS %.3f, worst %.3f\n", cube, int(type),
-                            double(radius), double(height), std::sqrt(square / columns), worst);
-                EXPECT_LE(std::sqrt(square / columns), tolerance::softShadow);
-                EXPECT_LE(worst, 5 * tolerance::softShadow);
-            }
+            for (const auto& [radius, height] : {std::pair{20.0f, 60.0f}, {40.0f, 60.0f}, {20.0f, 120.0f}})
+                expectPartAbove({type, radius, height, cube});
+        for (const auto& [x, y] : {std::pair{0.4f, 0.0f}, {-0.4f, 0.0f}, {0.0f, 0.8f}, {0.0f, -0.8f}})
+            expectPartAbove({PEL_LIGHT_SPHERE, 20, 60, cube, PEL_SCATTERING_NONE, {x, y}});
+    }
 }
 
 // The penumbra of the material's filter and that of the light add up as squares.
@@ -140,6 +158,11 @@ TEST(SoftShadow, WithoutASizeOrAFilterIsSharp) {
     EXPECT_LT(penumbra(sharp), 3);
     const auto sphere = shadowOf({PEL_LIGHT_SPHERE, 0, 60});
     for (size_t x = 0; x < columns; ++x) EXPECT_NEAR(sphere[x], sharp[x], tolerance::shadeTerm);
+    // Penumbrae of less than two texels, across or along.
+    Frame flat = edgeFrame({PEL_LIGHT_SPHERE, 6, 60});
+    flat.lights[0].params.worldToShadow[5] /= 4;
+    for (const auto& narrow : {shadowOf({PEL_LIGHT_SPHERE, 3, 60}), shadowIn(flat)})
+        for (size_t x = 0; x < columns; ++x) EXPECT_NEAR(narrow[x], sharp[x], 1e-3);
     Frame f = edgeFrame({PEL_LIGHT_SPHERE, 40, 60});
     f.lights[0].params.shadowFilterTexels = 0;
     const auto unfiltered = shade(f);
@@ -148,23 +171,59 @@ TEST(SoftShadow, WithoutASizeOrAFilterIsSharp) {
     EXPECT_LE(between * extent / columns, 3);
 }
 
+// Occluders near the light count as a quarter of the way from it: taps would be too far apart.
+TEST(SoftShadow, OfAnEdgeNearTheLightIsLimited) {
+    for (const bool cube : {false, true})
+        EXPECT_NEAR(penumbra(shadowOf({PEL_LIGHT_SPHERE, 5, 270, cube})),
+                    penumbra(shadowOf({PEL_LIGHT_SPHERE, 5, 225, cube})), 5);
+}
+
+// A map whose rim is near the light, and the same one with lit texels around it.
+TEST(SoftShadow, NothingIsBeyondAMap) {
+    constexpr uint32_t inner = 128;
+    const auto shadow = [](uint32_t size) {
+        Frame f = edgeFrame({});
+        Light& light = f.lights[0];
+        for (const int across : {0, 5}) light.params.worldToShadow[across] *= 6.0f * inner / float(size);
+        light.mapSize = size;
+        light.map.values.clear();
+        const PelLight& l = light.params;
+        for (uint32_t y = 0; y < size; ++y)
+            for (uint32_t x = 0; x < size; ++x) {
+                const uint32_t column = x - (size - inner) / 2, row = y - (size - inner) / 2;
+                const bool inside = column < inner && row < inner,
+                           rim = column % (inner - 1) == 0 || row % (inner - 1) == 0;
+                const float distance = !inside              ? lightHeight
+                                       : rim                ? 100
+                                       : column < inner / 2 ? 240
+                                                            : lightHeight;
+                light.map.values.push_back((1 / distance - l.shadowDepthB) / l.shadowDepthA);
+            }
+        return shade(f);
+    };
+    const auto alone = shadow(inner), padded = shadow(2 * inner);
+    for (size_t i = 0; i < alone.size(); ++i) ASSERT_NEAR(alone[i], padded[i], tolerance::shadeTerm) << i;
+}
+
 // Where the horizon hides the light's centre, the map does not show what is before the rest.
 TEST(SoftShadow, OfAPointThatSeesTheRimAlone) {
-    Frame f = edgeFrame({PEL_LIGHT_SPHERE, 100, 60});
-    f.slots[PEL_SLOT_NORMAL_GEOMETRIC] = f.slots[PEL_SLOT_NORMAL_SHADING];
-    for (int slot : {PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_GEOMETRIC})
-        for (size_t i = 0; i < f.pixels(); ++i) {
-            f.slots[slot].values[3 * i] = 0.995f;
-            f.slots[slot].values[3 * i + 2] = -0.0998f;
-        }
-    Frame bare = f;
-    bare.lights[0].map = {};
-    const auto lit = shade(f), all = shade(bare);
-    for (size_t x = 0; x < columns; ++x)
-        if (const float at = columnX(x); at < 0 && 0.995f * -at - 0.0998f * lightHeight < 0) {
-            EXPECT_EQ(lit[3 * x], all[3 * x]) << at;
-            EXPECT_GT(all[3 * x], 0.01f);
-        }
+    for (const bool cube : {false, true}) {
+        Frame f = edgeFrame({PEL_LIGHT_SPHERE, 100, 60, cube});
+        f.slots[PEL_SLOT_NORMAL_GEOMETRIC] = f.slots[PEL_SLOT_NORMAL_SHADING];
+        for (int slot : {PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_GEOMETRIC})
+            for (size_t i = 0; i < f.pixels(); ++i) {
+                f.slots[slot].values[3 * i] = 0.995f;
+                f.slots[slot].values[3 * i + 2] = -0.0998f;
+            }
+        Frame bare = f;
+        bare.lights[0].map = {}, bare.lights[0].maps.clear();
+        const auto lit = shade(f), all = shade(bare);
+        for (size_t x = 0; x < columns; ++x)
+            if (const float at = columnX(x); at < 0 && 0.995f * -at - 0.0998f * lightHeight < 0) {
+                EXPECT_EQ(lit[3 * x], all[3 * x]) << at;
+                EXPECT_GT(all[3 * x], 0.01f);
+            }
+    }
 }
 
 }  // namespace

@@ -16,11 +16,12 @@ from nicegui.page import page  # noqa: E402
 from view_session import reset  # noqa: E402
 
 import pellucid  # noqa: E402
+from pellucid._types import MaterialValues  # noqa: E402
 from pellucid.view.export import export  # noqa: E402
 from pellucid.view.look import Look  # noqa: E402
 from pellucid.view.memory import Memory  # noqa: E402
 from pellucid.view.page import Page  # noqa: E402
-from pellucid.view.scene_session import SceneSession  # noqa: E402
+from pellucid.view.scene_session import MODES, SceneSession  # noqa: E402
 
 
 class Shown:
@@ -181,12 +182,25 @@ def test_a_scene_has_controls_too(fresh, tmp_path):
     shown = SceneSession(tmp_path / "scene.toml", device=fresh.device)
 
     def act(elements, viewer):
-        sliders = marked(elements, ui.slider)
-        for key in ("specular", "roughness"):
-            sliders[f"slider-{key}-1"].set_value(0.9)
-            assert getattr(shown.scene.materials[1], key) == pytest.approx(0.9)
-        sliders["slider-lights-0"].set_value(0.5)
-        marked(elements, ui.select)["profile-1"].set_value("jade")
-        assert shown.scene.profiles[1] == "jade" and shown.look.lights[0] == 0.5 and viewer.changes == 4
+        scene, look = shown.scene, shown.look
+        sliders, selects = marked(elements, ui.slider), marked(elements, ui.select)
+        of_materials = {f"slider-{f.name}-{id}": (scene.materials[id], f.name)
+                        for f in fields(MaterialValues) for id in scene.materials}
+        assert sliders.keys() == {f"slider-{name}" for name in (
+            "ambient", "exposure", "shoulder", *(f"lights-{i}" for i in range(3)))} | of_materials.keys()
+        for name, slider in sliders.items():
+            wanted = 0.3 * slider.props["min"] + 0.7 * slider.props["max"]
+            slider.set_value(wanted)
+            of, field = of_materials.get(name, (look, name[len("slider-"):]))
+            found = look.lights[int(field[-1])] if field.startswith("lights") else getattr(of, field)
+            assert found == pytest.approx(wanted), name
+        assert selects.keys() == {"mode", "curve", *(f"{name}-{id}" for name in ("profile", "scattering")
+                                                     for id in scene.materials)}
+        for id in scene.materials:
+            selects[f"profile-{id}"].set_value("jade")
+            selects[f"scattering-{id}"].set_value("light")
+            assert scene.profiles[id] == "jade" and scene.materials[id].scattering.name == "LIGHT"
+        assert list(selects["mode"].options) == list(MODES) and "export-scene" in marked(elements, ui.button)
+        assert viewer.changes == len(sliders) + 2 * len(scene.materials)
 
     opened(shown, act)

@@ -1,6 +1,5 @@
 """What the viewer exports, and scene files in the viewer."""
 import json
-import re
 
 import numpy as np
 import pytest
@@ -9,7 +8,6 @@ pytest.importorskip("moderngl", reason="moderngl is not installed")
 files = pytest.importorskip("pellucid.files", reason="this build reads no files")
 from view_session import renders_again, reset  # noqa: E402
 
-from pellucid.view import gallery  # noqa: E402
 from pellucid.view.export import export  # noqa: E402
 from pellucid.view.look import Look  # noqa: E402
 from pellucid.view.scene_session import SceneSession  # noqa: E402
@@ -34,16 +32,6 @@ def test_what_is_exported_renders_to_the_same_bits(session, tmp_path, profile):
         assert "iris.exr" in written
         known.iris_texture = "iris.exr"
     assert Look.from_dict(json.loads((tmp_path / "look/look.json").read_text())) == known
-
-
-def test_a_gallery_has_what_its_page_names(tmp_path, monkeypatch):
-    monkeypatch.setitem(gallery.GALLERY, "One", [gallery.Entry("plain", "A head.", lambda session: None)])
-    gallery.make(tmp_path, True, ["One"], 48)
-    page = (tmp_path / "README.md").read_text(encoding="utf-8")
-    named = re.findall(r"\]\((\S+)\)", page)
-    assert named == ["plain/picture.png", "plain/scene.toml"]
-    assert {p.name for p in (tmp_path / "plain").iterdir()} == {"picture.png", "scene.toml", "look.json"}
-    assert files.read_image(tmp_path / "plain/picture.png")["R"].std() > 0.05
 
 
 def test_a_scene_file_is_shown_as_it_was_exported(session, tmp_path):

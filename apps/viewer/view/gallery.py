@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import sys
 import tempfile
+import textwrap
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +20,7 @@ import numpy as np
 from .. import files
 from ..skin import skin_info
 from .export import export
-from .look import PRESETS, SKINS, Lamp, Look
+from .look import MODES, PRESETS, SKINS, Lamp, Look
 from .session import Session, pigments
 
 SIDE = [Lamp("Key", 75.0, 15.0)]
@@ -136,19 +137,34 @@ def skins(session: Session, out: Path, size: int) -> list[str]:
     return [*lines, ""]
 
 
+def modes(session: Session, out: Path, size: int) -> list[str]:
+    """All that the viewer shows of one view, four in a row."""
+    pictures = []
+    session.look = Look(lamps=[*BACK, Lamp("Fill", -20.0, 20.0, intensity=0.6)], deep_scatter=(0.5, 0.2, 0.1))
+    session.mm = 1.0
+    for session.look.mode in MODES:
+        pictures.append(session.frame(size, size).pixels)
+    rows = [np.concatenate(pictures[i:i + 4], 1) for i in range(0, len(pictures), 4)]
+    files.write_image(out / "modes.png", np.concatenate(rows))
+    return ["## Modes", "", "![What the viewer shows](modes.png)", "",
+            f"What the viewer shows of one view, row by row: {'; '.join(MODES.values())}.", ""]
+
+
 def make(out: Path, pictures_only: bool, sections: Iterable[str], size: int = 480) -> None:
     session = Session()
     session.load(files.standard_head())
     lines = ["# Gallery", "",
              "Made by `python -m pellucid.view.gallery`. Each picture has a folder with its scene file; "
-             "without `--pictures-only` the G-buffer and",
-             "shadow maps are written too, and `pellucid shade gbuffer.exr --scene scene.toml -o again.exr` "
-             "there gives the same picture.", ""]
+             "without `--pictures-only` the G-buffer and shadow maps are written too, and `pellucid shade "
+             "gbuffer.exr --scene scene.toml -o again.exr` there gives the same picture.", ""]
     for section in sections:
         lines += [f"## {section}", ""]
         if section == "Materials":
             view(session)
             lines += skins(session, out, size // 2)
+        if section == "Mistakes":
+            view(session)
+            lines[-2:-2] = modes(session, out, size // 2)
         for entry in GALLERY[section]:
             print(f"{section}: {entry.name}", file=sys.stderr, flush=True)
             session.look, session.mm = Look(), 1.0
@@ -163,7 +179,10 @@ def make(out: Path, pictures_only: bool, sections: Iterable[str], size: int = 48
                         (out / entry.name / name).write_bytes((folder / name).read_bytes())
             lines += [f"![{entry.words}]({entry.name}/picture.png)", "",
                       f"{entry.words} [scene]({entry.name}/scene.toml)", ""]
-    (out / "README.md").write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
+    text = "\n".join(
+        line if line.startswith(("|", "![")) else textwrap.fill(line, 120, break_on_hyphens=False)
+        for line in lines)
+    (out / "README.md").write_text(text.rstrip() + "\n", encoding="utf-8")
 
 
 def main() -> int:

@@ -88,12 +88,13 @@ def test_calls_have_the_defaults_of_the_command():
         if isinstance(call, type) and (issubclass(call, (Struct, enum.Enum)) or is_dataclass(call)):
             continue
         for p in inspect.signature(getattr(call, "__func__", call)).parameters.values():
-            plain = p.name[0] == "_" or p.default in (p.empty, ()) or p.default is True
-            if p.default and not plain:
+            # Calls wait unless told otherwise; other defaults than these are 0, False, None or empty.
+            plain = p.default is True if p.name == "wait" else not p.default or p.default is p.empty
+            if p.name[0] != "_" and not plain:
                 found.setdefault(name, {})[p.name] = p.default
     integral = {"millimetres_per_unit": 1, "cut": (0, 0, 0), "tolerance": 1e-3}
     tone = {"exposure": 1, "shoulder": 0.8, "curve": "soft"}
-    convention = {"depth": "-1..1"}
+    convention = {"depth": "-1..1", "y_up": True}
     assert found == {
         "Profile.burley": {"fit": pel.BurleyFit.DIFFUSE_TRANSMISSION}, "Profile.dipole": {"eta": 1.3},
         "Scatter.set_material": {"scale": 1}, "surface_integral": integral,
