@@ -256,8 +256,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
             // Others interpolate between these, so they are the same with skipping and without it.
             if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING) || apart == 2) left &= sample.strength > 0.0f;
 #if PEL_AREA_LIGHTS
-            // Where the centre is below the horizon its map shows nothing of what is before the rest.
-            if (isArea(from)) left &= dot3(n, sample.direction) > 0.0f;
+            // Where the centre is below the horizon its map shows nothing of what is before the rest. Where
+            // all of the light is, normals of a map may turn towards it.
+            const floatw cosine = dot3(n, sample.direction);
+            if (isArea(from)) left &= (cosine > 0.0f) | (cosine * cosine > sample.sin2);
             const floatw penumbra = penumbraOfLight(wideShadow, from, PEL_LIGHT_BUFFER_OF(from->mapBuffer), p,
                                                     n, shape.bias, left);
             shape.width = sqrt(fma(shape.width, shape.width, penumbra * penumbra));

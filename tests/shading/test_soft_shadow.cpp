@@ -226,4 +226,21 @@ TEST(SoftShadow, OfAPointThatSeesTheRimAlone) {
     }
 }
 
+// Where the surface is turned from all of the light, and its shading normal is not, as the map has it.
+TEST(SoftShadow, OfNormalsThatAreTurnedToTheLight) {
+    for (const bool cube : {false, true}) {
+        Frame f = edgeFrame({PEL_LIGHT_SPHERE, 5, 60, cube});
+        f.slots[PEL_SLOT_NORMAL_GEOMETRIC] = f.slots[PEL_SLOT_NORMAL_SHADING];
+        for (size_t i = 0; i < f.pixels(); ++i) {
+            f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values[3 * i] = 0.6f;
+            f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values[3 * i + 2] = -0.8f;
+        }
+        const auto share = shadowIn(f);
+        for (size_t x = 0; x < columns; ++x)
+            if (columnX(x) < -10) {
+                EXPECT_LT(share[x], 0.01f) << columnX(x);
+            }
+    }
+}
+
 }  // namespace
