@@ -28,7 +28,7 @@ class Hair {
             const bool above = clump < upper;
             const int count = above ? 2 + clump % 2 : 2, of = above ? upper : lower;
             const double middle = ((above ? clump : clump - upper) + 0.3 + 0.4 * scattered(clump, 0)) / of;
-            const double along = 1.36 * middle - 0.5, apart = 0.45 / of;
+            const double along = 1.28 * middle - 0.5, apart = 0.42 / of;
             for (int i = 0; i < count; ++i)
                 addLash(eye, side, along, along + (i - 0.5 * (count - 1)) * apart, above ? 1 : -1, clump, i);
         }
