@@ -19,7 +19,7 @@ namespace {
 constexpr TunedSetting guessed[] = {{PEL_SCATTERING_NONE, 0, 0, 0, 0.14},
                                     {PEL_SCATTERING_PREINTEGRATED, 0, 79, 0, 0.09},
                                     {PEL_SCATTERING_AUTO, 0.002, 122, 0, 0.0194},
-                                    {PEL_SCATTERING_LIGHT, 0, 2000, 0, 0.0183, true},
+                                    {PEL_SCATTERING_LIGHT, 0, 2612, 0, 0.0183, true},
                                     {PEL_SCATTERING_LIGHT, 0, 8508, 0, 0.0184}};
 // Of that device: cores, lanes, and MHz by bench/results/pocl-3.1-amd-epyc.json.
 constexpr double guessedLanes = 2 * 16 * 2596.0;
