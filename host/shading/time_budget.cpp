@@ -15,7 +15,7 @@ namespace pel {
 namespace {
 
 // Two cores of an AMD EPYC with PoCL (bench/results/pocl-3.1-amd-epyc.json). Errors: over all scenes. Times:
-// by these 78 of that report's 80 frames kept their budget; of light, that of nine scenes of ten.
+// by these 77 of that report's 80 frames kept their budget; of light, that of nine scenes of ten.
 constexpr TunedSetting guessed[] = {{PEL_SCATTERING_NONE, 0, 0, 0, 0.14},
                                     {PEL_SCATTERING_PREINTEGRATED, 0, 79, 0, 0.09},
                                     {PEL_SCATTERING_AUTO, 0.002, 122, 0, 0.0194},
