@@ -150,14 +150,10 @@ static inline void fetchDepths(__global const PelLightMap* map, __global const u
 #define BLOCKS_REACH 3.0f
 #define LEAST_TEXELS 16.0f
 
-static inline void widenTo(volatile __global uint* word, uint value) {
-    if (value > *word) atomic_max(word, value);
-}
-
-// Adds PEL_WIDTH pixels of level 0 of the screen's pyramid to the region of the map.
+// Adds PEL_WIDTH pixels of level 0 of the screen's pyramid to a region of the map.
 static inline void widenRegion(__global const PelLightMap* map, __global const float* pixels, uint stride,
-                               maskw on, volatile __global uint* region) {
-    on &= as_uintw(loadw(PEL_PLANE_ID * stride, pixels)) != (uintw)(0);
+                               volatile __local uint* region) {
+    maskw on = as_uintw(loadw(PEL_PLANE_ID * stride, pixels)) != (uintw)(0);
     if (!anyw(on)) return;
     floatw w, reach = map->reach;
 #if PEL_RADII
@@ -169,10 +165,10 @@ static inline void widenRegion(__global const PelLightMap* map, __global const f
     on &= (w > 0.0f) & finitew(at.x) & finitew(at.y) & (at.x > -around) & (at.y > -around) &
           (at.x < width + around) & (at.y < height + around);
     if (!anyw(on)) return;
-    widenTo(region, (uint)(width - clamp(floor(minLane(at.x - around, on)), 0.0f, width - 1.0f)));
-    widenTo(region + 1, 1 + (uint)clamp(-floor(minLane(-at.x - around, on)), 0.0f, width - 1.0f));
-    widenTo(region + 2, (uint)(height - clamp(floor(minLane(at.y - around, on)), 0.0f, height - 1.0f)));
-    widenTo(region + 3, 1 + (uint)clamp(-floor(minLane(-at.y - around, on)), 0.0f, height - 1.0f));
+    atomic_max(region, (uint)(width - clamp(floor(minLane(at.x - around, on)), 0.0f, width - 1.0f)));
+    atomic_max(region + 1, 1 + (uint)clamp(-floor(minLane(-at.x - around, on)), 0.0f, width - 1.0f));
+    atomic_max(region + 2, (uint)(height - clamp(floor(minLane(at.y - around, on)), 0.0f, height - 1.0f)));
+    atomic_max(region + 3, 1 + (uint)clamp(-floor(minLane(-at.y - around, on)), 0.0f, height - 1.0f));
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_seen(
@@ -180,18 +176,25 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_seen(
     __global const PelLightMap* restrict maps, __global const float* restrict pyramid,
     volatile __global uint* seen, volatile __global uint* counters PEL_LIGHT_BUFFER_ARGUMENTS) {
     const uint across = (frame->width + STEP - 1) / STEP, y = itemOfFolded() / across * EVERY;
-    if (y >= frame->height) return;
     __global const PelLightMap* map = maps + get_global_id(2);
     const uint from = itemOfFolded() % across * STEP, x = vectorStart(from, frame->width);
-    const intw column = lanesw() + (int)x;
-    const maskw mine = (column >= (int)from) & (column < (int)frame->width) & (column % EVERY == 0);
     __global const PelPyramidLevel* level = &frame->level[0];
     __global const float* own = pyramid + pyramidRow(level, (int)y) + x;
     const uint stride = level->stride;
-    PEL_ROLL for (uint down = 0; down < EVERY; ++down)  // rows and columns beyond the picture have no id
+    // That of the group first.
+    __local uint region[4];
+    for (uint k = get_local_id(0); k < 4; k += PEL_GROUP) region[k] = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    // Columns beyond the picture have no id.
+    PEL_ROLL for (uint down = 0; down < EVERY && y + down < frame->height; ++down)
         PEL_ROLL for (uint right = 0; right < STEP; right += PEL_WIDTH)
-            widenRegion(map, own + down * PEL_PYRAMID_PLANES * stride + right, stride, (maskw)(-1),
-                        counters + PEL_LIGHT_REGION(get_global_id(2)));
+            widenRegion(map, own + down * PEL_PYRAMID_PLANES * stride + right, stride, region);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint k = get_local_id(0); k < 4; k += PEL_GROUP)
+        if (region[k]) atomic_max(&counters[PEL_LIGHT_REGION(get_global_id(2)) + k], region[k]);
+    if (y >= frame->height) return;
+    const intw column = lanesw() + (int)x;
+    const maskw mine = (column >= (int)from) & (column < (int)frame->width) & (column % EVERY == 0);
     const Vec3w p = loadPositions(frame, position, x, y);
 #if PEL_WIDTH == 1
     const Vec3w before = loadPositions(frame, position, x > 0 ? x - 1 : min(x + 1, frame->width - 1), y),
