@@ -157,7 +157,7 @@ static inline void widenRegion(__global const PelLightMap* map, __global const f
     if (!anyw(on)) return;
     floatw w, reach = map->reach;
 #if PEL_RADII
-    reach *= loadw(PEL_PLANE_RADIUS * stride, pixels);
+    reach *= fmax(loadw(PEL_PLANE_RADIUS * stride, pixels), (floatw)(PEL_MIN_RADIUS));
 #endif
     const Vec3w at = texelOf(map, loadPlanes3(pixels + PEL_PLANE_X * stride, stride), &w);
     const float width = (float)map->level[0].width, height = (float)map->level[0].height;
