@@ -221,7 +221,12 @@ void Shader::copyTextures(bool back) const {
     if (back) return pel::copyTextures(all, true);
     const auto add = [&](const ImageView& view) { all.push_back(view); };
     add(state_.ambientCube), add(state_.reflectionCube), add(state_.environment);
-    for (const ShaderLight& light : state_.lights) std::ranges::for_each(light.images, add);
+    for (const ShaderLight& light : state_.lights)
+        for (int slot = 0; slot < PEL_LIGHT_SLOT_COUNT; ++slot)
+            if (const ImageView& view = light.images[slot];
+                view &&
+                (slot == PEL_LIGHT_WIDE_SHADOW || !view.buffer->hasVersion(light.params.shadowMapVersion)))
+                add(view);
     for (const auto& [id, material] : state_.materials) {
         add(material.scatteredTexture);
         std::ranges::for_each(material.normalMap, add);

@@ -123,6 +123,30 @@ TEST(Textures, GiveTheBitsOfBuffers) {
     expectSame();
 }
 
+// A map is copied when the number of its content changes, or in each frame where it has none.
+TEST(Textures, OfMapsThatRestAreKept) {
+    Frame f = randomFrame(3, 40, 24, 1);
+    Light& light = f.lights[0];
+    Shader shader(device());
+    setFrame(device(), shader, f, tables());
+    const Buffer target = setTarget(device(), shader, f);
+    Texture map(light.map.values, 1, light.mapSize, light.mapSize);
+    const std::vector<float> lit(light.map.values.size(), 1);
+    shader.set(0, PEL_LIGHT_WIDE_SHADOW, nullptr).set(0, PEL_LIGHT_SHADOW_MAP, map.desc());
+    const auto shaded = [&](uint32_t version, const std::vector<float>& texels) {
+        map.write(texels);
+        light.params.shadowMapVersion = version;
+        shader.set(std::vector<PelLight>{light.params}).commit().execute();
+        return target.readAll<float>();
+    };
+    const std::vector<float> first = shaded(0, light.map.values), other = shaded(0, lit);
+    EXPECT_NE(first, other);
+    EXPECT_EQ(shaded(1, light.map.values), first);
+    EXPECT_EQ(shaded(1, lit), first);
+    EXPECT_EQ(shaded(2, lit), other);
+    EXPECT_EQ(shaded(0, light.map.values), first);
+}
+
 // Irradiance that a pass replaces by what it scatters is still read from its texture.
 TEST(Textures, AreReadWhereAPassPutsAnotherImage) {
     const uint32_t width = 64, height = 32, pixels = width * height;
