@@ -105,9 +105,9 @@ int main(int argc, char** argv) try {
     }
     Renderer renderer(head, normalsOf(Device(), head), o.width, o.height);
     SkinPass skin(renderer, o.method, o.copy);
-    std::printf("%s draws, %s shades; textures are %s\n",
+    std::printf("%s draws, %s shades; %zu of %zu textures are shared, the others are copied\n",
                 reinterpret_cast<const char*>(glGetString(GL_RENDERER)), skin.device().info().name,
-                skin.shares() ? "shared" : "copied");
+                skin.sharedTextures(), skin.textures());
     std::filesystem::create_directories(o.folder);
     std::vector<double> drawing, copying, shading;
     for (int frame = 0; frame < o.frames; ++frame) {
@@ -130,9 +130,8 @@ int main(int argc, char** argv) try {
         std::snprintf(name, sizeof name, "/frame-%03d.png", frame);
         writePng(o.folder + name, renderer, renderer.radiance);
     }
-    std::printf("%d frames of %d x %d, medians: drawing %.1f ms, %s %.1f ms, skin %.1f ms\n", o.frames,
-                o.width, o.height, median(drawing), skin.shares() ? "handing over" : "copies",
-                median(copying), median(shading));
+    std::printf("%d frames of %d x %d, medians: drawing %.1f ms, handing over %.1f ms, skin %.1f ms\n",
+                o.frames, o.width, o.height, median(drawing), median(copying), median(shading));
     return 0;
 } catch (const std::exception& e) {
     std::fprintf(stderr, "deferred_gl: %s\n", e.what());

@@ -2,6 +2,7 @@
 
 #include <CL/cl_gl.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 
@@ -30,8 +31,8 @@ bool hasGlSharing(cl_device_id device) {
 
 }  // namespace
 
-// Looks for a device of OpenCL that takes the textures of the current OpenGL context as they are.
-bool SkinPass::share(const std::vector<gl::Texture>& textures) {
+// Looks for a device of OpenCL that takes textures of the current OpenGL context as they are.
+bool SkinPass::share() {
     cl_platform_id platforms[16];
     cl_uint numPlatforms = 0;
     if (clGetPlatformIDs(16, platforms, &numPlatforms)) return false;
@@ -53,19 +54,10 @@ bool SkinPass::share(const std::vector<gl::Texture>& textures) {
             context_ = clCreateContext(properties, 1, &devices[d], nullptr, nullptr, &error);
             if (!context_) continue;  // OpenGL draws on another device
             queue_ = clCreateCommandQueueWithProperties(context_, devices[d], nullptr, &error);
-            for (size_t i = 0; i < textures.size() && !error; ++i)
-                images_.push_back({textures[i],
-                                   {},
-                                   clCreateFromGLTexture(context_, i ? CL_MEM_READ_ONLY : CL_MEM_READ_WRITE,
-                                                         GL_TEXTURE_2D, 0, textures[i].name, &error)});
-            if (!error) {
+            if (queue_) {
                 device_ = Device::fromCl(context_, devices[d], queue_);
                 return true;
             }
-            for (const Image& image : images_)
-                if (image.shared) clReleaseMemObject(image.shared);
-            images_.clear();
-            if (queue_) clReleaseCommandQueue(queue_);
             clReleaseContext(context_);
             context_ = nullptr;
         }
@@ -77,12 +69,17 @@ SkinPass::SkinPass(const Renderer& renderer, PelScattering method, bool copy) {
     std::vector<gl::Texture> textures = {renderer.radiance, renderer.depth, renderer.normalId,
                                          renderer.albedo};
     for (const Light& light : renderer.lights) textures.push_back(light.map);
-    if (copy || !share(textures)) {
-        device_ = Device("");
-        for (const gl::Texture& texture : textures)
-            images_.push_back({texture, Buffer(device_, texture.bytes)});
-    } else {
-        for (Image& image : images_) image.buffer = Buffer::fromCl(device_, image.shared);
+    if (copy || !share()) device_ = Device("");
+    for (const gl::Texture& texture : textures) {
+        Image image{texture, {}};
+        cl_int error = CL_SUCCESS;
+        // A driver shares the formats that it lists, some without sRGB.
+        if (context_)
+            image.shared =
+                clCreateFromGLTexture(context_, images_.empty() ? CL_MEM_READ_WRITE : CL_MEM_READ_ONLY,
+                                      GL_TEXTURE_2D, 0, texture.name, &error);
+        image.buffer = image.shared ? Buffer::fromCl(device_, image.shared) : Buffer(device_, texture.bytes);
+        images_.push_back(std::move(image));
     }
     const auto described = [](const Image& image) {
         return imageDesc(image.buffer, formatOf(image.texture), uint32_t(image.texture.width),
@@ -123,20 +120,24 @@ void SkinPass::download(const Image& image) const {
 void SkinPass::run() {
     std::vector<cl_mem> shared;
     const auto start = std::chrono::steady_clock::now();
-    if (shares()) {
-        for (const Image& image : images_) shared.push_back(image.shared);
+    for (const Image& image : images_) {
+        if (image.shared)
+            shared.push_back(image.shared);
+        else
+            download(image);
+    }
+    if (!shared.empty()) {
         glFinish();  // cl_khr_gl_event does without
         clEnqueueAcquireGLObjects(queue_, cl_uint(shared.size()), shared.data(), 0, nullptr, nullptr);
-    } else {
-        for (const Image& image : images_) download(image);
     }
     const auto middle = std::chrono::steady_clock::now();
     shader_.execute();
     const auto done = std::chrono::steady_clock::now();
-    if (shares()) {
+    if (!shared.empty()) {
         clEnqueueReleaseGLObjects(queue_, cl_uint(shared.size()), shared.data(), 0, nullptr, nullptr);
         clFinish(queue_);
-    } else {
+    }
+    if (!images_[0].shared) {
         const gl::Texture& radiance = images_[0].texture;
         glTextureSubImage2D(radiance.name, 0, 0, 0, radiance.width, radiance.height, radiance.format,
                             radiance.type, images_[0].buffer.map());
@@ -145,4 +146,8 @@ void SkinPass::run() {
     const std::chrono::duration<double, std::milli> copies =
         middle - start + (std::chrono::steady_clock::now() - done);
     copyMilliseconds_ = copies.count();
+}
+
+size_t SkinPass::sharedTextures() const {
+    return size_t(std::ranges::count_if(images_, [](const Image& i) { return i.shared != nullptr; }));
 }

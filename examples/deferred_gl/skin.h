@@ -12,7 +12,8 @@ class SkinPass {
   public:
     // `copy`: does not try to share textures. `method` is by the names of `pellucid shade --method`.
     SkinPass(const Renderer& renderer, PelScattering method, bool copy);
-    bool shares() const { return context_ != nullptr; }
+    size_t textures() const { return images_.size(); }
+    size_t sharedTextures() const;  // the others are copied
     const pellucid::Device& device() const { return device_; }
     void run();
     double copyMilliseconds() const { return copyMilliseconds_; }  // of the last run
@@ -23,7 +24,7 @@ class SkinPass {
         pellucid::Buffer buffer;
         cl_mem shared = nullptr;
     };
-    bool share(const std::vector<gl::Texture>& textures);
+    bool share();
     void download(const Image& image) const;
 
     pellucid::Device device_{nullptr};

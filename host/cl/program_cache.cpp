@@ -23,6 +23,8 @@ std::string ProgramCache::optionsOf(const ProgramKey& key) const {
     all.insert(defines_.begin(), defines_.end());
     std::string options = "-cl-std=CL1.2";
     for (const auto& [name, value] : all) options += " -D" + name + "=" + value;
+    if (const auto limit = all.find("PEL_REGISTERS"); limit != all.end())
+        options += " -cl-nv-maxrregcount=" + std::string(limit->second);
     return options;
 }
 

@@ -20,6 +20,13 @@ static bool wantsProfiling(const PelDeviceDesc& desc) {
     return value != "0";
 }
 
+static cl::Defines definesFor(cl_device_id id, const PelDeviceInfo& info, const LaunchPolicy& policy) {
+    cl::Defines all{{"PEL_WIDTH", info.mathWidth}, {"PEL_GROUP", policy.texels}};
+    if (cl::infoString(id, CL_DEVICE_EXTENSIONS).find("cl_nv_compiler_options") != std::string::npos)
+        all.emplace("PEL_REGISTERS", nvidiaRegisters);
+    return all;
+}
+
 Ref<Device> Device::create(const PelDeviceDesc& desc) {
     const bool profiling = wantsProfiling(desc);
     const uint32_t index = cl::selectDevice(desc.selector);
@@ -59,8 +66,7 @@ Device::Device(cl::Context context, cl_device_id id, cl::Queue queue, const PelD
       queue_(std::move(queue)),
       info_(info),
       launches_(launchRule(info)),
-      programs_(std::move(context), id,
-                {{"PEL_WIDTH", info.mathWidth}, {"PEL_GROUP", launches_.policy.texels}}),
+      programs_(std::move(context), id, definesFor(id, info, launches_.policy)),
       profiling_(cl::info<cl_command_queue_properties>(queue_.get(), CL_QUEUE_PROPERTIES) &
                  CL_QUEUE_PROFILING_ENABLE),
       stats_(pelDeviceStatsDefaults()) {

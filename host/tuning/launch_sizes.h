@@ -27,6 +27,9 @@ struct LaunchPolicy {
 constexpr LaunchPolicy builtInPolicy(uint32_t lanes) {
     return lanes > 1 ? LaunchPolicy{1, 256, 64, 16} : LaunchPolicy{64, 1, 1, 64};
 }
+// Registers of a work-item by NVIDIA's compiler at most, of kernels with PEL_WORK_GROUP. More of them leave
+// too few work-items on a unit to hide the latency of memory (docs/design-notes.md, "Registers").
+constexpr uint32_t nvidiaRegisters = 96;
 // The nearest sizes that kernels can have on this device: powers of two.
 LaunchPolicy allowedPolicy(LaunchPolicy policy, const PelDeviceInfo& device);
 

@@ -142,7 +142,7 @@ static inline bool storeBand(__global const PelDiffusionFrame* frame, __global c
     return true;
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_bands(
+__kernel PEL_WORK_GROUP(PEL_GROUP) void scatter_bands(
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global const uint* restrict tiles, __global float* restrict sums, __global uint* restrict counters) {

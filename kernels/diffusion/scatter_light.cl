@@ -243,7 +243,7 @@ static inline bool meanOfLight(__global const PelDiffusionFrame* frame, __global
 }
 
 // Writes light from beyond the pixel, and 1; 0 where the pixel keeps its irradiance.
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void sample_light(
+__kernel PEL_WORK_GROUP(PEL_GROUP) void sample_light(
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global const uint* restrict parts, __global const PelLightMap* restrict maps, uint mapCount,
@@ -276,7 +276,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void sample_ligh
 }
 #endif
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_light(
+__kernel PEL_WORK_GROUP(PEL_GROUP) void scatter_light(
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global const uint* restrict parts, __global const PelLightMap* restrict maps, uint mapCount,

@@ -194,7 +194,7 @@ static inline void loadSurface(__global const PelShadeFrame* frame, __global uch
         *n, loadNormal(PEL_FORMAT_NORMAL, imageSpan(normal, &frame->images[PEL_NORMAL_SLOT], end, y)));
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_shadow(
+__kernel PEL_WORK_GROUP(PEL_PASS_GROUP) void wide_shadow(
     __global const PelShadeFrame* restrict frame, __global const PelShadeMaterial* restrict materials,
     __global const PelShadeLight* restrict lights, __global const uint* restrict list,
     __global uint* counters, __global uchar* restrict material, __global uchar* restrict normal,

@@ -1,6 +1,7 @@
 // For LD_PRELOAD: a driver that hangs or crashes when one kernel is created, or never runs it.
-//   BAD_KERNEL   the name of that kernel
-//   BAD_ENDING   hang, crash, or skip
+//   BAD_KERNEL      the name of that kernel
+//   BAD_ENDING      hang, crash, or skip
+//   BAD_EXTENSIONS  all that devices say they have
 #include <CL/cl.h>
 #include <dlfcn.h>
 #include <unistd.h>
@@ -18,6 +19,16 @@ static bool isBad(const char* name) {
 static bool endsBy(const char* what) {
     const char* const ending = std::getenv("BAD_ENDING");
     return ending && std::strcmp(ending, what) == 0;
+}
+
+EXPORTED cl_int clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t size, void* value,
+                                size_t* needed) {
+    const char* const said = std::getenv("BAD_EXTENSIONS");
+    if (what != CL_DEVICE_EXTENSIONS || !said)
+        return REAL(clGetDeviceInfo)(device, what, size, value, needed);
+    if (needed) *needed = std::strlen(said) + 1;
+    if (value) std::strncpy(static_cast<char*>(value), said, size);
+    return CL_SUCCESS;
 }
 
 EXPORTED cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* code) {

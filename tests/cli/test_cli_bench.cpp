@@ -306,6 +306,27 @@ TEST_F(BenchCommand, ADriverThatHangsOrCrashesCostsOneOperation) {
 }
 #endif
 
+// A scene in which `light` has all its parts to do.
+TEST_F(BenchCommand, KeptPicturesAreThoseOfTheseKernels) {
+    const std::string said =
+        cli("bench --events first --limit 600 --only 'side-4: light'", "PELLUCID_MATH_WIDTH=1").out;
+    const size_t row = said.find("{\"row\":");
+    ASSERT_NE(row, said.npos) << said;
+    EXPECT_LT(Json::parse(said.substr(row, said.find('\n', row) - row)).at("row").at("error_rms"), 1e-6);
+}
+
+#ifndef __SANITIZE_ADDRESS__
+// PoCL's compiler refuses the option, and the message names all of them.
+TEST_F(BenchCommand, LimitsTheRegistersOfNvidiasCompiler) {
+    const std::string build = "lut specular --size 4x4 -o @a.npy", driver = "LD_PRELOAD='" BAD_DRIVER "' ";
+    EXPECT_EQ(cli(build, driver + "BAD_EXTENSIONS=cl_khr_icd").exitCode, 0);
+    EXPECT_TRUE(contains(cli(build, driver + "BAD_EXTENSIONS=cl_nv_compiler_options").err,
+                         "-DPEL_REGISTERS=96 -DPEL_WIDTH="));
+    EXPECT_TRUE(contains(cli(build, driver + "BAD_EXTENSIONS=cl_nv_compiler_options").err,
+                         " -cl-nv-maxrregcount=96"));
+}
+#endif
+
 // The pictures are those that PoCL made with one lane, which is what runs here too.
 TEST_F(BenchCommand, TheFirstTimeOnAGpuJudgesWhatItMakes) {
     const std::string command =
