@@ -190,6 +190,7 @@ void Scatter::capture(const PelScatterParams& params, const ScatterImages& image
     state.images[PEL_SLOT_POSITION] = images.positions;
     state.images[PEL_SLOT_DEPTH] = images.depth;
     state.images[PEL_SLOT_MATERIAL] = images.ids;
+    if (params.accumulate) state.images[PEL_SLOT_RADIANCE] = images.out;
     std::copy_n(params.inverseViewProjection, 16, state.camera.inverseViewProjection);
     ScatterInput scatter{params, {}};
     for (const auto& [id, material] : materials_) {

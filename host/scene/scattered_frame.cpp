@@ -42,7 +42,10 @@ ScatteredFrame scatterFrame(const Device& device, const Image& gbuffer, const Sc
 
     PelScatterParams params = *scene.scatter;
     std::ranges::copy(scene.camera.inverseViewProjection, params.inverseViewProjection);
-    const Buffer light(device, gbuffer.pixelCount() * 3 * sizeof(float));
+    std::vector<float> held(gbuffer.pixelCount() * 3);
+    if (const ChannelGroup& channels = scene.channels[PEL_SLOT_RADIANCE]; !channels.empty())
+        held = gbuffer.interleaved(channels);
+    const Buffer light(device, held);
     const OwnedImage* const positions = given(PEL_SLOT_POSITION);
     scatter.execute(params, *given(PEL_SLOT_IRRADIANCE), positions,
                     positions ? nullptr : given(PEL_SLOT_DEPTH), given(PEL_SLOT_MATERIAL),

@@ -145,7 +145,13 @@ void SceneFrame::show(const Image& gbuffer, const SceneFile& scene, const Shadow
 void SceneFrame::setPictures(const Image& gbuffer, const SceneFile& scene) {
     gbuffer_ = &gbuffer;
     const auto width = uint32_t(gbuffer.width), height = uint32_t(gbuffer.height);
-    radiance_ = Buffer(device_, gbuffer.pixelCount() * 3 * sizeof(float));
+    before_.clear();
+    if (const ChannelGroup& held = scene.channels[PEL_SLOT_RADIANCE]; !held.empty()) {
+        const PixelValues values(gbuffer, held, deviceImages_);
+        before_.assign(values.at(), values.at() + 3 * gbuffer.pixelCount());
+    }
+    radiance_ =
+        Buffer(device_, gbuffer.pixelCount() * 3 * sizeof(float), before_.empty() ? nullptr : before_.data());
     shader_.set(PEL_SLOT_RADIANCE, imageDesc(radiance_, PEL_FORMAT_RGB32F, width, height));
     for (PelImageSlot slot : wanted_) {
         const bool length = slot == PEL_SLOT_OUT_THICKNESS;
@@ -153,7 +159,7 @@ void SceneFrame::setPictures(const Image& gbuffer, const SceneFile& scene) {
         shader_.set(slot, imageDesc(buffer, length ? PEL_FORMAT_R32F : PEL_FORMAT_RGB32F, width, height));
         outputs_[slot] = buffer;
     }
-    for (size_t slot = 0; slot < scene.channels.size(); ++slot)
+    for (size_t slot = PEL_SLOT_RADIANCE + 1; slot < scene.channels.size(); ++slot)
         if (slot == PEL_SLOT_CURVATURE && isScreenCurvature(gbuffer, scene))
             shader_.set(PEL_SLOT_CURVATURE, measureCurvature(scene));
         else if (!scene.channels[slot].empty())
@@ -169,6 +175,7 @@ uint64_t SceneFrame::inputBytes() const {
 
 PelShaderOptions withOptionsOf(const SceneFile& scene, PelShaderOptions options) {
     const PelShaderOptions& own = scene.options;
+    options.accumulate |= own.accumulate;
     options.blurNormals |= own.blurNormals;
     options.rotateTaps |= own.rotateTaps;
     options.everyPixel |= own.everyPixel;
@@ -213,7 +220,10 @@ void SceneFrame::set(const SceneFile& scene, LutStore& luts, const PelShaderOpti
     materials_ = materials;
     // Pixels whose material is removed are not written again.
     if (removed || options.accumulate) {
-        clear(radiance_);
+        if (before_.empty())
+            clear(radiance_);
+        else
+            radiance_.write(before_.data(), radiance_.bytes());
         for (const auto& [slot, buffer] : outputs_) clear(buffer);
     }
     for (const SceneMaterial& m : scene.materials) setMaterial(scene, m, luts);

@@ -154,6 +154,7 @@ class SceneFrame {
     Device device_;
     std::vector<PelImageSlot> wanted_;  // beside radiance
     const Image* gbuffer_ = nullptr;
+    std::vector<float> before_;  // what radiance holds at first; empty: 0
     // While the constructor or show() runs.
     const ShadowMaps* shadowMaps_ = nullptr;
     const DeviceImages* deviceImages_ = nullptr;

@@ -84,6 +84,7 @@ Capture::Capture(Device& device, const ShaderState& state, const ScatterInput* s
                                                                      : ReadAs::NUMBERS);
         frame.outputs[slot] = isOutput(slot) && view;
     }
+    frame.images[PEL_SLOT_RADIANCE] = valuesOf(device, state.images[PEL_SLOT_RADIANCE], 3);
     for (const auto& [id, from] : state.materials) {
         CapturedMaterial& to = frame.materials.emplace_back();
         to.id = id;
@@ -121,15 +122,12 @@ Capture::Capture(Device& device, const ShaderState& state, const ScatterInput* s
 }
 
 // What a scene cannot hold, one sentence a line.
-std::string lost(const ShaderState& state, const ScatterInput* scatter) {
+std::string lost(const ShaderState& state) {
     std::string lines;
     const auto say = [&](auto&&... parts) {
         lines += text(lines.empty() ? "" : "\n", "the capture leaves out ", parts...);
     };
     const PelShaderOptions& o = state.options;
-    if (o.accumulate || (scatter && scatter->params.accumulate))
-        say(scatter ? "PelScatterParams" : "PelShaderOptions",
-            ".accumulate and what the output held: the scene shows what is added");
     if (o.scratchBudget)
         say("PelShaderOptions.scratchBudget: --scratch-mib ", o.scratchBudget >> 20,
             " of the command sets it");
@@ -188,7 +186,7 @@ void captureFrame(Device& device, const ShaderState& state, const std::string& f
     for (char& c : name)
         if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
     if (name.empty()) name = scatter ? "scatter" : "shader";
-    tell(lost(state, scatter));
+    tell(lost(state));
     try {
         const auto write =
             reinterpret_cast<WriteCapture>(cl::moduleFunction(PELLUCID_CAPTURE, "pellucidCapture"));

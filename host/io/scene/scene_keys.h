@@ -21,8 +21,8 @@ struct SlotKey {
     std::string_view key;
     size_t components;
 };
-// Inputs name their channels, outputs their files.
-#define PELLUCID_INPUT_TARGET(...)
+// Inputs name their channels, outputs their files; of radiance what it holds before.
+#define PELLUCID_INPUT_TARGET(slot, key, ...) {slot, key, 3},
 #define PELLUCID_INPUT_SHADE(...) {__VA_ARGS__},
 #define PELLUCID_INPUT_PASS(...) {__VA_ARGS__},
 #define PELLUCID_INPUT_OUTPUT(...)
@@ -137,6 +137,7 @@ void optionKeys(Visitor& v, Scene& scene) {
     v.text("gbuffer", scene.gbuffer);
     auto& s = scene.options;
     PEL_EACH_OPTION_FIELD(PELLUCID_FIELD_KEY)
+    v.integer("accumulate", s.accumulate, {0, 1});
     v.text("reflection_cube", scene.reflectionCube);
     v.text("environment", scene.environment);
     v.numbers("environment_axes", scene.environmentAxes, 9, range::any);
@@ -145,6 +146,7 @@ void optionKeys(Visitor& v, Scene& scene) {
 template <class Visitor, class Params>
 void scatterKeys(Visitor& v, Params& s) {
     PEL_EACH_SCATTER_PARAM_FIELD(PELLUCID_FIELD_KEY)
+    v.integer("accumulate", s.accumulate, {0, 1});
     v.integer("everywhere", s.everywhere, {0, 1});
     v.integer("frame_index", s.frameIndex, range::any);
     v.integer("half_rate", s.halfRate, {0, 1});
