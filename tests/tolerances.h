@@ -285,11 +285,6 @@ constexpr double sharpShadow = 2e-3;
 // --- memory ---
 constexpr double heldMemory = 0.05;  // tables of profiles and lists of a few hundred bytes are not counted
 
-// --- tables as BC6H ---
-// 64x64: one byte per texel cannot follow three channels that part at the terminator
-constexpr double bc6hMax = 0.016;
-constexpr double bc6hRms = 1.6e-3;  // 64x64: 1.4e-3 measured
-
 // --- environment ---
 // nodes of 8 x 8 a face, between which irradiance is linear, and texels of 16 x 16
 constexpr double environmentAmbient = 4e-3;

@@ -80,15 +80,12 @@ void integrate(Arguments& arguments, Desc& desc) {
     } else if (!arguments.size.empty()) {
         parseSize(arguments.size, desc.width, desc.height);
     }
-    const bool bc6h = arguments.encoding == "bc6h";
     const bool picture = arguments.encoding.empty() && io::isPicture(arguments.output);
     std::optional<PelLutEncoding> encoding;
-    if (!arguments.encoding.empty() && !bc6h)
+    if (!arguments.encoding.empty())
         encoding = chosen<PelLutEncoding>(io::lutEncodings, arguments.encoding);
     try {
-        if (bc6h)
-            io::checkLutPathBc6h(arguments.output);
-        else if (picture)
+        if (picture)
             io::checkWritable(arguments.output);
         else
             encoding = io::checkLutPath(arguments.output, encoding);
@@ -98,17 +95,11 @@ void integrate(Arguments& arguments, Desc& desc) {
     Run run(arguments.run);
     const Lut lut(run.device(), desc);
     run.report["output"] = arguments.output;
-    if (bc6h) {
-        const io::TexelError error = io::writeLutBc6h(arguments.output, lut);
-        run.report["encoding_error_max"] = error.max;
-        run.report["encoding_error_rms"] = error.rms;
-    } else if (picture) {
+    if (picture)
         writeTablePicture(arguments.output, lut, desc.width, rowsOf(desc));
-    } else {
+    else
         io::writeLut(arguments.output, lut, encoding);
-    }
-    run.report["encoding"] = bc6h      ? "bc6h"
-                             : picture ? "picture: sRGB, to look at; engines need --encoding"
+    run.report["encoding"] = picture ? "picture: sRGB, to look at; engines need --encoding"
                                        : io::lutEncodings[*encoding];
     run.report["width"] = desc.width;
     run.report["height"] = desc.height;
@@ -131,9 +122,9 @@ void addCommon(CLI::App& command, Arguments& a, const std::string& size) {
            required);
     option(command, "--size", a.size, size, Word{"SIZE"});
     option(command, "--encoding", a.encoding,
-           "float, half, faceworks8 (.png, .bmp, .tga for engines), or bc6h for .dds and .ktx2 (default: "
+           "float, half, or faceworks8 (.png, .bmp, .tga for engines; default: "
            "float for .exr and .npy, half for .dds and .ktx2; a .png without it is a picture to look at)",
-           isOneOf(io::lutEncodings, {"bc6h"}));
+           isOneOf(io::lutEncodings));
     addRunOptions(command, a.run);
 }
 

@@ -101,7 +101,7 @@ TEST_F(Files, AFullDiskIsAnErrorOfEveryCommand) {
                 {"lut shadow --size 64x64 -o ", "o.exr"},
                 {"lut shadow --size 64x64 -o ", "o.npy"},
                 {"lut shadow --size 64x64 -o ", "o.dds"},
-                {"lut shadow --size 64x64 --encoding bc6h -o ", "o.ktx2"},
+                {"lut shadow --size 64x64 -o ", "o.ktx2"},
                 {"curvature @m.off --weld none -o ", "o.npy", 1},
                 {"curvature @m.off -o ", "o.ply", 1},
                 {"curvature @m.off -o @o.npy --picture ", "o.png"},

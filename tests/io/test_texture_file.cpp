@@ -68,24 +68,3 @@ TEST_F(TextureFile, Ktx2) {
     EXPECT_EQ(word(bytes, 80) % 8, 0u);
     expectTexels(bytes, word(bytes, 80), lut);
 }
-
-TEST_F(TextureFile, Bc6h) {
-    const Lut lut = table();  // 5x3 texels: 2x1 blocks
-    EXPECT_GT(io::writeLutBc6h(path("t.dds"), lut).max, 0);
-    const std::string dds = read(path("t.dds"));
-    EXPECT_EQ(word(dds, 8) & 0x80008u, 0x80000u) << "a size of all bytes, not of a row";
-    expectWords(dds, {{20, 32}, {128, 95}});  // bytes, BC6H_UF16
-    ASSERT_EQ(dds.size(), 148u + 32);
-
-    io::writeLutBc6h(path("t.ktx2"), lut);
-    const std::string ktx = read(path("t.ktx2"));
-    // VK_FORMAT_BC6H_UFLOAT_BLOCK; of the descriptor: length with one sample, 4x4 texels, bytes of a block.
-    const uint32_t descriptor = word(ktx, 48), texels = word(ktx, 80);
-    expectWords(
-        ktx,
-        {{12, 143}, {16, 1}, {88, 32}, {descriptor, 44}, {descriptor + 16, 0x0303}, {descriptor + 20, 16}});
-    EXPECT_EQ(uint8_t(ktx[descriptor + 12]), 133u) << "colour model BC6H";
-    EXPECT_EQ(texels % 16, 0u);
-    EXPECT_EQ(ktx.substr(texels), dds.substr(148)) << "the same blocks";
-    EXPECT_THROW(io::writeLutBc6h(path("t.exr"), lut), std::invalid_argument);
-}

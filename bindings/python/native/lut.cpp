@@ -1,4 +1,3 @@
-#include "io/lut/bc6h.h"
 #include "native.h"
 
 namespace pel::python {
@@ -13,22 +12,6 @@ std::pair<pellucid::Lut, pellucid::Event> created(const Device& d, const py::obj
     });
     return {std::move(lut), pellucid::Event(submit.done)};
 }
-
-// Blocks of three halves per texel, and what they cost.
-py::tuple encodedBc6h(uint32_t width, uint32_t height, uintptr_t halves) {
-    const std::span texels(static_cast<const uint16_t*>(pointer(halves)), size_t(width) * height * 3);
-    std::vector<uint8_t> blocks;
-    pellucid::io::TexelError error;
-    call([&] {
-        blocks = pellucid::io::encodeBc6h(width, height, texels, signalled);
-        if (!blocks.empty())
-            error = pellucid::io::differenceOf(texels, pellucid::io::decodeBc6h(width, height, blocks));
-        return PEL_SUCCESS;
-    });
-    if (blocks.empty()) throw py::error_already_set();
-    return py::make_tuple(py::bytes(reinterpret_cast<const char*>(blocks.data()), blocks.size()), error.max,
-                          error.rms);
-}
 }  // namespace
 
 // The bytes of FaceWorks' description.
@@ -41,7 +24,6 @@ py::bytes faceworks(const std::string& name) {
 void bindLut(py::module_& module) {
     using pellucid::Lut;
     module.def("faceworks_defaults", &faceworks);
-    module.def("encode_bc6h", &encodedBc6h);
     py::class_<Lut, Owner<Lut>>(module, "Lut")
         .def_static("curvature", created<PelCurvatureLutDesc, pelCurvatureLutCreate>)
         .def_static("shadow", created<PelShadowLutDesc, pelShadowLutCreate>)

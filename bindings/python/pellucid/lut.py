@@ -242,22 +242,6 @@ class Lut(OfThisProcess):
         ax.set_ylabel(labels[kind][1])
         return ax
 
-    def read_bc6h(self) -> tuple[NDArray[np.uint8], float, float]:
-        """The texels as unsigned BC6H, one byte per texel, as graphics hardware samples it; waits.
-
-        Returns
-        -------
-        blocks : (ceil(height / 4), ceil(width / 4), 16) uint8
-            4x4 texels each, row by row; as they stand in a .dds or .ktx2 file.
-        error_max, error_rms : float
-            What the blocks differ by from "half" texels, in the table's own units.
-        """
-        halves = self.read(LutEncoding.HALF)
-        height, width = halves.shape[:2]
-        data, error_max, error_rms = _native.encode_bc6h(width, height, halves.ctypes.data)
-        blocks = np.frombuffer(data, np.uint8).reshape(-(-height // 4), -(-width // 4), 16).copy()
-        return blocks, error_max, error_rms
-
     def submit_read(self, encoding: LutEncoding | str, out: NDArray[Any],
                     waits: Iterable[Event] = ()) -> Event:
         """The same into `out` after `waits`, without waiting."""

@@ -170,7 +170,7 @@ EVERY_CALL = textwrap.dedent("""
         "report": lambda: topology.curvature(points.copy(), report=True, smoothing_passes=20),
         "uv_scale": lambda: topology.uv_scale(points.copy(), uvs.copy()),
         "table": lambda: pel.Lut.curvature(device, width=512, height=512, form="sphere", profile=burley),
-        "read": lambda: table.read("faceworks8"), "bc6h": table.read_bc6h,
+        "read": lambda: table.read("faceworks8"),
         "evaluate": lambda: burley.evaluate(distances),
         "shade": shader.execute, "screen": lambda: pel.screen_curvature(device, image.copy(), image.copy()),
         "buffer": lambda: pel.Buffer(device, np.zeros(1 << 26, np.uint8)), "finish": finish,

@@ -1,6 +1,5 @@
 #include "io/lut/lut_file.h"
 
-#include <cstring>
 #include <sstream>
 
 #include "io/atomic_file.h"
@@ -37,13 +36,11 @@ Image describedImage(const Lut& lut, PelLutEncoding encoding) {
     return image;
 }
 
-std::vector<uint8_t> withAlpha(const std::vector<uint16_t>& rgbHalves) {
+std::vector<uint16_t> withAlpha(const std::vector<uint16_t>& rgbHalves) {
     constexpr uint16_t one = 0x3C00;
-    std::vector<uint8_t> rgba(rgbHalves.size() / 3 * 8);
-    for (size_t i = 0; i < rgbHalves.size() / 3; ++i) {
-        std::memcpy(&rgba[8 * i], &rgbHalves[3 * i], 6);
-        std::memcpy(&rgba[8 * i + 6], &one, 2);
-    }
+    std::vector<uint16_t> rgba;
+    for (size_t i = 0; i < rgbHalves.size(); i += 3)
+        rgba.insert(rgba.end(), {rgbHalves[i], rgbHalves[i + 1], rgbHalves[i + 2], one});
     return rgba;
 }
 
@@ -61,33 +58,7 @@ std::map<std::string, std::string> keyValues(const Image& image) {
     return pairs;
 }
 
-void writeTexture(const std::string& path, const Lut& lut, Texture::Format format,
-                  std::span<const uint8_t> bytes) {
-    const auto [width, height] = lutSize(lut.info());
-    const Texture texture{format, width, height, bytes};
-    if (extensionOf(path) == "dds")
-        writeDds(path, texture);
-    else
-        writeKtx2(path, texture, keyValues(describedImage(lut, PEL_LUT_HALF)));
-}
-
 }  // namespace
-
-void checkLutPathBc6h(const std::string& path) {
-    const std::string extension = extensionOf(path);
-    if (extension != "dds" && extension != "ktx2")
-        throw std::invalid_argument("bc6h goes into .dds and .ktx2, not into '" + path + "'");
-    checkWritable(path);
-}
-
-TexelError writeLutBc6h(const std::string& path, const Lut& lut) {
-    checkLutPathBc6h(path);
-    const auto [width, height] = lutSize(lut.info());
-    const std::vector<uint16_t> texels = lut.read<uint16_t>(PEL_LUT_HALF);
-    const std::vector<uint8_t> blocks = encodeBc6h(width, height, texels);
-    writeTexture(path, lut, Texture::Format::Bc6hUnsigned, blocks);
-    return differenceOf(texels, decodeBc6h(width, height, blocks));
-}
 
 PelLutEncoding checkLutPath(const std::string& path, std::optional<PelLutEncoding> encoding) {
     const std::string extension = requireExtension(path, {"exr", "npy", "png", "bmp", "tga", "dds", "ktx2"});
@@ -98,7 +69,7 @@ PelLutEncoding checkLutPath(const std::string& path, std::optional<PelLutEncodin
                                                               : PEL_LUT_FLOAT);
     if (texture && chosen != PEL_LUT_HALF)
         throw std::invalid_argument("." + extension +
-                                    " holds half texels: use --encoding half or bc6h, or write .exr or .npy");
+                                    " holds half texels: use --encoding half, or write .exr or .npy");
     if (eightBit && chosen != PEL_LUT_FACEWORKS8)
         throw std::invalid_argument("." + extension +
                                     " holds 8-bit texels: use --encoding faceworks8, or write .exr or .npy");
@@ -124,7 +95,12 @@ void writeLut(const std::string& path, const Lut& lut, std::optional<PelLutEncod
         return;
     }
     if (extension == "dds" || extension == "ktx2") {
-        writeTexture(path, lut, Texture::Format::Rgba16Float, withAlpha(lut.read<uint16_t>(PEL_LUT_HALF)));
+        const std::vector<uint16_t> halves = withAlpha(lut.read<uint16_t>(PEL_LUT_HALF));
+        const Texture texture{width, height, halves};
+        if (extension == "dds")
+            writeDds(path, texture);
+        else
+            writeKtx2(path, texture, keyValues(describedImage(lut, PEL_LUT_HALF)));
         return;
     }
     if (extension == "npy") {

@@ -4,8 +4,6 @@
 #include <optional>
 #include <pellucid/pellucid.hpp>
 
-#include "io/lut/bc6h.h"
-
 namespace pellucid::io {
 
 // Writes texels with the top row first. The extension chooses the container: .exr (float or half; with the
@@ -17,10 +15,6 @@ void writeLut(const std::string& path, const Lut& lut, std::optional<PelLutEncod
 
 // What writeLut would choose, before long work. Throws as writeLut does, also if the file cannot be written.
 PelLutEncoding checkLutPath(const std::string& path, std::optional<PelLutEncoding> encoding);
-
-// The same as BC6H in .dds or .ktx2, an eighth of the bytes of half texels. Returns the encoding's error.
-TexelError writeLutBc6h(const std::string& path, const Lut& lut);
-void checkLutPathBc6h(const std::string& path);
 
 // A table that was read but is not on a device yet.
 struct LutTexels {
