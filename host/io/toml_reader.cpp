@@ -82,10 +82,24 @@ struct TomlReader::Nodes {
     }
 };
 
+// toml++ limits brackets inside one another, but not the parts of a key. It makes and destroys a table for
+// each part by recursion. Dots in strings and comments count too: no sane ones have so many.
+static void refuseLongKeys(const std::string& file, std::string_view text) {
+    constexpr int mostParts = 1000;
+    int line = 1, dots = 0;
+    for (const char c : text) {
+        if (std::string_view("[]{}=,\n").find(c) != std::string_view::npos) dots = 0;
+        line += c == '\n';
+        dots += c == '.';
+        if (dots >= mostParts)
+            throw FileError(file, concat("a key has more than ", mostParts, " parts"), line);
+    }
+}
+
 std::shared_ptr<const TomlTable> parseToml(const std::string& file, const std::string& text) {
     if (text.size() > textLimit)
         throw FileError(file, concat("has ", text.size(), " bytes; TOML may have ", textLimit));
-    checkTomlDepth(file, text);
+    refuseLongKeys(file, text);
     try {
         const auto root = std::make_shared<const toml::table>(toml::parse(text, file));
         return {root, opaque(root.get())};

@@ -18,9 +18,6 @@ namespace range = pel::range;
 
 struct TomlTable;  // an opaque toml::table
 
-// Throws FileError with the line if keys have more than 16 parts or brackets nest more than 16 deep.
-void checkTomlDepth(const std::string& file, std::string_view text);
-
 // Throws FileError with the line if the text is not TOML, nests too deep, or has over textLimit bytes.
 std::shared_ptr<const TomlTable> parseToml(const std::string& file, const std::string& text);
 
