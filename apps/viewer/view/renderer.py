@@ -204,11 +204,11 @@ class Renderer:
 
     def enlarged(self, view_projection: ArrayLike, pixels: NDArray[np.uint8], away: NDArray[np.float32],
                  small: NDArray[np.float64], size: tuple[int, int], level: int,
-                 rest: ArrayLike | None = None) -> NDArray[np.uint8]:
+                 rest: ArrayLike | None = None, inside: bool = True) -> NDArray[np.uint8]:
         """The mesh in the colours of a small picture, (height, width, 3).
 
         `away`, `small`: depth, and view and projection, of the small picture. `rest`: view and projection of
-        the picture whose details were kept; None: none are added.
+        the picture whose details were kept; None: none are added. `inside`: whether back sides are seen.
         """
         self.context.__enter__()
         farthest = away.argmax()  # background, if there is any
@@ -232,7 +232,7 @@ class Renderer:
             program[name].value = unit_
         # First what faces the eye, which hides the rest; y is turned round.
         self.context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-        for self.context.cull_face in ("front", "back"):
+        for self.context.cull_face in ("front", "back") if inside else ("front",):
             self._levels[level][2 if rest is None else 3].render()
         made = np.empty((size[1], size[0], 3), np.uint8)
         frame.read_into(made, components=3, alignment=1)

@@ -54,6 +54,7 @@ class Shaded:
     made: list[tuple[NDArray[np.uint8], Pass]]
     depth: NDArray[np.float32]
     matrix: NDArray[np.float64]  # of the camera
+    inside: bool  # whether back sides are seen
     left: int = 2  # so many more views
 
 
@@ -450,8 +451,11 @@ class Session:
         started = time.perf_counter()
         made = [picture(self, name, look, width, height, small > 0)
                 for name, look in zip(("main", "other"), looks)]
-        seconds, matrix = time.perf_counter() - started, self.camera(self._aspect)[1]
-        self._shaded = Shaded(key, made, depth(g, matrix), matrix) if small > 1 else None
+        seconds, (eye, matrix) = time.perf_counter() - started, self.camera(self._aspect)
+        self._shaded = None
+        if small > 1:
+            away = np.einsum("ijk,ijk->ij", g.position - eye, g.normal_geometric) > 0.2 * self.orbit.distance
+            self._shaded = Shaded(key, made, depth(g, matrix), matrix, bool(away.mean() > 0.001))
         return [pixels for pixels, _ in made], made[0][1], seconds
 
     def prepare(self, width: int, height: int) -> None:
@@ -513,7 +517,8 @@ class Session:
         assert self._shaded is not None
         rest = self._detailed[1] if self._detailed is not None and self._detailed[0] == self.look else None
         return self.renderer.enlarged(self.camera(width / height)[1], pixels, self._shaded.depth,
-                                      self._shaded.matrix, (width, height), self._coarse(), rest)
+                                      self._shaded.matrix, (width, height), self._coarse(), rest,
+                                      self._shaded.inside)
 
     def _joined(self, left: NDArray[np.uint8], right: NDArray[np.uint8]) -> NDArray[np.uint8]:
         width = left.shape[1]
