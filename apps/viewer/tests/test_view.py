@@ -162,28 +162,37 @@ def test_an_iris_is_a_square_of_a_picture(session, tmp_path):
 
 
 def test_moving_pictures_look_like_those_at_rest(session):
-    whole = Session(session.device)
+    whole, size = Session(session.device), (480, 270)
     whole.load(files.standard_head())
-    rest, moving = whole.frame(
-        240, 136).pixels.astype(int), whole.frame(240, 136, small=True).pixels.astype(int)
     assert whole.renderer.level(1e9) >= 1 and whole._level(True) > 0  # a coarser mesh is in use
-    off = np.abs(rest - moving).max(2)
-    assert np.median(off) <= 2 and (off > 40).mean() < 0.03
-    # What moved only in part is not drawn again.
-    drawn = whole.renderer.gbuffer
-    calls = []
-    whole.renderer.gbuffer = lambda *a, **k: calls.append(a) or drawn(*a, **k)
-    whole.look.roughness = 0.6
-    whole.frame(240, 136, small=True)
-    assert calls == []
-    maps = whole.renderer.shadow_map
-    whole.renderer.shadow_map = lambda *a, **k: calls.append(a) or maps(*a, **k)
-    whole.orbit.azimuth += 1
-    whole.frame(240, 136, small=True)
-    assert len(calls) == 1  # the G-buffer; shadow maps are kept
-    whole.look.lamps[0].azimuth += 1
-    whole.frame(240, 136, small=True)
-    assert len(calls) == 2  # the one map
+    rest = whole.smooth(*size).astype(int)
+    whole.prepare(*size)
+    assert whole.shown.material.shape == rest.shape[:2]  # what the probe looks at
+    off = np.abs(whole.frame(*size, 3).pixels - rest).max(2)
+    assert off.shape == (270, 480) and np.median(off) <= 1 and (off > 20).mean() < 0.01
+    calls, drawn, maps = [], whole.renderer.gbuffer, whole.renderer.shadow_map
+    whole.renderer.gbuffer = lambda *a, **k: calls.append("G-buffer") or drawn(*a, **k)
+    whole.renderer.shadow_map = lambda *a, **k: calls.append("map") or maps(*a, **k)
+    for _ in range(4):
+        whole.orbit.azimuth += 1.5
+        turned = whole.frame(*size, 3).pixels.astype(int)
+    assert calls == ["G-buffer"]  # for three of them; the first is made from that of the view at rest
+    whole._detailed = None
+    bare = whole.frame(*size, 3).pixels.astype(int)
+    there, ids = whole.smooth(*size).astype(int), whole.shown.material
+    off, without = (np.abs(p - there).max(2) for p in (turned, bare))
+    assert (off > 20).mean() < 0.01 and ((turned.max(2) > 0) != (ids > 0)).mean() < 0.003
+    assert off[ids == EYES].mean() < 0.6 * without[ids == EYES].mean()
+    # Other light: none of the details, and every picture is shaded; what did not move is not drawn again.
+    whole.prepare(*size)
+    calls.clear()
+    for expected in ["map"], ["map", "map"]:
+        whole.look.lamps[0].azimuth += 20
+        lit = whole.frame(*size, 3).pixels.astype(int)
+        assert calls == expected
+    assert np.abs(lit - there).mean() > 2 and np.abs(lit - whole.smooth(*size)).mean() < 0.8
+    whole.look.mode = "difference"
+    assert (whole.frame(*size, 3).pixels[0, 0] == whole.frame(*size).pixels[0, 0]).all()  # not black
 
 
 def test_edges_become_smooth(session):
@@ -241,22 +250,22 @@ def test_another_device_shows_the_same(session):
 
 def test_pictures_are_as_small_as_the_time_asks():
     slow, fast = Pace(), Pace()
-    assert slow.scale == 0.5
+    assert slow.step == (1.0, 3)
     for i in range(60):
         slow.shown(0.2 * i, True)
         fast.shown(0.01 * i, True)
-    assert slow.scale == min(Pace.SCALES) and fast.scale == 1.0
+    assert slow.step == Pace.STEPS[-1] and fast.step == Pace.STEPS[0] == (1.0, 1)
     steady = Pace()
     for i in range(60):
         steady.shown(0.045 * i, True)
-    assert steady.scale == 0.5
+    assert steady.step == (1.0, 3)
     # Larger pictures that turn out too slow are not tried again at once.
     torn, seen, now = Pace(), [], 0.0
     for _ in range(50):
-        now += 0.03 if torn.scale <= 0.5 else 0.09
+        now += 0.02 if torn.step[1] >= 3 else 0.09
         torn.shown(now, True)
-        seen.append(torn.scale)
-    assert max(seen) > 0.5 and seen[-1] == 0.5 and sum(a != b for a, b in zip(seen, seen[1:])) == 2
+        seen.append(torn.step)
+    assert (1.0, 2) in seen and seen[-1] == (1.0, 3) and sum(a != b for a, b in zip(seen, seen[1:])) == 2
 
 
 def test_the_mouse_takes_the_object_along():

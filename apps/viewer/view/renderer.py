@@ -18,7 +18,9 @@ from ..files import Mesh
 from . import shaders
 from .camera import look_at, parallel, unit
 from .paint import SKIN_ALBEDO, Paint
-from .preview import levels
+from .preview import coarser
+
+FAR = np.float32(1e9)
 
 
 @dataclass
@@ -36,14 +38,6 @@ class GBuffer:
 
 
 @dataclass
-class _Level:
-    """The mesh in OpenGL, with as many triangles as `spacing` says."""
-
-    spacing: float  # length of an edge, about
-    parts: list[Any]  # what draws it, what draws its shadow, and their buffers
-
-
-@dataclass
 class _Target:
     """Images of one size in OpenGL, and the memory that they are read into."""
 
@@ -51,8 +45,28 @@ class _Target:
     memory: list[NDArray[np.float32]]
 
 
-def _release(made: _Level | _Target) -> None:
-    for part in made.parts:
+def depth(g: GBuffer, view_projection: NDArray[np.float64]) -> NDArray[np.float32]:
+    """From the eye, (h, w); FAR on background."""
+    x, y, z, one = view_projection[3].astype(np.float32)
+    p = g.position
+    return np.where(g.material > 0, x * p[..., 0] + y * p[..., 1] + z * p[..., 2] + one, FAR)
+
+
+def _pixel(view_projection: NDArray[np.float64], height: int) -> float:
+    """Height of a pixel at depth 1."""
+    # The second row of a projection is the view's upward direction times the cotangent of half the angle.
+    return float(2 / (np.linalg.norm(view_projection[1, :3]) * height))
+
+
+def _flipped(view_projection: ArrayLike, right: float = 0.0, down: float = 0.0) -> bytes:
+    """For OpenGL, with the first row on top, moved by so many parts of the half picture."""
+    turned = np.diag([1.0, -1.0, 1.0, 1.0])
+    turned[:2, 3] = right, down
+    return (turned @ np.asarray(view_projection, np.float64)).T.astype("f4").tobytes()
+
+
+def _release(parts: list[Any]) -> None:
+    for part in parts:
         part.release()
 
 
@@ -67,8 +81,13 @@ class Renderer:
                                f"(or a GPU's driver); {error}") from error
         self._gbuffer_program = self.context.program(shaders.GBUFFER_VERTEX, shaders.GBUFFER_FRAGMENT)
         self._shadow_program = self.context.program(shaders.SHADOW_VERTEX, shaders.SHADOW_FRAGMENT)
+        detailed = shaders.ENLARGE_FRAGMENT.replace("core\n", "core\n#define DETAILED\n")
+        self._enlarge_programs = [self.context.program(shaders.ENLARGE_VERTEX, fragment)
+                                  for fragment in (shaders.ENLARGE_FRAGMENT, detailed)]
+        self._screen: list[Any] = []  # of the last enlarged picture: the framebuffer, and its attachments
+        self._details: list[Any] = []  # what the picture at rest shows beyond a small one, and its depth
         self._targets: dict[tuple[int, int], _Target] = {}
-        self._levels: list[_Level] = []
+        self._levels: list[list[Any]] = []  # of the mesh, and of one with fewer triangles
         self._shadow_targets: dict[int, Any] = {}  # by size
         self._pictures: list[Any] = []
         self.mesh: Mesh | None = None
@@ -92,11 +111,14 @@ class Renderer:
         if mesh.uvs is not None:
             vertices[:, 11:13] = mesh.uvs
         vertices[:, 13] = -1 if paint.layers is None else paint.layers
-        fresh = [self._upload(*level)
-                 for level in levels(vertices, np.ascontiguousarray(mesh.triangles, np.uint32))]
+        triangles = np.ascontiguousarray(mesh.triangles, np.uint32)
+        self._coarse_edge, coarse = coarser(vertices, triangles)
+        buffer = self.context.buffer(vertices.tobytes())
+        fresh = [self._upload(buffer, indices) for indices in (triangles, coarse)]
         for old in self._levels:
             _release(old)
         self._levels = fresh
+        self._levels[0].append(buffer)  # to be released with it
         self._set_pictures(paint)
         self.mesh = mesh
         used = mesh.positions[np.unique(mesh.triangles)]
@@ -105,8 +127,7 @@ class Renderer:
         self._mm = millimetres_per_unit
 
     def _set_pictures(self, paint: Paint) -> None:
-        for old in self._pictures:
-            old.release()
+        _release(self._pictures)
         size = tuple(max((p.shape[i] for p in paint.albedo), default=1) for i in (1, 0))  # width, height
         layers = [np.asarray(Image.fromarray(p).resize(size)) for p in paint.albedo] or [
             np.full((1, 1, 3), 255, np.uint8)]
@@ -122,23 +143,25 @@ class Renderer:
             made.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
         self._bumps_up = 0.0 if paint.normal is None else 1.0 if paint.v_up else -1.0
 
-    def _upload(self, spacing: float, vertices: NDArray[np.float32], triangles: NDArray[np.uint32]) -> _Level:
-        buffer, indices = self.context.buffer(vertices.tobytes()), self.context.buffer(triangles.tobytes())
+    def _upload(self, buffer: Any, triangles: NDArray[np.uint32]) -> list[Any]:
+        """What draws a G-buffer, a shadow map, and a picture without and with details; and its memory."""
+        indices = self.context.buffer(triangles.tobytes())
         draw = self.context.vertex_array(self._gbuffer_program,
             [(buffer, "3f 3f 3f 2f 3f", "in_position", "in_normal", "in_albedo", "in_material", "in_uv")],
             indices)
-        shadow = self.context.vertex_array(self._shadow_program, [(buffer, "3f 44x", "in_position")], indices)
-        return _Level(spacing, [draw, shadow, buffer, indices])
+        others = [self.context.vertex_array(program, [(buffer, "3f 44x", "in_position")], indices)
+                  for program in (self._shadow_program, *self._enlarge_programs)]
+        return [draw, *others, indices]
 
     def level(self, length: float) -> int:
-        """The coarsest version of the mesh with edges of at most about `length`: 0 is the mesh itself."""
-        return max((i for i, level in enumerate(self._levels) if level.spacing <= length), default=0)
+        """The version of the mesh to draw: 1, the coarse one, if its edges are at most `length`, else 0."""
+        return int(self._coarse_edge <= length)
 
     def _target(self, width: int, height: int) -> _Target:
         target = self._targets.pop((width, height), None)
         if target is None:
             while len(self._targets) >= 3:  # a moving picture, one at rest, one that is exported
-                _release(self._targets.pop(next(iter(self._targets))))
+                _release(self._targets.pop(next(iter(self._targets))).parts)
             parts = [self.context.texture((width, height), 4, dtype="f4") for _ in range(4)]
             depth = self.context.depth_renderbuffer((width, height))
             target = _Target([self.context.framebuffer(parts, depth), *parts, depth],
@@ -163,9 +186,7 @@ class Renderer:
         frame.clear(0.0, 0.0, 0.0, 0.0)
         self.context.enable_only(moderngl.DEPTH_TEST)
         program = self._gbuffer_program
-        turned = np.diag([1.0, -1.0, 1.0, 1.0])
-        turned[:2, 3] = 2 * shift[0] / width, 2 * shift[1] / height
-        program["clip"].write((turned @ np.asarray(view_projection, np.float64)).T.astype("f4").tobytes())
+        program["clip"].write(_flipped(view_projection, 2 * shift[0] / width, 2 * shift[1] / height))
         program["pores"].value, program["mm"].value = pores, self._mm
         for unit_, name in enumerate(("pictures", "bumps")):
             self._pictures[unit_].use(unit_)
@@ -174,12 +195,72 @@ class Renderer:
         program["eyes"].value = bool(self.mesh.eyes)
         if self.mesh.eyes:
             program["sclera"].value = tuple(self.mesh.eyes[0]["sclera"])
-        self._levels[level].parts[0].render()
+        self._levels[level][0].render()
         for attachment, memory in enumerate(target.memory):
             frame.read_into(memory, components=4, attachment=attachment, dtype="f4")
         position, geometric, shading, albedo = target.memory
         return GBuffer(position[..., :3], position[..., 3], geometric[..., :3], geometric[..., 3],
                        shading[..., :3], albedo[..., :3], shading[..., 3], albedo[..., 3])
+
+    def enlarged(self, view_projection: ArrayLike, pixels: NDArray[np.uint8], away: NDArray[np.float32],
+                 small: NDArray[np.float64], size: tuple[int, int], level: int,
+                 rest: ArrayLike | None = None, inside: bool = True) -> NDArray[np.uint8]:
+        """The mesh in the colours of a small picture, (height, width, 3).
+
+        `away`, `small`: depth, and view and projection, of the small picture. `rest`: view and projection of
+        the picture whose details were kept; None: none are added. `inside`: whether back sides are seen.
+        """
+        self.context.__enter__()
+        farthest = away.argmax()  # background, if there is any
+        clear = pixels.reshape(-1, 3)[farthest] / 255 if away.flat[farthest] == FAR else (0, 0, 0)
+        if not self._screen or self._screen[0].size != size:
+            _release(self._screen)
+            parts = [self.context.renderbuffer(size, 3), self.context.depth_renderbuffer(size)]
+            self._screen = [self.context.framebuffer(*parts), *parts]
+        frame, program = self._screen[0], self._enlarge_programs[rest is not None]
+        frame.use()
+        frame.clear(*clear, 1.0)
+        own = [self._texture(pixels), self._texture(away)]
+        program["clip"].write(_flipped(view_projection))
+        program["small"].write(_flipped(small))
+        program["angle"].value = _pixel(small, len(away))
+        if rest is not None:
+            program["rest"].write(_flipped(rest))
+        for unit_, (name, texture) in enumerate(zip(("shaded", "depths", "details", "rest_depths"),
+                                                    own + (self._details if rest is not None else []))):
+            texture.use(unit_)
+            program[name].value = unit_
+        # First what faces the eye, which hides the rest; y is turned round.
+        self.context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        for self.context.cull_face in ("front", "back") if inside else ("front",):
+            self._levels[level][2 if rest is None else 3].render()
+        made = np.empty((size[1], size[0], 3), np.uint8)
+        frame.read_into(made, components=3, alignment=1)
+        _release(own)
+        return made
+
+    def keep_details(self, pixels: NDArray[np.uint8], g: GBuffer, view_projection: NDArray[np.float64],
+                     rough: NDArray[np.uint8], eyes: list[int]) -> None:
+        """Takes what a picture at rest shows beyond a rough one of this view; of the ids `eyes` all of it."""
+        whole = np.isin(g.material, eyes)[..., None]
+        more = np.clip(pixels.astype(np.int16) - rough, -32, 32)  # more is a hole in the rough picture
+        more = 128 + np.where(whole, pixels, more) // 2
+        # Not at outlines, and not where the surface is seen from the side.
+        z, kept = depth(g, view_projection), np.zeros_like(g.material)
+        middle, across, down = z[2:-2, 2:-2], z[2:-2, 4:] - z[2:-2, :-4], z[4:, 2:-2] - z[:-4, 2:-2]
+        steep = np.maximum(np.abs(across), np.abs(down)) > 12 * _pixel(view_projection, len(z)) * middle
+        kept[2:-2, 2:-2] = np.where(steep, 0, middle)
+        _release(self._details)
+        more = np.concatenate([more, 255 * whole], 2).astype(np.uint8)
+        self._details = [self._texture(more), self._texture(kept)]
+        self._details[0].filter = moderngl.LINEAR, moderngl.LINEAR
+
+    def _texture(self, image: NDArray[Any]) -> Any:
+        made = self.context.texture(image.shape[1::-1], image.shape[2] if image.ndim == 3 else 1,
+                                    np.ascontiguousarray(image).tobytes(), alignment=1,
+                                    dtype="f1" if image.dtype == np.uint8 else "f4")
+        made.filter, made.repeat_x, made.repeat_y = (moderngl.NEAREST, moderngl.NEAREST), False, False
+        return made
 
     def shadow_map(self, to_light: ArrayLike, size: int, up: ArrayLike = (0.0, 1.0, 0.0),
                    level: int = 0) -> tuple[NDArray[np.float32], Any]:
@@ -197,7 +278,7 @@ class Renderer:
         frame.clear(1.0, 1.0, 1.0, 1.0)
         self.context.enable_only(moderngl.DEPTH_TEST)
         self._shadow_program["clip"].write(matrix.T.astype("f4").tobytes())
-        self._levels[level].parts[1].render()
+        self._levels[level][1].render()
         depth = np.empty((size, size), np.float32)
         frame.read_into(depth, components=1, dtype="f4")
         return depth, light_from_view_projection(matrix, first_row="bottom")

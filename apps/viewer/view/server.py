@@ -24,13 +24,14 @@ from .session import Frame
 
 T = TypeVar("T")
 SETTLED = 0.2  # seconds without a motion, after which the picture is drawn in full
-PERIOD = 1 / 17  # seconds that a picture may take, from one to the next, while something moves
+SLOW, FAST = 1 / 20, 1 / 28  # seconds between pictures, while something moves, that are too many or few
 
 
 class Pace:
-    """How small pictures are while something moves: so small that they come in time."""
+    """How many pixels are shaded and shown while something moves: so few that pictures come in time."""
 
-    SCALES = (1.0, 0.71, 0.5, 0.4, 0.33, 0.25)  # of the sides
+    # Scale of the sides, and of how many pixels of a row or column one is shaded.
+    STEPS = ((1.0, 1), (1.0, 2), (1.0, 3), (1.0, 4), (0.8, 4), (0.65, 4), (0.5, 4), (0.35, 4))
 
     def __init__(self) -> None:
         self._step = 2
@@ -39,8 +40,8 @@ class Pace:
         self._rest = 0  # pictures for which larger ones are not tried: they were too slow
 
     @property
-    def scale(self) -> float:
-        return self.SCALES[self._step]
+    def step(self) -> tuple[float, int]:
+        return self.STEPS[self._step]
 
     def shown(self, now: float, moving: bool) -> None:
         """A picture has been taken at `now`."""
@@ -51,17 +52,18 @@ class Pace:
         if self._last is not None and now - self._last < 1:
             self._periods.append(now - self._last)
         self._last = now
-        if len(self._periods) < 5:
+        if len(self._periods) < 7:
             return
         self._rest = max(self._rest - len(self._periods), 0)
-        period = sorted(self._periods)[len(self._periods) // 2]
+        period = sum(sorted(self._periods)[:-1]) / (len(self._periods) - 1)  # one may have been held up
         self._periods.clear()
-        if period > 1.1 * PERIOD:
-            self._step = min(self._step + 1, len(self.SCALES) - 1)
+        if period > SLOW:
+            self._step = min(self._step + 1, len(self.STEPS) - 1)
             self._rest = 60
         elif self._step > 0 and not self._rest:
-            pixels = self.SCALES[self._step - 1]**2 / self.scale**2
-            if period * (0.5 + 0.5 * pixels) < PERIOD:  # about half of the time goes into pixels
+            (larger, fewer), (scale, every) = self.STEPS[self._step - 1], self.step
+            pixels = (larger * every / (scale * fewer))**2
+            if period * (0.5 + 0.5 * pixels) < FAST:  # about half of the time goes into pixels
                 self._step -= 1
 
 
@@ -168,7 +170,7 @@ class Viewer:
         self.error = ""
         self.changed()
 
-    async def frame(self, width: int, height: int, small: bool,
+    async def frame(self, width: int, height: int, small: int,
                     sample: int = 0) -> Optional[tuple[Frame, bytes]]:
         """The next picture and its JPEG file, or None and `error`."""
         def make() -> tuple[Frame, bytes]:
@@ -296,12 +298,12 @@ class Viewer:
                 if event.is_set():
                     sample = 0
                 event.clear()
-                small = self.moving
-                width, height = (max(16, round(v * self._pace.scale)) if small else v for v in size)
+                scale, small = self._pace.step if self.moving else (1, 0)
+                width, height = (max(16, round(v * scale)) for v in size)
                 changes, stamp = self.changes, self.stamp
                 made = await self.frame(width, height, small, 0 if small else sample)
                 sample = 0 if small else sample + 1
-                head = {"error": self.error, "moving": small, "width": width, "height": height,
+                head = {"error": self.error, "moving": small > 0, "width": width, "height": height,
                         "changes": changes, "at": stamp, "sample": sample}
                 if made is not None:
                     frame = made[0]

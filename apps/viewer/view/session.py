@@ -21,7 +21,7 @@ from .paint import SKIN_ALBEDO, Paint, load, painted, read
 from .passes import Pass
 from .pictures import LINEAR, picture, scattered_tiles, srgb_bytes
 from .reference import Reference
-from .renderer import GBuffer, Renderer
+from .renderer import GBuffer, Renderer, depth
 from .texture import Texture
 
 T = TypeVar("T")
@@ -46,9 +46,22 @@ class ShadowMap:
     light: Light
 
 
+@dataclass
+class Shaded:
+    """Pictures, left and right, from which those of the next views are made while the camera moves."""
+
+    key: Any  # what they depend on, but the camera
+    made: list[tuple[NDArray[np.uint8], Pass]]
+    depth: NDArray[np.float32]
+    matrix: NDArray[np.float64]  # of the camera
+    inside: bool  # whether back sides are seen
+    left: int = 2  # so many more views
+
+
 # (specular, roughness) of what is not skin, as in the demo.
 # Eyes: that of their film of tears.
 _GLOSS = {EYES: (0.0, 1.0), RIGHT_EYE: (0.0, 1.0), TEETH: (0.05, 0.2), TONGUE: (0.05, 0.2), CUT: (0.0, 1.0)}
+COSTLY = "reference", "error", "tiles"  # modes whose pictures take long
 SAMPLES = 8  # pictures that are averaged for smooth edges
 UNITS = {1.0: "millimetres", 10.0: "centimetres", 25.4: "inches", 1000.0: "metres"}
 PLAUSIBLE = 30.0, 3000.0  # mm: size of an object on which scattering in skin shows
@@ -139,10 +152,14 @@ class Session:
         # called as references advance; None: pictures wait for them, and for kernels
         self.report: Optional[Callable[[], None]] = None
         self._preparing = False
-        self._shift = (0.0, 0.0)
+        self._shift, self._aspect = (0.0, 0.0), 0.0  # of the picture that is being made; 0: of its G-buffer
         self._prepared: Any = None
         self.shown: Optional[GBuffer] = None  # of the last picture, and the pass that shaded its left side
         self.last_pass: Optional[Pass] = None
+        self._rest: Optional[NDArray[np.uint8]] = None  # the last picture at rest
+        # look and projection of the picture whose details the renderer keeps
+        self._detailed: Optional[tuple[Look, NDArray[np.float64]]] = None
+        self._shaded: Optional[Shaded] = None
         self._scattered: Any = None  # the state that `scattering_at` was asked for, and its tiles
 
     def load(self, path: Any, subdivide: Optional[int] = None, up: str = "auto") -> files.Mesh:
@@ -179,6 +196,7 @@ class Session:
         self.centre = (np.asarray(mesh.low, float) + mesh.high) / 2
         for made in (self._maps, self._gbuffers, self._textures):
             made.clear()
+        self._rest = self._detailed = self._shaded = None
         for name in list(self.references):
             self.cancel_reference(name)
 
@@ -238,18 +256,18 @@ class Session:
     def shadow_map(self, lamp: Lamp, size: int, small: bool = False) -> ShadowMap:
         """The map of a lamp; made once, until the lamp moves. `small`: of a coarser mesh, to go with such a
         picture."""
-        level = self._level(small)
+        level = self._coarse() if small else 0
         key = (lamp.azimuth, lamp.elevation, size, level)
         return _kept(self._maps, key, 9, lambda: ShadowMap(
             *self.renderer.shadow_map(self.to_light(lamp), size, self.mesh.up, level)))
 
+    def _coarse(self) -> int:
+        """The version of the mesh whose edges are few pixels of a moving picture long."""
+        return self.renderer.level(20 / 270 * self.orbit.distance * np.tan(np.radians(self.orbit.fov) / 2))
+
     def _level(self, small: bool) -> int:
-        """Which version of the mesh serves: while something moves, one whose edges are few pixels of a small
-        picture long."""
-        # A texture has seams that a coarser mesh would tear apart.
-        if not small or self.look.method == "texture" or self.paint:
-            return 0
-        return self.renderer.level(5 * 2 * self.orbit.distance * np.tan(np.radians(self.orbit.fov) / 2) / 270)
+        """The version for a G-buffer. A texture has seams that a coarser mesh would tear apart."""
+        return 0 if not small or self.look.method == "texture" or self.paint else self._coarse()
 
     def profile(self, look: Look) -> Profile:
         if look.profile == "pigments":
@@ -280,7 +298,7 @@ class Session:
         state = self.drawn_state(width, height, small)
         made = self._gbuffers.get((width, height))
         if made is None or made[0] != state:
-            _, matrix = self.camera(width / height)
+            _, matrix = self.camera(self._aspect or width / height)
             while len(self._gbuffers) > 2:
                 self._gbuffers.pop(next(iter(self._gbuffers)))
             made = (state, self.renderer.gbuffer(matrix, width, height, state[3], state[4], self._shift))
@@ -289,7 +307,7 @@ class Session:
 
     def drawn_state(self, width: int, height: int, small: bool = False) -> tuple[Any, ...]:
         """What a G-buffer depends on."""
-        _, matrix = self.camera(width / height)
+        _, matrix = self.camera(self._aspect or width / height)
         # The reference has the mesh's own normals.
         pores = 0.0 if self.look.mode in ("error", "reference") else self.look.pores
         return (matrix.tobytes(), width, height, pores, self._level(small), self._shift)
@@ -377,13 +395,14 @@ class Session:
     @property
     def samples(self) -> int:
         """How many pictures a smooth one takes. The reference takes seconds for one."""
-        return 1 if self.look.mode in ("reference", "error", "tiles") else SAMPLES
+        return 1 if self.look.mode in COSTLY else SAMPLES
 
-    def frame(self, width: int, height: int, small: bool = False, sample: int = 0) -> Frame:
+    def frame(self, width: int, height: int, small: int = 0, sample: int = 0) -> Frame:
         """The picture of now.
 
-        small : bool
-            While something moves: meshes are coarser, and shadow maps have half the size.
+        small : int
+            While something moves: one of so many pixels of a row or column is shaded, the others are made
+            from it and from the last picture at rest; meshes are coarser, and shadow maps have half the size.
         sample : int
             0 for a picture by itself. After it 1, 2, .. `samples` - 1: the mean with one more that is
             shifted by a part of a pixel, so that edges become smooth.
@@ -391,36 +410,62 @@ class Session:
         built = self.device.stats().programs_built
         started = time.perf_counter()
         self._shift = (_HALTON[sample - 1][0] - 0.5, _HALTON[sample - 1][1] - 0.5) if sample else (0.0, 0.0)
+        right = self.right()
+        if right is not None and self.beside:
+            width = max(width // 2, 1)
+        self._aspect = width / height
         try:
-            right = self.right()
-            if right is not None and self.beside:
-                width = max(width // 2, 1)
-            self.shown = self.gbuffer(width, height, small)
-            self.lights(self.look, small)
-            drawn = time.perf_counter()
-            pixels, p = picture(self, "main", self.look, width, height, small)
-            self.last_pass, stats = p, p.shader.stats()
-            if right is None:
-                self.cancel_reference("other")
-            else:
-                pixels = self._joined(pixels, picture(self, "other", right, width, height, small)[0])
+            looks = [self.look] if right is None else [self.look, right]
+            pixels, p, seconds = self._shade_views(looks, width, height, small)
         finally:
-            self._shift = (0.0, 0.0)
-        if not small:
-            pixels = self._mean(pixels, sample)
-        shaded = time.perf_counter()
-        times = {"OpenGL": 1e3 * (drawn - started), "Pellucid": 1e3 * (shaded - drawn),
+            self._shift, self._aspect = (0.0, 0.0), 0.0
+        if small > 1:
+            pixels = [self._enlarged(made, width, height) for made in pixels]
+        self.last_pass, stats = p, p.shader.stats()
+        shown = pixels[0] if right is None else self._joined(*pixels)
+        if right is None:
+            self.cancel_reference("other")
+        if small:
+            self._rest = None
+        else:
+            shown = self._mean(shown, sample)
+            self._rest, self._detailed = shown, None
+        times = {"OpenGL": 1e3 * (time.perf_counter() - started - seconds), "Pellucid": 1e3 * seconds,
                  "on the device": stats.device_milliseconds}
         after = self.device.stats().programs_built
-        return Frame(pixels, times, stats.to_dict(), p.shader.warnings() + list(self.mesh.warnings), after,
+        return Frame(shown, times, stats.to_dict(), p.shader.warnings() + list(self.mesh.warnings), after,
                      after - built, p.stands_in)
+
+    def _shade_views(self, looks: list[Look], width: int, height: int,
+                     small: int) -> tuple[list[NDArray[np.uint8]], Pass, float]:
+        """Pictures of the looks, the pass of the first, and the seconds that Pellucid took. While only the
+        camera moves, shaded pictures serve three times."""
+        key = (width, height, small, [look.copy() for look in looks])
+        kept = self._shaded
+        if kept is not None and kept.key == key and kept.left > 0:
+            kept.left -= 1
+            return [pixels for pixels, _ in kept.made], kept.made[0][1], 0.0
+        width, height = (max(v // max(small, 1), 1) for v in (width, height))
+        self.shown = g = self.gbuffer(width, height, small > 0)
+        self.lights(looks[0], small > 0)
+        started = time.perf_counter()
+        made = [picture(self, name, look, width, height, small > 0)
+                for name, look in zip(("main", "other"), looks)]
+        seconds, (eye, matrix) = time.perf_counter() - started, self.camera(self._aspect)
+        self._shaded = None
+        if small > 1:
+            away = np.einsum("ijk,ijk->ij", g.position - eye, g.normal_geometric) > 0.2 * self.orbit.distance
+            self._shaded = Shaded(key, made, depth(g, matrix), matrix, bool(away.mean() > 0.001))
+        return [pixels for pixels, _ in made], made[0][1], seconds
 
     def prepare(self, width: int, height: int) -> None:
         """Builds the kernels that a slider of material will want when it leaves 0 or comes to it, so that
-        none has to wait for them."""
+        none has to wait for them. Keeps what moving pictures take from the one at rest."""
+        if self._rest is not None and self._rest.shape[:2] == (height, width) and self.right() is None:
+            self._keep_details(self._rest)
         base = self.look
         structure = (base.mode, base.method, base.ggx, [(lamp.on, lamp.shadow) for lamp in base.lamps])
-        if structure == self._prepared or base.mode in ("reference", "error", "tiles"):
+        if structure == self._prepared or base.mode in COSTLY:
             return
         for change in ({"deep_scatter": (1.0, 1.0, 1.0)},
                        {"deep_scatter": (0.0, 0.0, 0.0), "transmission": 0.0}):
@@ -455,6 +500,25 @@ class Session:
             self._scattered = (key, *scattered_tiles(self, self.look, width, height, False)[:2])
         _, method, changed = self._scattered
         return method if changed[row, column] else f"{method}, which leaves this tile as it is"
+
+    def _keep_details(self, rest: NDArray[np.uint8]) -> None:
+        """Of the picture at rest, for those that move."""
+        if self.look.mode in COSTLY or self.shown is None:
+            return
+        height, width = rest.shape[:2]
+        g, last, matrix = self.shown, self.last_pass, self.camera(width / height)[1]
+        rough = self.frame(width, height, 3).pixels
+        self.renderer.keep_details(rest, g, matrix, rough, list(self.eyes(self.look)))
+        self.shown, self.last_pass, self._detailed = g, last, (self.look.copy(), matrix)
+
+    def _enlarged(self, pixels: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
+        """A picture of few pixels in full size, seen from the camera of now, with the details of the one at
+        rest."""
+        assert self._shaded is not None
+        rest = self._detailed[1] if self._detailed is not None and self._detailed[0] == self.look else None
+        return self.renderer.enlarged(self.camera(width / height)[1], pixels, self._shaded.depth,
+                                      self._shaded.matrix, (width, height), self._coarse(), rest,
+                                      self._shaded.inside)
 
     def _joined(self, left: NDArray[np.uint8], right: NDArray[np.uint8]) -> NDArray[np.uint8]:
         width = left.shape[1]

@@ -97,3 +97,52 @@ SHADOW_FRAGMENT = """
 layout(location = 0) out float depth;
 void main() { depth = gl_FragCoord.z; }
 """
+
+ENLARGE_VERTEX = """
+#version 330 core
+uniform mat4 clip, small, rest;  // world to clip space: now, in the small picture, and in the one at rest
+in vec3 in_position;
+out vec4 place, before;          // in the small picture, and in the one at rest
+void main() {
+    vec4 p = vec4(in_position, 1.0);
+    gl_Position = clip * p;
+    place = small * p;
+    before = rest * p;
+}
+"""
+
+# Joint bilateral upsampling [Kopf et al. 2007]: of the four nearest shaded pixels those count that lie on the
+# plane of this one. What the picture at rest shows beyond such a picture is added where it saw this place. Of
+# eyes all is taken from it: what they refract moves beneath their surface.
+ENLARGE_FRAGMENT = """
+#version 330 core
+uniform sampler2D shaded, depths;       // small; depth from the eye
+uniform sampler2D details, rest_depths; // 128 + half of what is added, in bytes
+uniform float angle;                    // height of a small pixel at depth 1
+in vec4 place, before;
+layout(location = 0) out vec4 color;
+void main() {
+    float depth = place.w, size = depth * angle;
+    ivec2 last = textureSize(depths, 0) - 1;
+    vec2 at = (0.5 + 0.5 * place.xy / depth) * vec2(last + 1) - 0.5, low = floor(at), f = at - low;
+    ivec2 a = clamp(ivec2(low), ivec2(0), last), d = clamp(ivec2(low) + 1, ivec2(0), last);
+    ivec2 b = ivec2(d.x, a.y), c = ivec2(a.x, d.y);
+    vec4 there = vec4(texelFetch(depths, a, 0).x, texelFetch(depths, b, 0).x, texelFetch(depths, c, 0).x,
+                      texelFetch(depths, d, 0).x);
+    vec2 slope = clamp(vec2(dFdx(depth) / dFdx(at.x), dFdy(depth) / dFdy(at.y)), -8.0 * size, 8.0 * size);
+    vec4 x = vec4(-f.x, 1.0 - f.x, -f.x, 1.0 - f.x), y = vec4(-f.yy, 1.0 - f.yy);
+    vec4 off = (there - depth - x * slope.x - y * slope.y) / (size + 0.5 * (abs(slope.x) + abs(slope.y)));
+    off *= off;
+    vec4 w = ((1.0 - abs(x)) * (1.0 - abs(y)) + 0.005) / (0.02 + off * off);
+    vec3 light = w.x * texelFetch(shaded, a, 0).rgb + w.y * texelFetch(shaded, b, 0).rgb +
+                 w.z * texelFetch(shaded, c, 0).rgb + w.w * texelFetch(shaded, d, 0).rgb;
+    light /= w.x + w.y + w.z + w.w;
+#ifdef DETAILED
+    vec2 then = 0.5 + 0.5 * before.xy / before.w;
+    float hidden = abs(texture(rest_depths, then).x - before.w) / size;
+    vec4 found = texture(details, then);
+    light += clamp(2.0 - hidden, 0.0, 1.0) * (2.0 * found.rgb - 256.0 / 255.0 - found.a * light);
+#endif
+    color = vec4(light, 1.0);
+}
+"""
