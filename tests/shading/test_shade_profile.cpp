@@ -259,7 +259,7 @@ TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
     const auto plain = Shading(materialOf(profile), in).execute();
     in.meanCurvature = true;
     PelMaterial material = materialOf(profile);
-    const auto expectGain = [&](const Profile& of, const auto& pathOf, double strength) {
+    const auto expectGain = [&](const Profile& of, double strength, const auto& pathOf) {
         material.profile = of.get();
         material.curvatureGain = float(strength);
         Shading shading(material, in);
@@ -274,16 +274,12 @@ TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
             }
         return without;
     };
-    EXPECT_EQ(expectGain(
-                  profile, [&](size_t c) { return path[c]; }, 1),
-              plain);
-    expectGain(
-        profile, [&](size_t c) { return path[c]; }, 0.5);
+    const auto ofBurley = [&](size_t c) { return path[c]; };
+    EXPECT_EQ(expectGain(profile, 1, ofBurley), plain);
+    expectGain(profile, 0.5, ofBurley);
     // Of Burley's distance d the path is 1.087 d. Sums of Gaussians say nothing of it.
-    expectGain(
-        Profile::burleyDistance(distance), [&](size_t c) { return 1.087 * distance[c]; }, 1);
-    expectGain(
-        Profile::skin(), [](size_t) { return 0.0; }, 1);
+    expectGain(Profile::burleyDistance(distance), 1, [&](size_t c) { return 1.087 * distance[c]; });
+    expectGain(Profile::skin(), 1, [](size_t) { return 0.0; });
 }
 
 TEST(ShadeProfile, WhatHasNoEffectIsSaid) {
