@@ -237,6 +237,14 @@ TEST(AreaLights, InsideASphereAndBehindARectangle) {
     EXPECT_GT(*std::ranges::max_element(before), 0.01f);
     for (float& v : l.halfWidth) v = -v;
     for (const float v : shade(f)) ASSERT_EQ(v, 0);
+    // In turn before and behind it, with normals against its axis.
+    const Vec3 axis = reference::normalized(cross(vectorOf(l.halfWidth), vectorOf(l.halfHeight)));
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        f.slots[PEL_SLOT_POSITION].set(i, vectorOf(l.position) + (i % 2 ? 20.0 : -20.0) * axis);
+        f.slots[PEL_SLOT_NORMAL_SHADING].set(i, -1 * axis);
+    }
+    const auto sides = shade(f);
+    for (size_t i = 0; i < f.pixels(); ++i) EXPECT_EQ(sides[3 * i] > 0, i % 2 == 1) << i;
     // Points in the rectangle and in its plane.
     for (size_t i = 0; i < f.pixels(); ++i)
         f.slots[PEL_SLOT_POSITION].set(i, vectorOf(l.position) + double(i) / 100 * vectorOf(l.halfWidth) +
