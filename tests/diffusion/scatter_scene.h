@@ -290,7 +290,8 @@ struct Frame {
     Shown shade(ShownImages& shown) const {
         shown.resize(picture.width, picture.height);
         shown.shader.set(options);
-        for (PelImageSlot slot : {PEL_SLOT_IRRADIANCE, PEL_SLOT_CURVATURE, PEL_SLOT_UV, PEL_SLOT_MATERIAL})
+        for (PelImageSlot slot : {PEL_SLOT_IRRADIANCE, PEL_SLOT_CURVATURE, PEL_SLOT_UV, PEL_SLOT_MATERIAL,
+                                  PEL_SLOT_SCATTER_WEIGHT})
             shown.shader.clear(slot);
         shown.set(PEL_SLOT_POSITION, picture.positions);
         if (!picture.ids.empty()) shown.set(PEL_SLOT_MATERIAL, picture.ids);

@@ -144,10 +144,6 @@ TEST(ScatterBadInput, RadiiFromAMillionthToAMillionPixels) {
         Frame same = f;  // 0: the profile's own
         f.material.diffusionRadius = 0, same.material.diffusionRadius = float(f.profile.info().radius);
         EXPECT_EQ(shade(f, way).light, shade(same, way).light) << way.name;
-        for (float bad : {-1.0f, 1e-8f, infinity, notANumber}) {
-            f.material.diffusionRadius = bad;
-            expectRefused("diffusionRadius", [&] { shade(f, way); });
-        }
     }
 }
 

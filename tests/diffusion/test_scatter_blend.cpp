@@ -16,10 +16,9 @@ Picture stripes(bool two = false) {
     return p;
 }
 
-void expectNear(const std::vector<float>& result, const std::function<double(size_t)>& expected,
-                double within, const std::string& where = "") {
-    for (size_t i = 0; i < result.size(); ++i)
-        ASSERT_NEAR(result[i], expected(i), within) << where << " " << i;
+void expectNear(const std::vector<float>& result, double within,
+                const std::function<double(size_t)>& expected) {
+    for (size_t i = 0; i < result.size(); ++i) ASSERT_NEAR(result[i], expected(i), within) << i;
 }
 
 }  // namespace
@@ -32,8 +31,7 @@ TEST(ScatterBlend, IsScatteringAloneTimesAlbedo) {
         if (method != byAuto) f.profile = Profile();  // skin's without one
         std::fill_n(f.material.albedo, 3, 0.5f);
         const std::vector<float>& whole = method == PEL_SCATTERING_NONE ? p.irradiance : alone;
-        expectNear(
-            f.shade().light, [&](size_t i) { return p.ids[i / 3] ? 0.5 * whole[i] : 0; }, 1e-6);
+        expectNear(f.shade().light, 1e-6, [&](size_t i) { return p.ids[i / 3] ? 0.5 * whole[i] : 0; });
     }
 }
 
@@ -43,15 +41,14 @@ TEST(ScatterBlend, AlbedoBeforeAndAfterAndWeights) {
         const std::vector<float> E = f.picture.irradiance, plain = f.shade().light;
         std::vector<float> albedo, &weights = f.images[PEL_SLOT_SCATTER_WEIGHT];
         for (size_t i = 0; i < f.picture.pixels(); ++i) weights.push_back(float(i % 5) / 4);
-        expectNear(
-            f.shade().light, [&](size_t i) { return E[i] + weights[i / 3] * (plain[i] - E[i]); }, 1e-6);
+        expectNear(f.shade().light, 1e-6,
+                   [&](size_t i) { return E[i] + weights[i / 3] * (plain[i] - E[i]); });
         f.images.erase(PEL_SLOT_SCATTER_WEIGHT);
         // One colour: however it is split, the same.
         std::fill_n(f.material.albedo, 3, 0.36f);
         for (float m : {0.0f, 0.5f, 1.0f}) {
             f.material.albedoBefore = m;
-            expectNear(
-                f.shade().light, [&](size_t i) { return 0.36 * plain[i]; }, 1e-3, std::to_string(m));
+            expectNear(f.shade().light, 1e-3, [&](size_t i) { return 0.36 * plain[i]; });
         }
         // All of it before: what scattering alone gives of irradiance times albedo.
         for (size_t i = 0; i < E.size(); ++i) albedo.push_back(0.25f + 0.5f * float(i / 30 % 2));
@@ -59,12 +56,10 @@ TEST(ScatterBlend, AlbedoBeforeAndAfterAndWeights) {
         for (size_t i = 0; i < E.size(); ++i) product.picture.irradiance[i] *= albedo[i];
         f.images[PEL_SLOT_ALBEDO] = albedo;
         const auto expected = product.shade().light;
-        expectNear(
-            f.shade().light, [&](size_t i) { return expected[i]; }, 1e-6, "before");
+        expectNear(f.shade().light, 1e-6, [&](size_t i) { return expected[i]; });
         // None of it: as ever.
         f.material.albedoBefore = 0;
-        expectNear(
-            f.shade().light, [&](size_t i) { return albedo[i] * plain[i]; }, 1e-6, "after");
+        expectNear(f.shade().light, 1e-6, [&](size_t i) { return albedo[i] * plain[i]; });
         // Black stays black but for what flows in before.
         std::fill_n(f.images[PEL_SLOT_ALBEDO].begin() + 3 * 96 * 20, 3 * 96 * 4, 0.0f);
         EXPECT_EQ(f.shade().light[3 * (96 * 21 + 80)], 0.0f);
@@ -85,8 +80,8 @@ TEST(ScatterBlend, ThinSheetsLetLightThrough) {
         PelLight& light = f.lamps[0].light;
         light.toLight[1] = 0.6f, light.toLight[2] = -0.8f;
         light.color[1] = 2;
-        expectNear(
-            f.shade().light, [&](size_t i) { return 0.8 * light.color[i % 3] * through[i % 3]; }, 1e-5);
+        expectNear(f.shade().light, 1e-5,
+                   [&](size_t i) { return 0.8 * light.color[i % 3] * through[i % 3]; });
         f.material.transmission = 0.5f;
         EXPECT_NEAR(f.shade().light[0], 0.4 * through[0], 1e-5);
         f.material.thinThickness = 0;
@@ -158,13 +153,11 @@ TEST(ScatterBlend, AloneAddsAndMultiplies) {
         extra.back.assign(values, 0.3f);
         const auto through = Profile::skin().transmission({double(c.thinThickness)});
         const auto result = run(adding, materials, extra).scattered;
-        expectNear(
-            result, [&](size_t i) { return 2 + 0.5 * (plain[i] + 0.3 * through[i % 3]); }, 5e-2);
+        expectNear(result, 5e-2, [&](size_t i) { return 2 + 0.5 * (plain[i] + 0.3 * through[i % 3]); });
         EXPECT_NEAR(result[3 * (96 * 24 + 90)], 2 + 0.5 * (1 + 0.3 * through[0]), 1e-3);
         // All of the albedo before is the same where it is one colour.
         c.albedoBefore = 1;
-        expectNear(
-            run(adding, materials, extra).scattered, [&](size_t i) { return result[i]; }, 1e-3);
+        expectNear(run(adding, materials, extra).scattered, 1e-3, [&](size_t i) { return result[i]; });
         extra.inPlace = true;
         EXPECT_THROW(run(adding, materials, extra), pellucid::Error);
     }

@@ -70,19 +70,6 @@ std::vector<float> scatter(Scatter& object, const Step& step, const PelScatterCo
         .scattered;
 }
 
-// How many values differ, and by how much.
-void expectSame(const std::vector<float>& now, const std::vector<float>& expected, const std::string& where) {
-    ASSERT_EQ(now.size(), expected.size()) << where;
-    size_t count = 0, first = 0;
-    float largest = 0;
-    for (size_t i = 0; i < now.size(); ++i) {
-        if (!std::memcmp(&now[i], &expected[i], sizeof(float))) continue;
-        if (!count++) first = i;
-        largest = std::max(largest, std::abs(now[i] - expected[i]));
-    }
-    EXPECT_EQ(count, 0u) << where << ": first at value " << first << ", by up to " << largest;
-}
-
 }  // namespace
 
 TEST(ScatterSequences, EachPictureEqualsThatOfANewObject) {
@@ -92,9 +79,8 @@ TEST(ScatterSequences, EachPictureEqualsThatOfANewObject) {
         for (const Step& step : steps()) {
             Scatter fresh(device());
             const std::vector<float> expected = scatter(fresh, step, controls);
-            expectSame(scatter(kept, step, controls), expected,
-                       "method " + std::to_string(int(method)) + ", " + std::to_string(taps) +
-                           " taps: " + step.name);
+            EXPECT_EQ(scatter(kept, step, controls), expected)
+                << "method " << int(method) << ", " << taps << " taps: " << step.name;
             EXPECT_NE(expected, step.picture.irradiance) << step.name;
         }
     }
@@ -132,8 +118,8 @@ TEST(ScatterSequences, EachFrameEqualsThatOfANewShader) {
                 const size_t texels = frame % 2 ? 64 : 256;
                 for (size_t i = 0; i < 3 * texels; ++i) f.texture.push_back(float((7 * i + frame) % 11) / 10);
             }
-            expectSame(f.shade(kept).light, f.shade().light,
-                       "frame " + std::to_string(frame) + ", method " + std::to_string(int(method)));
+            EXPECT_EQ(f.shade(kept).light, f.shade().light)
+                << "frame " << frame << ", method " << int(method);
             ++frame;
         }
 }
@@ -212,7 +198,7 @@ TEST(ScatterSequences, EachTextureEqualsThatOfANewObject) {
                 return result;
             };
             TextureScatter fresh(device(), desc);
-            expectSame(texture(kept), texture(fresh), std::to_string(width) + " wide: " + frame.name);
+            EXPECT_EQ(texture(kept), texture(fresh)) << width << " wide: " << frame.name;
         }
     }
 }

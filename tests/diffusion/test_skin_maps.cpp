@@ -85,6 +85,21 @@ TEST(SkinMaps, AnEvenRadiusIsASmallerProfile) {
     }
 }
 
+// Smaller factors count as a 64th.
+TEST(SkinMaps, TheRadiusHasALeastFactor) {
+    for (PelScattering method : {byAuto, byLight}) {
+        Frame f = ballFrame(method, sized(64u, 24u));
+        f.material.diffusionRadius = 40;
+        const auto lightBy = [&](double factor) {
+            f.images[PEL_SLOT_SCATTER_WEIGHT] = weightsOf(f.picture, [=](double, double) { return factor; });
+            return f.shade().light;
+        };
+        const std::vector<float> least = lightBy(1 / 64.0);
+        EXPECT_EQ(lightBy(1e-3), least) << int(method);
+        EXPECT_GT(difference(f.picture, lightBy(1 / 60.0), least).most, 1e-4) << int(method);
+    }
+}
+
 // Nothing that is left out makes more than the target error, whatever the radius of a pixel.
 TEST(SkinMaps, TheTargetErrorHolds) {
     Frame f = ballFrame(byAuto, sized(128u, 32u));
@@ -199,19 +214,8 @@ TEST(SkinMaps, BadInput) {
         for (float v : f.shade().light) ASSERT_TRUE(std::isfinite(v)) << int(method);
     }
     ShownImages shown(scatter_scene::device(), 32, 32);
-    const auto refused = [&](const char* word, const auto& change) {
-        try {
-            change();
-            shown.shader.commit();
-            ADD_FAILURE() << word;
-        } catch (const pellucid::Error& e) {
-            EXPECT_NE(std::string(e.what()).find("skin"), std::string::npos) << e.what();
-            EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << e.what();
-        }
-    };
-    refused("two components", [&] { shown.set(PEL_SLOT_SKIN, std::vector<float>(32 * 32)); });
+    expectRefused({"skin", "two components"}, [&] { shown.set(PEL_SLOT_SKIN, std::vector<float>(32 * 32)); });
     shown.set(PEL_SLOT_NORMAL_SHADING, std::vector<float>(3 * 32 * 32, 0.577f));
-    refused("16 x 16", [&] {
-        shown.shader.set(PEL_SLOT_SKIN, imageOf(shown.device, std::vector<float>(2 * 16 * 16), 16, 16));
-    });
+    shown.shader.set(PEL_SLOT_SKIN, imageOf(shown.device, std::vector<float>(2 * 16 * 16), 16, 16));
+    expectRefused({"skin", "16 x 16"}, [&] { shown.shader.commit(); });
 }

@@ -10,9 +10,7 @@ std::optional<Vec3> shorterStep(const ScatterPicture& p, int x, int y, int dx, i
     std::optional<Vec3> shortest;
     for (int side : {-1, 1}) {
         const int u = x + side * dx, v = y + side * dy;
-        if (u < 0 || v < 0 || u >= p.width || v >= p.height || !sound(p, p.at(u, v)) ||
-            p.ids[p.at(u, v)] != p.ids[p.at(x, y)])
-            continue;
+        if (!p.holds(u, v) || !sound(p, p.at(u, v)) || p.ids[p.at(u, v)] != p.ids[p.at(x, y)]) continue;
         const Vec3 step = side * (p.positions[p.at(u, v)] - p.positions[p.at(x, y)]);
         if (!shortest || length(step) < length(*shortest)) shortest = step;
     }

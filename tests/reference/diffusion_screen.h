@@ -18,6 +18,7 @@ struct ScatterPicture {
     std::optional<Vec3> camera;
     double directed = 0;  // with a camera: factor max0(1 + directed t) of section 12, t by n_x alone
     size_t at(int x, int y) const { return size_t(y) * width + x; }
+    bool holds(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
 };
 
 // The distance beyond which the profile's light is left out: where no channel has more than 0.4 % left.

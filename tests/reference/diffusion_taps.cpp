@@ -134,9 +134,8 @@ std::vector<Rgb> scatterOnDisk(const TapScene& s, const Profile& profile) {
                               dy = int(std::floor(wide * radii[i] * std::sin(angle) / own.pixel + 0.5));
                     const Rgb share = light.value(ends[i + 1]) - light.value(ends[i]);
                     const int u = x + dx, v = y + dy;
-                    const bool inside = u >= 0 && v >= 0 && u < picture.width && v < picture.height;
                     Rgb brings = share, e = picture.irradiance[here];
-                    if (inside && (dx || dy) && all[picture.at(u, v)].there) {
+                    if (picture.holds(u, v) && (dx || dy) && all[picture.at(u, v)].there) {
                         const size_t there = picture.at(u, v);
                         const Rgb flows = picture.ids[there] == picture.ids[here] ? Rgb{1, 1, 1} : s.border;
                         if (flows.x + flows.y + flows.z > 0) {
@@ -196,9 +195,6 @@ std::vector<Rgb> blendHistory(const TapScene& s, const Profile& profile, const s
         if (gathers(s, all, i))
             beyond[i] = gathered[i] - (1 - at(s.weights, i)) * picture.irradiance[i] -
                         at(s.weights, i) * lightWithin(s, profileLight, all[i], i);
-    const auto inside = [&](int x, int y) {
-        return x >= 0 && y >= 0 && x < picture.width && y < picture.height;
-    };
     std::vector<Rgb> result = gathered;
     std::vector<HistoryPixel> after(all.size());
     for (int y = 0; y < picture.height; ++y)
@@ -230,13 +226,14 @@ std::vector<Rgb> blendHistory(const TapScene& s, const Profile& profile, const s
                 std::optional<double> beside;
                 for (int dy = -s.rate; dy <= s.rate; dy += s.rate)
                     for (int dx = -s.rate; dx <= s.rate; dx += s.rate) {
-                        if (!inside(x + dx, y + dy)) continue;
+                        if (!picture.holds(x + dx, y + dy)) continue;
                         const size_t there = picture.at(x + dx, y + dy);
                         if (!sameSurface(s, all, here, there)) continue;
                         low = std::min(low, beyond[there][c]), high = std::max(high, beyond[there][c]);
                         const int u = x + dx + int(std::floor(motion[here].x + 0.5)),
                                   v = y + dy + int(std::floor(motion[here].y + 0.5));
-                        if (!inside(u, v) || history[picture.at(u, v)].id != picture.ids[here]) continue;
+                        if (!picture.holds(u, v) || history[picture.at(u, v)].id != picture.ids[here])
+                            continue;
                         const double change = beyond[there][c] - history[picture.at(u, v)].light[c];
                         sum += change, squares += change * change, ++count;
                         // All are read beside their places by as much as this one.
@@ -284,8 +281,7 @@ std::vector<Rgb> scatterSeparably(const TapScene& s, const Profile& profile) {
                 const auto add = [&](int k, double part, const Rgb& share, double middle) {
                     const int u = x + k * dx, v = y + k * dy;
                     Rgb brings = part * share, e = from[here];
-                    const bool inside = u >= 0 && v >= 0 && u < picture.width && v < picture.height;
-                    if (k && inside && all[picture.at(u, v)].there) {
+                    if (k && picture.holds(u, v) && all[picture.at(u, v)].there) {
                         const size_t there = picture.at(u, v);
                         const Rgb flows = picture.ids[there] == picture.ids[here] ? Rgb{1, 1, 1} : s.border;
                         const double stretch = length(all[there].p - own.p) / (std::abs(k) * own.pixel);

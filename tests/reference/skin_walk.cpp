@@ -1,5 +1,7 @@
 #include "reference/skin_walk.h"
 
+#include "reference/eye.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -7,19 +9,6 @@
 #include <random>
 
 namespace reference {
-namespace {
-
-// Unpolarised reflectance of a ray that meets the surface from inside.
-double fresnel(double cosine, double index) {
-    const double sine = index * std::sqrt(1 - cosine * cosine);
-    if (sine >= 1) return 1;
-    const double out = std::sqrt(1 - sine * sine);
-    const double s = (index * cosine - out) / (index * cosine + out),
-                 p = (index * out - cosine) / (index * out + cosine);
-    return (s * s + p * p) / 2;
-}
-
-}  // namespace
 
 SkinWalk walkSkin(const std::vector<WalkLayer>& layers, double index, int walks, uint64_t seed, double edge) {
     std::mt19937_64 bits(seed);
@@ -32,7 +21,7 @@ SkinWalk walkSkin(const std::vector<WalkLayer>& layers, double index, int walks,
         // Diffuse light: the square of the sine is uniform outside.
         const double sine = std::sqrt(random()) / index;
         double x = 0, y = 0, z = 0, dx = sine, dy = 0, dz = std::sqrt(1 - sine * sine);
-        double weight = 1 - fresnel(dz, index), left = 0;
+        double weight = 1 - fresnel(dz, index, 1), left = 0;
         size_t layer = 0;
         double optical = -std::log(random());
         while (weight > 0) {
@@ -63,7 +52,7 @@ SkinWalk walkSkin(const std::vector<WalkLayer>& layers, double index, int walks,
                 z = top[layer--];
             } else {
                 z = 0;
-                if (random() < fresnel(-dz, index)) {
+                if (random() < fresnel(-dz, index, 1)) {
                     dz = -dz;
                 } else {
                     left = weight;

@@ -25,19 +25,12 @@ inline Frame reliefFrame(uint32_t seed, uint32_t width, uint32_t height, float p
             const float fx = 0.11f + 0.03f * float(seed % 3), fy = 0.07f;
             const float z =
                 3 * std::sin(fx * px) * std::cos(fy * py) + (x > 0.6f * float(width) ? 30.0f : 0.0f);
-            const float p[3] = {px, py, z};
             const float dx = 3 * fx * std::cos(fx * px) * std::cos(fy * py),
                         dy = -3 * fy * std::sin(fx * px) * std::sin(fy * py);
-            float tilt[3], n[3], g = 1 / std::sqrt(1 + dx * dx + dy * dy);
-            random.unit(tilt);
-            const float geometric[3] = {-dx * g, -dy * g, g};
-            float sum = 0;
-            for (int c = 0; c < 3; ++c) n[c] = geometric[c] + 0.4f * tilt[c], sum += n[c] * n[c];
-            for (int c = 0; c < 3; ++c) {
-                f.slots[PEL_SLOT_POSITION].values[3 * i + c] = p[c];
-                f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values[3 * i + c] = geometric[c];
-                f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i + c] = n[c] / std::sqrt(sum);
-            }
+            const Vec3 geometric = reference::normalized(Vec3{-dx, -dy, 1});
+            f.slots[PEL_SLOT_POSITION].set(i, {px, py, z});
+            f.slots[PEL_SLOT_NORMAL_GEOMETRIC].set(i, geometric);
+            f.slots[PEL_SLOT_NORMAL_SHADING].set(i, reference::normalized(geometric + 0.4 * random.unit()));
             const bool hole = std::hypot(float(x) - 0.3f * float(width), float(y) - 0.5f * float(height)) <
                               0.1f * float(height);
             f.slots[PEL_SLOT_MATERIAL].values[i] = hole ? 0 : 3 * x + y < width ? 2 : 1;
@@ -71,8 +64,7 @@ inline double distance(reference::Vec3 a, reference::Vec3 b) {
 }
 
 inline reference::Vec3 shownNormal(const std::vector<float>& radiance, size_t i) {
-    return 2.0 * (reference::Vec3{radiance[3 * i], radiance[3 * i + 1], radiance[3 * i + 2]} -
-                  reference::Vec3{1, 1, 1});
+    return 2.0 * (vectorOf(&radiance[3 * i]) - Vec3{1, 1, 1});
 }
 
 // Whether all pixels are finite, and those farther than `reach` from bad ones, along x or y, are what they
@@ -89,6 +81,12 @@ inline bool farOnesAreSame(const Frame& f, const std::vector<float>& before, con
         }
     }
     return true;
+}
+
+// With wide shadows and taps between pixels.
+inline Frame interpolated(Frame f) {
+    f.options.everyPixel = 0;
+    return f;
 }
 
 inline reference::SurfacePixels surfaceOf(const Frame& f) {
@@ -135,7 +133,7 @@ inline MapLight mapLight(uint32_t seed, bool perspective, bool reversed, Vec3 to
     PelLight& l = out.light.params;
     l.shadowProjection = perspective ? PEL_SHADOW_PERSPECTIVE : PEL_SHADOW_PARALLEL;
     const auto row = [&](int r, Vec3 axis, double constant) {
-        for (int c = 0; c < 3; ++c) l.worldToShadow[4 * r + c] = float(axis[c]);
+        copyTo(l.worldToShadow + 4 * r, axis);
         l.worldToShadow[4 * r + 3] = float(constant - reference::dot(axis, v.origin));
     };
     const Vec3 none{0, 0, 0};
@@ -154,7 +152,7 @@ inline MapLight mapLight(uint32_t seed, bool perspective, bool reversed, Vec3 to
         row(3, none, 1);
         l.shadowDepthRange = float(v.decoding.range);
     }
-    for (int c = 0; c < 3; ++c) l.toLight[c] = float(-v.forward[c]);
+    copyTo(l.toLight, -1 * v.forward);
     l.shadowFilterTexels = 24;
     out.map.width = out.map.height = int(size);
     out.light.mapSize = size;
@@ -175,8 +173,7 @@ inline MapLight mapLight(uint32_t seed, bool perspective, bool reversed, Vec3 to
 // Makes the frame show the wide shadow: shading normals that face the light, white.
 inline void showWideShadow(Frame& f) {
     for (size_t i = 0; i < f.pixels(); ++i)
-        for (int c = 0; c < 3; ++c)
-            f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i + c] = f.lights[0].params.toLight[c];
+        f.slots[PEL_SLOT_NORMAL_SHADING].set(i, vectorOf(f.lights[0].params.toLight));
     f.ambient = pelAmbientDefaults();
 }
 

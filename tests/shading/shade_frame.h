@@ -42,12 +42,25 @@ inline Tables makeTables(const pellucid::Device& device, uint32_t width = 96, ui
     return t;
 }
 
+inline Vec3 vectorOf(const float* three) {
+    return {three[0], three[1], three[2]};
+}
+inline void copyTo(float* three, Vec3 v) {
+    for (int c = 0; c < 3; ++c) three[c] = float(v[c]);
+}
+
 // One image of a frame: rows of `components` floats, as many as the format has.
 struct Image {
     uint32_t components = 0;
     std::vector<float> values;
     double at(size_t pixel, uint32_t c = 0) const { return values[pixel * components + c]; }
     Vec3 vec(size_t pixel) const { return {at(pixel, 0), at(pixel, 1), at(pixel, 2)}; }
+    // Of three components.
+    void set(size_t pixel, Vec3 v) { copyTo(&values[3 * pixel], v); }
+    void push(Vec3 v) {
+        values.resize(values.size() + 3);
+        copyTo(values.data() + values.size() - 3, v);
+    }
 };
 
 // With explicit filter parameters, as an oracle takes them, and no wide shadow from a shadow map.
@@ -101,13 +114,11 @@ class Random {
         return least + (most - least) * float(engine_() >> 8) * 0x1p-24f;
     }
     uint32_t below(uint32_t count) { return uint32_t(engine_() % count); }
-    void unit(float (&v)[3]) {
-        float length2;
-        do {
-            for (float& x : v) x = uniform(-1, 1);
-            length2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-        } while (length2 > 1 || length2 < 0.01f);
-        for (float& x : v) x /= std::sqrt(length2);
+    Vec3 unit() {
+        for (;;) {
+            const Vec3 v{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+            if (const double length2 = dot(v, v); length2 <= 1 && length2 >= 0.01) return normalized(v);
+        }
     }
 
   private:
@@ -132,22 +143,10 @@ inline Frame randomFrame(uint32_t seed, uint32_t width, uint32_t height, uint32_
     for (int slot : {PEL_SLOT_NORMAL_GEOMETRIC, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_BLURRED})
         fill(s[slot], 3, [] { return 0.0f; });
     for (size_t i = 0; i < f.pixels(); ++i) {
-        float base[3], facing = 0;
-        random.unit(base);
-        for (int c = 0; c < 3; ++c)
-            facing += base[c] * (f.camera.position[c] - s[PEL_SLOT_POSITION].values[3 * i + c]);
-        if (facing < 0)
-            for (float& b : base) b = -b;
-        for (int slot : {PEL_SLOT_NORMAL_GEOMETRIC, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_BLURRED}) {
-            float tilt[3], sum = 0;
-            random.unit(tilt);
-            float* n = &s[slot].values[3 * i];
-            for (int c = 0; c < 3; ++c) {
-                n[c] = base[c] + 0.4f * tilt[c];
-                sum += n[c] * n[c];
-            }
-            for (int c = 0; c < 3; ++c) n[c] /= std::sqrt(sum);
-        }
+        Vec3 base = random.unit();
+        if (dot(base, vectorOf(f.camera.position) - s[PEL_SLOT_POSITION].vec(i)) < 0) base = -1 * base;
+        for (int slot : {PEL_SLOT_NORMAL_GEOMETRIC, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_BLURRED})
+            s[slot].set(i, normalized(base + 0.4 * random.unit()));
     }
     fill(s[PEL_SLOT_CURVATURE], 1, [&] { return random.uniform(-0.1f, 1.2f); });
     fill(s[PEL_SLOT_ALBEDO], 3, [&] { return random.uniform(); });
@@ -175,10 +174,9 @@ inline Frame randomFrame(uint32_t seed, uint32_t width, uint32_t height, uint32_
         Light light;
         PelLight& l = light.params;
         l.type = PelLightType(i % 3);
-        random.unit(l.toLight);
-        random.unit(l.spotDirection);
-        random.unit(l.position);
-        for (float& p : l.position) p *= 300;  // light of order 1 in the cube of positions
+        copyTo(l.toLight, random.unit());
+        copyTo(l.spotDirection, random.unit());
+        copyTo(l.position, 300 * random.unit());  // light of order 1 in the cube of positions
         const float power = l.type == PEL_LIGHT_DIRECTIONAL ? 1.0f : 20000.0f;
         for (float& c : l.color) c = power * random.uniform(0.2f, 1);
         if (l.type == PEL_LIGHT_POINT) l.range = 280;

@@ -144,9 +144,6 @@ inline std::vector<reference::Vec2> diskTaps(uint32_t count) {
     return taps;
 }
 
-inline Vec3 vectorOf(const float (&v)[3]) {
-    return {v[0], v[1], v[2]};
-}
 inline reference::Matrix4 matrixOf(const float (&m)[16]) {
     reference::Matrix4 out;
     for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = m[i];

@@ -79,7 +79,7 @@ inline Seen shadeForms(Frame f, std::vector<Light> lights, bool atlas = false) {
             strength[i] = 1 / reference::dot(away, away);
             toLight = reference::normalized(away);
         }
-        for (int c = 0; c < 3; ++c) f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i + c] = float(toLight[c]);
+        f.slots[PEL_SLOT_NORMAL_SHADING].set(i, toLight);
     }
     Seen seen;
     Buffer diffuse, thickness;
@@ -147,10 +147,10 @@ inline CubeLight cubeLight(uint32_t size, bool radial, Turn turn, Vec3 position,
     PelLight& l = out.light.params;
     l.type = PEL_LIGHT_POINT;
     std::fill_n(l.color, 3, 3600.0f);
-    for (int c = 0; c < 3; ++c) l.position[c] = float(position[c]);
+    copyTo(l.position, position);
     const Vec3 rows[3] = {turn.x, turn.y, turn.z};
     for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) l.worldToShadow[4 * r + c] = float(rows[r][c]);
+        copyTo(l.worldToShadow + 4 * r, rows[r]);
         l.worldToShadow[4 * r + 3] = float(-reference::dot(rows[r], position));
     }
     l.shadowProjection = radial ? PEL_SHADOW_CUBE_RADIAL : PEL_SHADOW_CUBE;

@@ -27,16 +27,13 @@ void makeArea(Frame& f, PelLightType type, uint32_t seed, float size) {
         for (float& c : l.color) c = 20000 * random.uniform(0.2f, 1);
         l.radius = float(distance) * size * random.uniform(0.3f, 1);
         // Along -position, and a little aside.
-        float tilt[3];
-        random.unit(tilt);
-        const Vec3 axis = reference::normalized(-1 / distance * to + 0.5 * vectorOf(tilt));
+        const Vec3 axis = reference::normalized(-1 / distance * to + 0.5 * random.unit());
         const Vec3 u = reference::normalized(
                        cross(axis, std::abs(axis.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0})),
                    v = cross(axis, u);
         const double width = distance * size * random.uniform(0.3f, 1),
                      height = distance * size * random.uniform(0.3f, 1);
-        for (int c = 0; c < 3; ++c)
-            l.halfWidth[c] = float(width * u[c]), l.halfHeight[c] = float(height * v[c]);
+        copyTo(l.halfWidth, width * u), copyTo(l.halfHeight, height * v);
     }
 }
 
@@ -84,13 +81,11 @@ void showHighlights(Frame& f, float aside) {
     Random random(7);
     for (size_t i = 0; i < f.pixels(); ++i) {
         const Vec3 p = f.slots[PEL_SLOT_POSITION].vec(i);
-        float tilt[3];
-        random.unit(tilt);
+        const Vec3 tilt = random.unit();
         const Vec3 half = reference::normalized(vectorOf(f.lights[0].params.position) - p) +
                           reference::normalized(vectorOf(f.camera.position) - p);
-        const Vec3 n = reference::normalized(reference::normalized(half) +
-                                             double(random.uniform(0, aside)) * vectorOf(tilt));
-        for (int c = 0; c < 3; ++c) f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i + size_t(c)] = float(n[c]);
+        f.slots[PEL_SLOT_NORMAL_SHADING].set(
+            i, reference::normalized(reference::normalized(half) + double(random.uniform(0, aside)) * tilt));
     }
 }
 
@@ -120,8 +115,8 @@ TEST(AreaLights, OfASmallSphereAtTheHorizon) {
         const Vec3 to = reference::normalized(vectorOf(f.lights[0].params.position) -
                                               f.slots[PEL_SLOT_POSITION].vec(i)),
                    aside = reference::normalized(cross(to, Vec3{0.36, 0.48, 0.8}));
-        const Vec3 n = reference::normalized(aside + size * (double(i % 41) / 20 - 1) * to);
-        for (int c = 0; c < 3; ++c) f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i + size_t(c)] = float(n[c]);
+        f.slots[PEL_SLOT_NORMAL_SHADING].set(
+            i, reference::normalized(aside + size * (double(i % 41) / 20 - 1) * to));
     }
     EXPECT_LE(errorsOf(f).rms, 10 * tolerance::areaSphere) << "normals are floats";
 }
@@ -193,10 +188,8 @@ TEST(AreaLights, LightFromAllRoundIsThatOfTheSolidAngle) {
             f.slots[PEL_SLOT_MATERIAL] = f.slots[PEL_SLOT_ALBEDO] = {};
             std::fill_n(f.materials[1].albedo, 3, 1.0f);
             PelLight& l = f.lights[0].params;
-            const float zero[3] = {0, 0, 0}, width[3] = {size, 0, 0}, height[3] = {0, -0.5f * size, 0};
-            std::copy_n(zero, 3, l.position);
-            l.position[2] = type == PEL_LIGHT_SPHERE ? 1.01f * std::max(size, 1.0f) : 1.0f;
-            std::copy_n(width, 3, l.halfWidth), std::copy_n(height, 3, l.halfHeight);
+            copyTo(l.position, {0, 0, type == PEL_LIGHT_SPHERE ? 1.01f * std::max(size, 1.0f) : 1.0f});
+            copyTo(l.halfWidth, {size, 0, 0}), copyTo(l.halfHeight, {0, -0.5f * size, 0});
             l.radius = size;
             std::fill_n(l.color, 3, 1.0f);
             std::fill_n(f.slots[PEL_SLOT_POSITION].values.begin(), 3 * f.pixels(), 0.0f);
@@ -205,7 +198,7 @@ TEST(AreaLights, LightFromAllRoundIsThatOfTheSolidAngle) {
                              across = std::sqrt(1 - z * z);
                 const Vec3 n{across * std::cos(turn), across * std::sin(turn), z};
                 for (int slot : {PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_BLURRED, PEL_SLOT_NORMAL_GEOMETRIC})
-                    for (int c = 0; c < 3; ++c) f.slots[slot].values[3 * i + size_t(c)] = float(n[c]);
+                    f.slots[slot].set(i, n);
             }
             double mean = 0;
             const auto result = shade(f);
@@ -244,11 +237,18 @@ TEST(AreaLights, InsideASphereAndBehindARectangle) {
     EXPECT_GT(*std::ranges::max_element(before), 0.01f);
     for (float& v : l.halfWidth) v = -v;
     for (const float v : shade(f)) ASSERT_EQ(v, 0);
+    // In turn before and behind it, with normals against its axis.
+    const Vec3 axis = reference::normalized(cross(vectorOf(l.halfWidth), vectorOf(l.halfHeight)));
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        f.slots[PEL_SLOT_POSITION].set(i, vectorOf(l.position) + (i % 2 ? 20.0 : -20.0) * axis);
+        f.slots[PEL_SLOT_NORMAL_SHADING].set(i, -1 * axis);
+    }
+    const auto sides = shade(f);
+    for (size_t i = 0; i < f.pixels(); ++i) EXPECT_EQ(sides[3 * i] > 0, i % 2 == 1) << i;
     // Points in the rectangle and in its plane.
     for (size_t i = 0; i < f.pixels(); ++i)
-        for (size_t c = 0; c < 3; ++c)
-            f.slots[PEL_SLOT_POSITION].values[3 * i + c] =
-                l.position[c] + float(i) / 100 * l.halfWidth[c] + float(i % 7) / 3 * l.halfHeight[c];
+        f.slots[PEL_SLOT_POSITION].set(i, vectorOf(l.position) + double(i) / 100 * vectorOf(l.halfWidth) +
+                                              double(i % 7) / 3 * vectorOf(l.halfHeight));
     for (const float v : shade(f)) ASSERT_TRUE(std::isfinite(v) && v >= 0);
 }
 

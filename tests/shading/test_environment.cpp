@@ -12,21 +12,16 @@ namespace {
 using Sky = std::function<Rgb(Vec3)>;
 constexpr double pi = reference::pi;
 
-Vec3 unit(Vec3 v) {
-    return v / std::sqrt(dot(v, v));
-}
-
 // Equirectangular, the upper edge +y, the middle column +z, +x left of it.
 std::vector<float> picture(const Sky& sky, uint32_t height) {
-    std::vector<float> values;
+    Image image{3, {}};
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < 2 * height; ++x) {
             const double down = pi * (y + 0.5) / height, turn = pi * (1 - (x + 0.5) / height);
-            const Rgb c =
-                sky({std::sin(down) * std::sin(turn), std::cos(down), std::sin(down) * std::cos(turn)});
-            for (int k = 0; k < 3; ++k) values.push_back(float(c[k]));
+            image.push(
+                sky({std::sin(down) * std::sin(turn), std::cos(down), std::sin(down) * std::cos(turn)}));
         }
-    return values;
+    return image.values;
 }
 
 // The integral of sky times `weight` over all directions.
@@ -46,19 +41,16 @@ Rgb integral(const Sky& sky, const std::function<double(Vec3)>& weight) {
 // Normals all round, each seen at another angle by a camera at the origin of the positions' coordinates.
 struct Pixels {
     std::vector<Vec3> normals, views;
-    std::vector<float> n, p;
+    Image n{3, {}}, p{3, {}};
     explicit Pixels(int count) {
         for (int i = 0; i < count; ++i) {
             const double z = 1 - 2 * (i + 0.5) / count, turn = 2.4 * i, across = std::sqrt(1 - z * z);
             normals.push_back({across * std::cos(turn), z, across * std::sin(turn)});
             const Vec3 side =
-                unit(cross(normals[size_t(i)], std::abs(z) < 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0}));
+                normalized(cross(normals.back(), std::abs(z) < 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0}));
             const double cosine = 0.25 + 0.75 * (i * 7 % count) / count;
-            views.push_back(cosine * normals[size_t(i)] + std::sqrt(1 - cosine * cosine) * side);
-            for (int c = 0; c < 3; ++c) {
-                n.push_back(float(normals[size_t(i)][c]));
-                p.push_back(float(-10 * views[size_t(i)][c]));
-            }
+            views.push_back(cosine * normals.back() + std::sqrt(1 - cosine * cosine) * side);
+            n.push(normals.back()), p.push(-10 * views.back());
         }
     }
 };
@@ -83,8 +75,8 @@ class Environment : public testing::Test {
     void SetUp() override {
         shader_.set(PEL_SLOT_RADIANCE, imageDesc(target_, PEL_FORMAT_RGB32F, count, 1))
             .set(PEL_SLOT_OUT_SPECULAR, imageDesc(specular_, PEL_FORMAT_RGB32F, count, 1))
-            .set(PEL_SLOT_NORMAL_SHADING, imageDesc(Buffer(device(), pixels_.n), PEL_FORMAT_RGB32F, count, 1))
-            .set(PEL_SLOT_POSITION, imageDesc(Buffer(device(), pixels_.p), PEL_FORMAT_RGB32F, count, 1))
+            .set(PEL_SLOT_NORMAL_SHADING, imageDesc(upload(device(), pixels_.n), PEL_FORMAT_RGB32F, count, 1))
+            .set(PEL_SLOT_POSITION, imageDesc(upload(device(), pixels_.p), PEL_FORMAT_RGB32F, count, 1))
             .setMaterial(1, material_);
     }
     void surround(const Sky& sky, const float* axes = nullptr, uint32_t height = 128) {
@@ -100,7 +92,7 @@ class Environment : public testing::Test {
 
 // Bright above, a warm side, a soft lamp.
 Rgb studio(Vec3 d) {
-    const double lamp = std::exp(8 * (dot(d, unit({1, 1, 1})) - 1));
+    const double lamp = std::exp(8 * (dot(d, normalized(Vec3{1, 1, 1})) - 1));
     return Rgb{0.3, 0.35, 0.4} + (0.25 * d.y) * Rgb{1, 1, 1} + lamp * Rgb{3, 2.5, 2};
 }
 
@@ -175,21 +167,17 @@ TEST_F(Environment, SixFacesAreTheSameLight) {
     shader_.commit().execute();
     const auto round = target_.readAll<float>();
     constexpr int n = 64;
-    std::vector<float> faces(size_t(3) * 6 * n * n), beside(faces.size());
+    Image faces{3, std::vector<float>(size_t(3) * 6 * n * n)}, beside = faces;
     for (int face = 0; face < 6; ++face)
         for (int y = 0; y < n; ++y)
             for (int x = 0; x < n; ++x) {
-                const double u = (2 * x + 1.0) / n - 1, v = (2 * y + 1.0) / n - 1;
-                const Vec3 ways[] = {{1, -v, -u}, {-1, -v, u}, {u, 1, v},
-                                     {u, -1, -v}, {u, -v, 1},  {-u, -v, -1}};
-                const Rgb c = studio(unit(ways[face]));
-                for (int k = 0; k < 3; ++k) {
-                    faces[size_t(3 * ((face * n + y) * n + x) + k)] = float(c[k]);
-                    beside[size_t(3 * ((y * 6 + face) * n + x) + k)] = float(c[k]);
-                }
+                const Rgb c = studio(
+                    normalized(reference::cubeDirection(face, (2 * x + 1.0) / n - 1, (2 * y + 1.0) / n - 1)));
+                faces.set(size_t((face * n + y) * n + x), c);
+                beside.set(size_t((y * 6 + face) * n + x), c);
             }
-    const auto seen = [&](const std::vector<float>& values, uint32_t width, uint32_t height) {
-        shader_.setEnvironment(imageDesc(Buffer(device(), values), PEL_FORMAT_RGB32F, width, height))
+    const auto seen = [&](const Image& image, uint32_t width, uint32_t height) {
+        shader_.setEnvironment(imageDesc(upload(device(), image), PEL_FORMAT_RGB32F, width, height))
             .commit()
             .execute();
         return target_.readAll<float>();

@@ -1,23 +1,18 @@
 // Curvature from a G-buffer: against the oracle, on surfaces whose curvature is known, and at edges of all
 // kinds.
+#include "reference/curvature.h"
+#include "shade_scene.h"
 #include "test.h"
 
-#include "reference/curvature.h"
-
-using namespace pellucid;
+using namespace shade_test;
 
 namespace {
 
 constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
 
-const Device& device() {
-    static const Device device("");
-    return device;
-}
-
 struct GBuffer {
     uint32_t width, height;
-    std::vector<float> normals, positions, depth;
+    std::vector<float> normals, positions, depth;  // depth, if there, in place of positions
     std::vector<uint8_t> ids;
     GBuffer(uint32_t w, uint32_t h)
         : width(w), height(h), normals(3 * w * h), positions(3 * w * h), ids(w * h, 1) {}
@@ -29,37 +24,21 @@ struct GBuffer {
 };
 
 struct Options {
-    bool ids = false, depth = false, strided = false;
+    bool ids = false, strided = false;
     PelScreenCurvatureParams params = pelScreenCurvatureParamsDefaults();
 };
 
-// Strided images: each component at every second float, and rows with padding.
-std::vector<float> apart(const std::vector<float>& packed, uint32_t width, uint32_t height) {
-    std::vector<float> wide(size_t(height) * (width * 5 + 3), notANumber);
-    for (uint32_t y = 0; y < height; ++y)
-        for (uint32_t x = 0; x < width; ++x)
-            std::copy_n(&packed[3 * (size_t(y) * width + x)], 3, &wide[y * (width * 5 + 3) + 5 * x]);
-    return wide;
-}
-
 std::vector<float> measure(const GBuffer& g, const Options& options = {}) {
-    const auto image = [&](const Buffer& buffer, PelFormat format) {
-        PelImageDesc desc = imageDesc(buffer, format, g.width, g.height);
-        if (options.strided && format == PEL_FORMAT_RGB32F)
-            desc.pixelStride = 20, desc.rowStride = g.width * 20 + 12;
-        return desc;
+    const auto image = [&](const std::vector<float>& values, uint32_t components) {
+        return imageOf(device(), values, components, g.width, g.height, options.strided);
     };
-    const auto three = [&](const std::vector<float>& v) {
-        return Buffer(device(), options.strided ? apart(v, g.width, g.height) : v);
-    };
-    const Buffer n = three(g.normals), p = three(g.positions), i(device(), g.ids);
-    const Buffer d(device(), g.depth.empty() ? std::vector<float>{0} : g.depth);
+    const bool depth = !g.depth.empty();
+    const auto places = depth ? image(g.depth, 1) : image(g.positions, 3),
+               ids = imageDesc(Buffer(device(), g.ids), PEL_FORMAT_R8_UINT, g.width, g.height);
     const Buffer out(device(), std::vector<float>(size_t(g.width) * g.height, -7.0f));
-    const PelImageDesc positions = image(p, PEL_FORMAT_RGB32F), ids = image(i, PEL_FORMAT_R8_UINT);
-    const PelImageDesc depth = options.depth ? image(d, PEL_FORMAT_R32F) : pelImageDescDefaults();
-    screenCurvature(device(), options.params, image(n, PEL_FORMAT_RGB32F),
-                    options.depth ? nullptr : &positions, options.depth ? &depth : nullptr,
-                    options.ids ? &ids : nullptr, image(out, PEL_FORMAT_R32F));
+    screenCurvature(device(), options.params, image(g.normals, 3), depth ? nullptr : &places,
+                    depth ? &places : nullptr, options.ids ? &ids : nullptr,
+                    imageDesc(out, PEL_FORMAT_R32F, g.width, g.height));
     return out.readAll<float>();
 }
 
@@ -165,7 +144,6 @@ TEST(ScreenCurvature, FromDepthAsFromPositions) {
             g.depth[g.at(x, y)] = float(far / (far - near) * (1 - near / t));
         }
     Options options;
-    options.depth = true;
     // clip = (x / (tan aspect), y / tan, far / (far - near) (t - near), t), t = -z.
     const double k = far / (far - near);
     const float inverse[16] = {

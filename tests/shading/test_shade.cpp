@@ -126,14 +126,11 @@ struct Shaded {
 Shaded shadeParts(const Frame& f) {
     Shader shader(device());
     setFrame(device(), shader, f, tables());
-    const size_t bytes = f.pixels() * 12;
-    const Buffer targets[4] = {Buffer(device(), bytes), Buffer(device(), bytes), Buffer(device(), bytes),
-                               Buffer(device(), bytes)};
+    std::vector<Buffer> targets;
+    for (const PelImageSlot slot :
+         {PEL_SLOT_RADIANCE, PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER, PEL_SLOT_OUT_SPECULAR})
+        targets.push_back(setTarget(device(), shader, f, slot));
     const Buffer thickness(device(), std::vector<float>(f.pixels(), -1));
-    const PelImageSlot slots[4] = {PEL_SLOT_RADIANCE, PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER,
-                                   PEL_SLOT_OUT_SPECULAR};
-    for (int i = 0; i < 4; ++i)
-        shader.set(slots[i], imageDesc(targets[i], PEL_FORMAT_RGB32F, f.width, f.height));
     shader.set(PEL_SLOT_OUT_THICKNESS, imageDesc(thickness, PEL_FORMAT_R32F, f.width, f.height));
     shader.commit().execute();
     return {targets[0].readAll<float>(), targets[1].readAll<float>(), targets[2].readAll<float>(),
@@ -344,12 +341,11 @@ TEST(ShadeLayouts, PositionsFromDepth) {
         std::copy_n(inverse, 16, f.camera.inverseViewProjection);
         Image depth{1, std::vector<float>(f.pixels())};
         for (size_t i = 0; i < f.pixels(); ++i) {
-            float* p = &f.slots[PEL_SLOT_POSITION].values[3 * i];
-            const double d = depth.values[i] = a + b / (500 - p[2]);
-            const double w = b / (d - a);
-            p[0] = float(((double(i % f.width) + 0.5) * 2 / f.width - 1) * w / 4);
-            p[1] = float((1 - (double(i / f.width) + 0.5) * 2 / f.height) * w / 4);
-            p[2] = float(500 - w);
+            const double d = depth.values[i] = float(a + b / (500 - f.slots[PEL_SLOT_POSITION].at(i, 2))),
+                         w = b / (d - a);
+            f.slots[PEL_SLOT_POSITION].set(
+                i, {((double(i % f.width) + 0.5) * 2 / f.width - 1) * w / 4,
+                    (1 - (double(i / f.width) + 0.5) * 2 / f.height) * w / 4, 500 - w});
         }
         Shader shader(device());
         setFrame(device(), shader, f, tables());

@@ -62,7 +62,7 @@ void expectFrames(const char* what, size_t floats, const Make& make, const Chang
 
 // What a call makes of a buffer behind the event, and the same at once. `makesBuffers`: also when repeated.
 template <class Call>
-void expectHeld(const char* what, size_t floats, const Call& call, bool makesBuffers = false) {
+void expectHeld(const char* what, size_t floats, bool makesBuffers, const Call& call) {
     const Buffer held = guarded(floats), plain = guarded(floats);
     expectReturns(own(), what, [&](const PelSubmit* submit) { call(held, submit); });
     call(plain, nullptr);
@@ -147,17 +147,18 @@ TEST(ShadeHeld, ScatteringAlone) {
     const Profile skin = Profile::skin();
     for (PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE}) {
         Scatter scatter(own());
-        expectHeld("pelScatterExecute", p.pixels() * 3, [&](const Buffer& out, const PelSubmit* submit) {
-            PelScatterControls controls = pelScatterControlsDefaults();
-            controls.scattering = method;
-            scatter.setMaterial(1, skin);
-            scatter.setControls(1, controls);
-            PelScatterParams params = p.params;
-            for (const float targetError : {0.05f, 0.001f}) {
-                params.targetError = targetError, params.frameIndex = targetError < 0.01f;
-                scatter.execute(params, rgb(e), rgb(x), nullptr, id, rgb(out), submit);
-            }
-        });
+        expectHeld("pelScatterExecute", p.pixels() * 3, false,
+                   [&](const Buffer& out, const PelSubmit* submit) {
+                       PelScatterControls controls = pelScatterControlsDefaults();
+                       controls.scattering = method;
+                       scatter.setMaterial(1, skin);
+                       scatter.setControls(1, controls);
+                       PelScatterParams params = p.params;
+                       for (const float targetError : {0.05f, 0.001f}) {
+                           params.targetError = targetError, params.frameIndex = targetError < 0.01f;
+                           scatter.execute(params, rgb(e), rgb(x), nullptr, id, rgb(out), submit);
+                       }
+                   });
     }
 }
 
@@ -169,13 +170,10 @@ TEST(ShadeHeld, OtherSubmissions) {
     };
     const auto normals = image(PEL_SLOT_NORMAL_GEOMETRIC, PEL_FORMAT_RGB32F),
                positions = image(PEL_SLOT_POSITION, PEL_FORMAT_RGB32F);
-    expectHeld(
-        "pelScreenCurvature", f.pixels(),
-        [&](const Buffer& out, const PelSubmit* submit) {
-            screenCurvature(own(), pelScreenCurvatureParamsDefaults(), normals, positions, nullptr, nullptr,
-                            imageDesc(out, PEL_FORMAT_R32F, f.width, f.height), submit);
-        },
-        true);
+    expectHeld("pelScreenCurvature", f.pixels(), true, [&](const Buffer& out, const PelSubmit* submit) {
+        screenCurvature(own(), pelScreenCurvatureParamsDefaults(), normals, positions, nullptr, nullptr,
+                        imageDesc(out, PEL_FORMAT_R32F, f.width, f.height), submit);
+    });
 
     // A square of two triangles, which is the whole texture.
     const std::vector<float> corners{0, 0, 0, 4, 0, 0, 4, 4, 0, 0, 4, 0}, uvs{0, 0, 1, 0, 1, 1, 0, 1},
@@ -186,13 +184,10 @@ TEST(ShadeHeld, OtherSubmissions) {
     integral.numIndices = 6, integral.indices = triangles.data();
     integral.irradiance = light.data(), integral.irradianceAt = PEL_IRRADIANCE_VERTEX;
     const Buffer at(own(), points);
-    expectHeld(
-        "pelSurfaceIntegral", 6,
-        [&](const Buffer& out, const PelSubmit* submit) {
-            integral.points = vertexView(at, 2), integral.result = vertexView(out, 2);
-            surfaceIntegral(own(), integral, submit);
-        },
-        true);
+    expectHeld("pelSurfaceIntegral", 6, true, [&](const Buffer& out, const PelSubmit* submit) {
+        integral.points = vertexView(at, 2), integral.result = vertexView(out, 2);
+        surfaceIntegral(own(), integral, submit);
+    });
 
     PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
     desc.width = 31, desc.height = 29;
@@ -201,17 +196,14 @@ TEST(ShadeHeld, OtherSubmissions) {
     const Buffer vertices(own(), corners), values(own(), light), drawn = guarded(31 * 29 * 3);
     const PelImageDesc from = imageDesc(drawn, PEL_FORMAT_RGB32F, 31, 29);
     TextureScatter texture(own(), desc);
-    expectHeld(
-        "texture scattering", 31 * 29 * 3,
-        [&](const Buffer& out, const PelSubmit* submit) {
-            for (int i = 0; i < 2; ++i) {
-                texture.setPositions(vertexView(vertices, 4), submit);
-                texture.draw(vertexView(values, 4), false, from, submit);
-                texture.execute(pelTextureScatterParamsDefaults(), from, nullptr,
-                                imageDesc(out, PEL_FORMAT_RGB32F, 31, 29), submit);
-            }
-        },
-        true);
+    expectHeld("texture scattering", 31 * 29 * 3, true, [&](const Buffer& out, const PelSubmit* submit) {
+        for (int i = 0; i < 2; ++i) {
+            texture.setPositions(vertexView(vertices, 4), submit);
+            texture.draw(vertexView(values, 4), false, from, submit);
+            texture.execute(pelTextureScatterParamsDefaults(), from, nullptr,
+                            imageDesc(out, PEL_FORMAT_RGB32F, 31, 29), submit);
+        }
+    });
     checked(drawn, 31 * 29 * 3, "texture drawing");
 }
 

@@ -1,5 +1,6 @@
 // What must change no bit of a frame: skipping, lists of tiles, bands of rows within a budget of scratch
 // memory, a second run, and the frames that the shader made before; and what interpolation may change.
+#include "eye/eye_frame.h"
 #include "scattering_frame.h"
 #include "shader_ready.h"
 #include "shadow_forms.h"
@@ -254,6 +255,22 @@ TEST(ShadeSequences, OneChangeIsSeenAndForgotten) {
     }
 }
 
+// Irises that have not changed are made again where another eye moves all to larger memory.
+TEST(ShadeSequences, AnotherEyeLeavesTheFirstAsItWas) {
+    eye_test::EyeFrame frame(96, 64, 0.5f, 48, 32);
+    const Buffer texture(frame.device, std::vector<float>(3 * 64 * 64, 0.5f));
+    const auto first = [](Shader& shader) { shader.setEye(2, pelEyeDefaults()); };
+    const auto second = [&](Shader& shader) {
+        shader.setMaterial(3, pelMaterialDefaults()).setEye(3, pelEyeDefaults());
+        shader.setIrisTexture(3, imageDesc(texture, PEL_FORMAT_RGB32F, 64, 64));
+    };
+    Shader kept(frame.device);
+    frame.prepare(kept), first(kept);
+    frame.execute(kept);
+    second(kept);
+    EXPECT_EQ(frame.execute(kept), frame.shade([&](Shader& shader) { first(shader), second(shader); }));
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, ShadeInvariants, testing::ValuesIn(kinds),
                          [](const auto& info) { return info.param.name; });
 
@@ -317,50 +334,33 @@ Frame passesFrame(uint32_t seed, uint32_t width, uint32_t height) {
     f.options.blurNormals = 1;
     f.curvatureLut = f.shadowLut = true;
     f.slots[PEL_SLOT_CURVATURE] = f.slots[PEL_SLOT_MATERIAL];
-    for (int c = 0; c < 3; ++c) f.ambient.constant[c] = 0.2f;
+    std::fill_n(f.ambient.constant, 3, 0.2f);
     return f;
-}
-
-struct Result {
-    std::vector<float> radiance;
-    PelShaderStats stats;
-};
-
-Result run(const Frame& f, uint64_t budget) {
-    Shader shader(device());
-    Frame limited = f;
-    limited.options.scratchBudget = budget;
-    setFrame(device(), shader, limited, tables());
-    const auto target = setTarget(device(), shader, f);
-    shader.commit().execute();
-    Result result{target.readAll<float>(), shader.stats()};
-    shader.execute();  // what the bands left behind does not matter
-    EXPECT_EQ(target.readAll<float>(), result.radiance);
-    return result;
-}
-
-void expectSame(const Result& bands, const Result& whole) {
-    EXPECT_EQ(bands.radiance, whole.radiance);
-    EXPECT_EQ(bands.stats.tilesShaded, whole.stats.tilesShaded);
-    EXPECT_EQ(bands.stats.pixelsShaded, whole.stats.pixelsShaded);
-    EXPECT_EQ(bands.stats.pixelsShadowLut, whole.stats.pixelsShadowLut);
-    EXPECT_EQ(bands.stats.pixelsWideShadow, whole.stats.pixelsWideShadow);
-    EXPECT_EQ(bands.stats.tilesTotal, whole.stats.tilesTotal);
 }
 
 // The blur reads up to 384 rows to each side: the frame is taller than that, and seen from far enough for
 // wide steps.
 TEST(ShadeBands, BlurredNormalsWithTheirHalo) {
-    Frame f = passesFrame(2, 70, 1000);
-    for (float& p : f.slots[PEL_SLOT_POSITION].values) p *= 0.02f;  // a close-up: steps of many pixels
-    const Result whole = run(f, 0);
-    EXPECT_TRUE(whole.stats.features & PEL_FEATURE_BLUR_NORMALS);
+    Scene s{passesFrame(2, 70, 1000), BLUR | FILTER, {}, {}, {}, {}};
+    for (float& p : s.frame.slots[PEL_SLOT_POSITION].values) p *= 0.02f;  // a close-up: steps of many pixels
+    s.target.resize(3 * s.frame.pixels());
+    PelShaderOptions options = s.frame.options;
+    PelShaderStats whole = pelShaderStatsDefaults(), some = whole;
+    const Bytes right = run(s, options, &whole);
+    EXPECT_TRUE(whole.features & PEL_FEATURE_BLUR_NORMALS);
     const uint64_t rowBytes = 70 * (40 + 8),
                    guards = 2 * 400 * 40;  // of PEL_PLANE_GUARD values round each plane
     for (const auto& [rows, bands] : {std::pair{770u, 500u}, {786u, 56u}, {968u, 5u}}) {
-        const Result some = run(f, rows * rowBytes + guards);
-        EXPECT_EQ(some.stats.bands, bands) << rows;
-        expectSame(some, whole);
+        options.scratchBudget = rows * rowBytes + guards;
+        Shader shader(device());
+        EXPECT_EQ(run(s, options, &some, shader), right) << rows;
+        EXPECT_EQ(some.bands, bands) << rows;
+        EXPECT_EQ(some.tilesShaded, whole.tilesShaded);
+        EXPECT_EQ(some.pixelsShaded, whole.pixelsShaded);
+        EXPECT_EQ(some.pixelsShadowLut, whole.pixelsShadowLut);
+        EXPECT_EQ(some.pixelsWideShadow, whole.pixelsWideShadow);
+        EXPECT_EQ(some.tilesTotal, whole.tilesTotal);
+        EXPECT_EQ(run(s, options, &some, shader), right) << "what the bands left behind does not matter";
     }
 }
 
@@ -385,11 +385,6 @@ TEST(ShadeBands, ABudgetThatIsTooSmallSaysWhatWouldDo) {
 }
 
 // --- wide shadows at every second pixel, with interpolation between them ---
-
-Frame interpolated(Frame f) {
-    f.options.everyPixel = 0;
-    return f;
-}
 
 struct Difference {
     double rms = 0, share = 0;  // share of pixels more than a hundredth off

@@ -109,10 +109,9 @@ Mapped mappedFrame(uint32_t seed, uint32_t size) {
     for (size_t i = 0; i < f.pixels(); ++i) {
         const Vec3 n = f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i),
                    t = reference::normalized(Vec3{1, 0, 0} - n.x * n);
-        for (float v : {float(t.x), float(t.y), float(t.z), i % 3 ? 1.0f : -1.0f})
-            f.slots[PEL_SLOT_TANGENT].values.push_back(v);
-        for (float v : {random.uniform(-1.5f, 2.5f), random.uniform(-1.5f, 2.5f)})
-            f.slots[PEL_SLOT_UV].values.push_back(v);
+        f.slots[PEL_SLOT_TANGENT].push(t);
+        f.slots[PEL_SLOT_TANGENT].values.push_back(i % 3 ? 1.0f : -1.0f);
+        for (int c = 0; c < 2; ++c) f.slots[PEL_SLOT_UV].values.push_back(random.uniform(-1.5f, 2.5f));
         const float footprint = std::exp2(random.uniform(-12, -2));
         for (int c = 0; c < 4; ++c)
             f.slots[PEL_SLOT_UV_GRADIENT].values.push_back(footprint * random.uniform(-1, 1));
@@ -120,11 +119,9 @@ Mapped mappedFrame(uint32_t seed, uint32_t size) {
     for (uint32_t s = size; s > 0; s /= 2) {
         reference::NormalLevel level{int(s), int(s), {}};
         for (uint32_t i = 0; i < s * s; ++i) {
-            float v[3];
-            random.unit(v);
-            v[2] = std::fabs(v[2]) + 0.3f;
-            level.texels.push_back({v[0], v[1], v[2]});
-            m.texels.insert(m.texels.end(), v, v + 3);
+            const Vec3 v = random.unit();
+            for (double c : {v.x, v.y, std::abs(v.z) + 0.3}) m.texels.push_back(float(c));
+            level.texels.push_back(vectorOf(m.texels.data() + m.texels.size() - 3));
         }
         m.levels.push_back(std::move(level));
     }
@@ -236,7 +233,7 @@ TEST(NormalMap, ATexelOfNanStaysWithThePixelsThatReadIt) {
     m.texels[3 * (16 * 5 + 9)] = m.texels[3 * (16 * 16 + 8 * 3 + 2) + 1] = NAN;  // of the two finest levels
     for (size_t k = 0, at = 0; k < 2; at += 3 * m.levels[k].texels.size(), ++k)
         for (size_t i = 0; i < m.levels[k].texels.size(); ++i)
-            for (size_t c = 0; c < 3; ++c) m.levels[k].texels[i][int(c)] = m.texels[at + 3 * i + c];
+            m.levels[k].texels[i] = vectorOf(&m.texels[at + 3 * i]);
     const auto after = shadeMapped(m, {1, 2});
     size_t invalid = 0;
     for (size_t i = 0; i < m.frame.pixels(); ++i) {
@@ -299,7 +296,7 @@ Frame ambientFrame(const std::vector<Vec3>& normals) {
     f.height = 1;
     Image& n = f.slots[PEL_SLOT_NORMAL_SHADING];
     n.components = 3;
-    for (const Vec3& v : normals) n.values.insert(n.values.end(), {float(v.x), float(v.y), float(v.z)});
+    for (const Vec3& v : normals) n.push(v);
     f.materials[1] = fixture::faceworksMaterial();
     std::fill_n(f.materials[1].albedo, 3, 1.0f);
     return f;
@@ -309,7 +306,7 @@ std::vector<Vec3> randomNormals(uint32_t seed, size_t count) {
     Random random(seed);
     std::vector<Vec3> normals;
     if (count > 1000) count = sized<size_t>(count, 600);
-    for (float v[3]; normals.size() < count;) random.unit(v), normals.push_back({v[0], v[1], v[2]});
+    while (normals.size() < count) normals.push_back(random.unit());
     return normals;
 }
 

@@ -40,6 +40,13 @@ struct Inputs {
     PelShaderOptions options = pelShaderOptionsDefaults();
 };
 
+// Over `extent` a side about the origin.
+struct SquareMap {
+    uint32_t side;
+    float extent;
+    std::vector<float> depth;
+};
+
 struct Shading : scatter_scene::ShownImages {
     explicit Shading(const PelMaterial& material, const Inputs& in = {})
         : ShownImages(Device(""), ::width, ::height) {
@@ -55,18 +62,23 @@ struct Shading : scatter_scene::ShownImages {
         PelLight light = pelLightDefaults();
         std::copy(scene.toLight, scene.toLight + 3, light.toLight);
         shader.set(std::vector<PelLight>{light});
-        if (in.shadow) ShownImages::setMap(PEL_LIGHT_WIDE_SHADOW, scene.shadow, width, height);
+        if (in.shadow) setMap(PEL_LIGHT_WIDE_SHADOW, scene.shadow, width, height);
         shader.setMaterial(1, material).commit();
     }
-    // A square map over `extent` a side about the origin, of a light that looks down.
-    void setMap(const std::vector<float>& depth, uint32_t side, float extent) {
+    // Of a light that looks down; the finest first.
+    void setMaps(const std::vector<SquareMap>& maps) {
         PelLight light = pelLightDefaults();
-        light.worldToShadow[0] = 1 / extent;
-        light.worldToShadow[5] = light.worldToShadow[10] = -1 / extent;
-        light.worldToShadow[3] = light.worldToShadow[7] = light.worldToShadow[11] = 0.5f;
-        light.shadowDepthRange = extent;
+        light.shadowCascades = maps.size() > 1 ? uint32_t(maps.size()) : 0;
+        for (size_t k = 0; k < maps.size(); ++k) {
+            const float extent = maps[k].extent, per = 1 / extent;
+            const float matrix[16] = {per, 0, 0, 0.5f, 0, -per, 0, 0.5f, 0, 0, -per, 0.5f, 0, 0, 0, 1};
+            std::copy_n(matrix, 16, k ? light.cascadeToShadow[k - 1] : light.worldToShadow);
+            (k ? light.cascadeDepthRange[k - 1] : light.shadowDepthRange) = extent;
+        }
         shader.set(std::vector<PelLight>{light});
-        ShownImages::setMap(PEL_LIGHT_SHADOW_MAP, depth, side, side);
+        for (size_t k = 0; k < maps.size(); ++k)
+            setMap(PelLightSlot(k ? PEL_LIGHT_CASCADE_1 + int(k) - 1 : int(PEL_LIGHT_SHADOW_MAP)),
+                   maps[k].depth, maps[k].side, maps[k].side);
         shader.commit();
     }
     Scene scene;
@@ -80,7 +92,17 @@ PelMaterial materialOf(const Profile& profile) {
     return m;
 }
 
-// The oracle's D and transmission of the profile at a pixel of the scene.
+// Section 11: what a slab of thickness s lets through, of Burley's profile of length d.
+double throughSlab(double s, double d) {
+    return 0.25 * std::exp(-s / d) + 0.75 * std::exp(-s / (3 * d));
+}
+void expectSlab(const std::vector<float>& radiance, uint32_t i, double s) {
+    for (size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(radiance[3 * i + c], throughSlab(s, distance[c]), tolerance::profileLookUp)
+            << "pixel " << i << " s " << s;
+}
+
+// The oracle's D of the profile at a pixel of the scene.
 reference::ProfilePtr oracleProfile() {
     // burley from mean free paths of s(A) times d: albedo 1 gives s = 1.9 - 1 + 3.5 * 0.04
     const double s = 0.9 + 3.5 * 0.04;
@@ -92,8 +114,7 @@ reference::ProfilePtr oracleProfile() {
 TEST(ShadeProfile, TheProfileAloneGivesItsTablesAndWidths) {
     const Profile profile = Profile::burleyDistance(distance);
     const PelProfileInfo info = profile.info();
-    Inputs in;
-    in.thickness = false;
+    Inputs in{.thickness = false};
     Shading shading(materialOf(profile), in);
     const auto radiance = shading.execute();
     const auto truth = oracleProfile();
@@ -154,7 +175,7 @@ TEST(ShadeProfile, TransmissionIsTheSlabsAndNeverAdded) {
         for (size_t c = 0; c < 3; ++c) {
             const double s = shading.scene.thickness[i], d = distance[c],
                          back = std::max(0.0f, -shading.scene.normals[3 * i + 2]);
-            const double slab = back * (0.25 * std::exp(-s / d) + 0.75 * std::exp(-s / (3 * d)));
+            const double slab = back * throughSlab(s, d);
             EXPECT_NEAR(radiance[3 * i + c], std::max(double(without[3 * i + c]), slab),
                         tolerance::profileLookUp)
                 << "pixel " << i << " channel " << c << " thickness " << s;
@@ -198,8 +219,7 @@ TEST(ShadeProfile, TransmissionOfEveryKindIsWhatLiesBeyond) {
 // end.
 TEST(ShadeProfile, LitSkinLosesNothingToTheShadow) {
     const Profile profile = Profile::burleyDistance(distance);
-    Inputs in;
-    in.thickness = false;
+    Inputs in{.thickness = false};
     const auto lit = Shading(materialOf(profile), in).execute();
     in.shadow = true;
     Shading shading(materialOf(profile), in);
@@ -235,12 +255,11 @@ TEST(ShadeProfile, UnitsOfTheSceneDoNotMatter) {
 TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
     const float path[3] = {1, 0.5f, 0.25f}, albedo[3] = {0.8f, 0.8f, 0.8f};
     const Profile profile = Profile::burley(path, albedo);
-    Inputs in;
-    in.thickness = false;
+    Inputs in{.thickness = false};
     const auto plain = Shading(materialOf(profile), in).execute();
     in.meanCurvature = true;
     PelMaterial material = materialOf(profile);
-    const auto expectGain = [&](const Profile& of, const auto& pathOf, double strength) {
+    const auto expectGain = [&](const Profile& of, double strength, const auto& pathOf) {
         material.profile = of.get();
         material.curvatureGain = float(strength);
         Shading shading(material, in);
@@ -255,22 +274,17 @@ TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
             }
         return without;
     };
-    EXPECT_EQ(expectGain(
-                  profile, [&](size_t c) { return path[c]; }, 1),
-              plain);
-    expectGain(
-        profile, [&](size_t c) { return path[c]; }, 0.5);
+    const auto ofBurley = [&](size_t c) { return path[c]; };
+    EXPECT_EQ(expectGain(profile, 1, ofBurley), plain);
+    expectGain(profile, 0.5, ofBurley);
     // Of Burley's distance d the path is 1.087 d. Sums of Gaussians say nothing of it.
-    expectGain(
-        Profile::burleyDistance(distance), [&](size_t c) { return 1.087 * distance[c]; }, 1);
-    expectGain(
-        Profile::skin(), [](size_t) { return 0.0; }, 1);
+    expectGain(Profile::burleyDistance(distance), 1, [&](size_t c) { return 1.087 * distance[c]; });
+    expectGain(Profile::skin(), 1, [](size_t) { return 0.0; });
 }
 
 TEST(ShadeProfile, WhatHasNoEffectIsSaid) {
     PelMaterial m = pelMaterialDefaults();
-    Inputs in;
-    in.thickness = false;
+    Inputs in{.thickness = false};
     EXPECT_EQ(Shading(m, in).shader.warnings(), "");
     m.deepScatterColor[0] = 1;
     EXPECT_NE(Shading(m, in).shader.warnings().find("deepScatterColor without effect"), std::string::npos);
@@ -283,8 +297,7 @@ TEST(ShadeProfile, AutoKeepsToTheScratchBudget) {
     const Profile profile = Profile::named("skin-burley");
     PelMaterial material = materialOf(profile);
     material.scattering = PEL_SCATTERING_AUTO;
-    Inputs in;
-    in.thickness = false;
+    Inputs in{.thickness = false};
     Shading shading(material, in);
     shading.set(PEL_SLOT_POSITION, shading.scene.position);
     const auto said = [&](uint64_t budget) {
@@ -339,25 +352,25 @@ TEST(ShadeProfile, MapsThatDoNotFitTheProfileAreSaid) {
         in.options.millimetresPerUnit = c.unit;
         Shading shading(materialOf(c.profile), in);
         shading.set(PEL_SLOT_POSITION, shading.scene.position);
-        shading.setMap(std::vector<float>(c.side * c.side, 0.5f), c.side, c.extent);
+        shading.setMaps({{c.side, c.extent, std::vector<float>(c.side * c.side, 0.5f)}});
         EXPECT_EQ(shading.shader.warnings().find(c.word) != std::string::npos, c.said)
             << c.extent << ' ' << c.unit << ": " << shading.shader.warnings();
     }
 }
 
 // The thickness is the greatest of eight taps within two texels: over a map of random heights, each tap is
-// the greatest somewhere.
+// the greatest somewhere. Of cascades it is that of the finest map that holds the taps.
 TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
     const Profile profile = Profile::burleyDistance(distance);
-    Inputs in;
-    in.thickness = false;
+    Inputs in{.thickness = false};
     Shading shading(materialOf(profile), in);
-    constexpr uint32_t side = 32;
-    constexpr float extent = 64;  // mm, 2 a texel; the light looks down from z = 32
     std::mt19937 random(5);
     std::uniform_real_distribution<float> even(-1, 1);
-    std::vector<float> depth(side * side), position, normals;
-    for (float& d : depth) d = 0.5f - (1.5f + 2.5f * even(random)) / extent;  // z = -1 to 4
+    std::vector<float> position, normals;
+    std::vector<SquareMap> maps{{16, 32, {}}, {32, 64, {}}};  // 2 mm a texel
+    for (SquareMap& map : maps)
+        for (uint32_t i = 0; i < map.side * map.side; ++i)  // z = -1 to 4
+            map.depth.push_back(0.5f - (1.5f + 2.5f * even(random)) / map.extent);
     for (uint32_t i = 0; i < width * height; ++i) {
         position.insert(position.end(), {28 * even(random), 28 * even(random), -1});
         normals.insert(normals.end(), {0, 0, -1});
@@ -365,21 +378,24 @@ TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
     shading.set(PEL_SLOT_POSITION, position);
     shading.set(PEL_SLOT_NORMAL_SHADING, normals);
     shading.set(PEL_SLOT_CURVATURE, std::vector<float>(width * height, 0.0f));  // the table's dark side is 0
-    shading.setMap(depth, side, extent);
-    const auto radiance = shading.execute();
-    for (uint32_t i = 0; i < width * height; ++i) {
-        const double x = (position[3 * i] / extent + 0.5) * side - 0.5,
-                     y = (0.5 - position[3 * i + 1] / extent) * side - 0.5;
-        double s = 0;
-        for (const reference::Vec2& tap : shade_test::diskTaps(8)) {
-            const double nearest = reference::bilinearAt(
-                x + 2 * tap.x, y + 2 * tap.y,
-                [&](int column, int row) { return double(depth[size_t(row) * side + size_t(column)]); });
-            s = std::max(s, (0.5 - nearest) * extent + 1);
-        }
-        for (size_t c = 0; c < 3; ++c) {
-            const double slab = 0.25 * std::exp(-s / distance[c]) + 0.75 * std::exp(-s / (3 * distance[c]));
-            EXPECT_NEAR(radiance[3 * i + c], slab, tolerance::profileLookUp) << "pixel " << i << " s " << s;
+    for (const bool cascades : {true, false}) {
+        if (!cascades) maps.erase(maps.begin());
+        shading.setMaps(maps);
+        const auto radiance = shading.execute();
+        for (uint32_t i = 0; i < width * height; ++i) {
+            const float aside = std::max(std::abs(position[3 * i]), std::abs(position[3 * i + 1]));
+            const SquareMap& map = aside < 12 ? maps.front() : maps.back();
+            const double x = (position[3 * i] / map.extent + 0.5) * map.side - 0.5,
+                         y = (0.5 - position[3 * i + 1] / map.extent) * map.side - 0.5;
+            double s = 0;
+            for (const reference::Vec2& tap : shade_test::diskTaps(8)) {
+                const double nearest =
+                    reference::bilinearAt(x + 2 * tap.x, y + 2 * tap.y, [&](int column, int row) {
+                        return double(map.depth[size_t(row) * map.side + size_t(column)]);
+                    });
+                s = std::max(s, (0.5 - nearest) * map.extent + 1);
+            }
+            expectSlab(radiance, i, s);
         }
     }
 }
@@ -387,8 +403,7 @@ TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
 // In a cube too: a step of the map makes nothing thin that stands beside its thicker side.
 TEST(ShadeProfile, ThicknessFromACubeIsTheGreatestNearby) {
     const Profile profile = Profile::burleyDistance(distance);
-    Inputs in;
-    in.thickness = false;
+    Inputs in{.thickness = false};
     Shading shading(materialOf(profile), in);
     constexpr uint32_t side = 256;
     constexpr double texel = 2.0 / side, far = 30, thick = 6, thin = 1;  // texel: radians; others: mm
@@ -420,15 +435,11 @@ TEST(ShadeProfile, ThicknessFromACubeIsTheGreatestNearby) {
     std::fill_n(light.color, 3, float(far * far));
     for (int k = 0; k < 4; ++k) light.worldToShadow[5 * k] = 1;
     shading.shader.set(std::vector<PelLight>{light});
-    static_cast<scatter_scene::ShownImages&>(shading).setMap(PEL_LIGHT_SHADOW_MAP, depth, side, 6 * side);
+    shading.setMap(PEL_LIGHT_SHADOW_MAP, depth, side, 6 * side);
     shading.shader.commit();
     const auto radiance = shading.execute();
     for (uint32_t i = 0; i < width * height; ++i) {
         if (above[i] > -texel && above[i] < 4 * texel) continue;  // one or the other
-        const double s = above[i] < 0 ? thick : thin;
-        for (size_t c = 0; c < 3; ++c) {
-            const double slab = 0.25 * std::exp(-s / distance[c]) + 0.75 * std::exp(-s / (3 * distance[c]));
-            EXPECT_NEAR(radiance[3 * i + c], slab, tolerance::profileLookUp) << above[i] / texel << " texels";
-        }
+        expectSlab(radiance, i, above[i] < 0 ? thick : thin);
     }
 }

@@ -186,7 +186,7 @@ Frame filterFrame(uint32_t seed = 1, float factor = 1) {
 Frame flattened(Frame f) {
     for (size_t i = 0; i < f.pixels(); ++i) {
         f.slots[PEL_SLOT_POSITION].values[3 * i + 2] = 0;
-        for (size_t c = 0; c < 3; ++c) f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values[3 * i + c] = c == 2;
+        f.slots[PEL_SLOT_NORMAL_GEOMETRIC].set(i, {0, 0, 1});
     }
     return f;
 }

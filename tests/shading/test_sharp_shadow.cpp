@@ -41,18 +41,14 @@ std::vector<float> lit(const Scene& s, double unit = 1, uint32_t cascades = 0) {
     f.width = uint32_t(s.points.size()), f.height = 1;
     f.curvatureLut = f.shadowLut = false;
     for (int slot : {PEL_SLOT_POSITION, PEL_SLOT_NORMAL_SHADING}) f.slots[slot].components = 3;
-    for (size_t i = 0; i < s.points.size(); ++i)
-        for (int c = 0; c < 3; ++c) {
-            f.slots[PEL_SLOT_POSITION].values.push_back(float(unit * s.points[i][c]));
-            f.slots[PEL_SLOT_NORMAL_SHADING].values.push_back(float(s.normals[i][c]));
-        }
+    for (const Vec3& p : s.points) f.slots[PEL_SLOT_POSITION].push(unit * p);
+    for (const Vec3& n : s.normals) f.slots[PEL_SLOT_NORMAL_SHADING].push(n);
     f.materials[1] = pelMaterialDefaults();
     f.materials[1].scattering = PEL_SCATTERING_NONE;
     for (float& a : f.materials[1].albedo) a = 1;
     Light light = s.light.light;
     PelLight& l = light.params;
-    for (int r = 0; r < 4; ++r)
-        for (int c = 0; c < 3; ++c) l.worldToShadow[4 * r + c] = float(l.worldToShadow[4 * r + c] / unit);
+    for (int r = 0; r < 4; ++r) copyTo(l.worldToShadow + 4 * r, 1 / unit * vectorOf(l.worldToShadow + 4 * r));
     l.shadowDepthRange = float(l.shadowDepthRange * unit);
     l.shadowDepthA = float(l.shadowDepthA / unit);
     l.shadowDepthB = float(l.shadowDepthB / unit);
@@ -113,11 +109,10 @@ TEST(SharpShadow, IsItsDefinition) {
             s.texel = extent / 64;
             Random random(11);
             for (int i = 0; i < 3000; ++i) {
-                float n[3];
-                random.unit(n);
+                const Vec3 n = random.unit();
                 s.points.push_back(
                     {random.uniform(-40, 40), random.uniform(-40, 40), random.uniform(-25, 25)});
-                s.normals.push_back(reference::normalized(Vec3{0.5 * n[0], 0.5 * n[1], 1 + 0.5 * n[2]}));
+                s.normals.push_back(reference::normalized(Vec3{0, 0, 1} + 0.5 * n));
             }
             const std::vector<float> e = lit(s);
             double worst = 0;

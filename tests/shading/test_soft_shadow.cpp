@@ -30,13 +30,9 @@ Frame edgeFrame(const Edge& edge) {
     f.width = columns, f.height = rows;
     f.slots[PEL_SLOT_POSITION].components = f.slots[PEL_SLOT_NORMAL_SHADING].components = 3;
     for (size_t i = 0; i < f.pixels(); ++i) {
-        const float x = columnX(i % columns), y = float(i / columns),
-                    perLength = 1 / std::hypot(edge.slope[0], edge.slope[1], 1.0f),
-                    p[3] = {x, y, edge.planeAt(x, y)},
-                    n[3] = {-perLength * edge.slope[0], -perLength * edge.slope[1], perLength};
-        f.slots[PEL_SLOT_POSITION].values.insert(f.slots[PEL_SLOT_POSITION].values.end(), p, p + 3);
-        f.slots[PEL_SLOT_NORMAL_SHADING].values.insert(f.slots[PEL_SLOT_NORMAL_SHADING].values.end(), n,
-                                                       n + 3);
+        const float x = columnX(i % columns), y = float(i / columns);
+        f.slots[PEL_SLOT_POSITION].push({x, y, edge.planeAt(x, y)});
+        f.slots[PEL_SLOT_NORMAL_SHADING].push(reference::normalized(Vec3{-edge.slope[0], -edge.slope[1], 1}));
     }
     PelMaterial m = pelMaterialDefaults();
     m.scattering = edge.scattering;
@@ -211,10 +207,7 @@ TEST(SoftShadow, OfAPointThatSeesTheRimAlone) {
         Frame f = edgeFrame({PEL_LIGHT_SPHERE, 100, 60, cube});
         f.slots[PEL_SLOT_NORMAL_GEOMETRIC] = f.slots[PEL_SLOT_NORMAL_SHADING];
         for (int slot : {PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_GEOMETRIC})
-            for (size_t i = 0; i < f.pixels(); ++i) {
-                f.slots[slot].values[3 * i] = 0.995f;
-                f.slots[slot].values[3 * i + 2] = -0.0998f;
-            }
+            for (size_t i = 0; i < f.pixels(); ++i) f.slots[slot].set(i, {0.995, 0, -0.0998});
         Frame bare = f;
         bare.lights[0].map = {}, bare.lights[0].maps.clear();
         const auto lit = shade(f), all = shade(bare);
@@ -231,10 +224,7 @@ TEST(SoftShadow, OfNormalsThatAreTurnedToTheLight) {
     for (const bool cube : {false, true}) {
         Frame f = edgeFrame({PEL_LIGHT_SPHERE, 5, 60, cube});
         f.slots[PEL_SLOT_NORMAL_GEOMETRIC] = f.slots[PEL_SLOT_NORMAL_SHADING];
-        for (size_t i = 0; i < f.pixels(); ++i) {
-            f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values[3 * i] = 0.6f;
-            f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values[3 * i + 2] = -0.8f;
-        }
+        for (size_t i = 0; i < f.pixels(); ++i) f.slots[PEL_SLOT_NORMAL_GEOMETRIC].set(i, {0.6, 0, -0.8});
         const auto share = shadowIn(f);
         for (size_t x = 0; x < columns; ++x)
             if (columnX(x) < -10) {

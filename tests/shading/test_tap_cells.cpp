@@ -7,11 +7,6 @@ using namespace shade_test;
 
 namespace {
 
-Frame interpolated(Frame f) {
-    f.options.everyPixel = 0;
-    return f;
-}
-
 // A radius whose nodes are just few enough for the frame.
 float radiusFor(const Frame& f) {
     return float(4 / (std::sqrt(double(f.pixels()) / 8) - 12));
@@ -169,8 +164,8 @@ TEST(TapCells, AtAnyScaleOfLengths) {
         Frame f = interpolated(cellFrame(4));
         const auto usual = shadeForms(f, {light}).thickness;
         for (float& p : f.slots[PEL_SLOT_POSITION].values) p *= scale;
-        for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 3; ++c) light.params.worldToShadow[4 * r + c] /= scale;
+        for (float* row = light.params.worldToShadow; row < light.params.worldToShadow + 12; row += 4)
+            copyTo(row, 1 / double(scale) * vectorOf(row));
         light.params.shadowDepthRange *= scale;
         for (auto& [id, m] : f.materials) {
             m.deepScatterNormalOffset *= scale;

@@ -2,6 +2,7 @@
 #include <CL/cl.h>
 
 #include "cl/cl_spy.h"
+#include "diffusion/scatter_scene.h"
 #include "shade_scene.h"
 #include "test.h"
 
@@ -64,6 +65,10 @@ class Texture {
     cl_mem image_ = nullptr;
     Buffer buffer_;
 };
+
+Vec3 halfLit(double x, double) {
+    return x < 30 ? Vec3{1, 1, 1} : Vec3{0.1, 0.1, 0.1};
+}
 
 }  // namespace
 
@@ -149,34 +154,14 @@ TEST(Textures, OfMapsThatRestAreKept) {
 
 // Irradiance that a pass replaces by what it scatters is still read from its texture.
 TEST(Textures, AreReadWhereAPassPutsAnotherImage) {
-    const uint32_t width = 64, height = 32, pixels = width * height;
-    std::vector<float> positions, irradiance;
-    for (uint32_t i = 0; i < pixels; ++i) {
-        for (const float p : {float(i % width), float(i / width), 0.0f}) positions.push_back(p);
-        for (int c = 0; c < 3; ++c) irradiance.push_back(i % width < 30 ? 1 : 0.1f);
-    }
-    std::vector<float> normals(3 * pixels);
-    for (uint32_t i = 0; i < pixels; ++i) normals[3 * i + 2] = 1;
-    const pellucid::Profile profile = pellucid::Profile::skin();
-    PelMaterial material = pelMaterialDefaults();
-    material.profile = profile.get();
-    material.scattering = PEL_SCATTERING_SCREEN;
-    Texture texture(irradiance, 3, width, height);
-    const auto shaded = [&](const PelImageDesc& light) {
-        Shader shader(device());
-        const Buffer target(device(), 12 * pixels);
-        shader.setMaterial(1, material)
-            .set(PEL_SLOT_POSITION, imageDesc(Buffer(device(), positions), PEL_FORMAT_RGB32F, width, height))
-            .set(PEL_SLOT_NORMAL_SHADING,
-                 imageDesc(Buffer(device(), normals), PEL_FORMAT_RGB32F, width, height))
-            .set(PEL_SLOT_IRRADIANCE, light)
-            .set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, width, height))
-            .commit()
-            .execute();
-        return target.readAll<float>();
-    };
-    const Buffer buffer(device(), irradiance);
-    EXPECT_EQ(shaded(texture.desc()), shaded(imageDesc(buffer, PEL_FORMAT_RGB32F, width, height)));
+    const scatter_scene::Frame f(scatter_scene::plane(64, 32, 1, halfLit), PEL_SCATTERING_SCREEN);
+    scatter_scene::Frame dark = f;
+    std::ranges::fill(dark.picture.irradiance, 0.0f);
+    scatter_scene::ShownImages shown(device(), 1, 1);
+    dark.shade(shown);
+    Texture texture(f.picture.irradiance, 3, 64, 32);
+    shown.shader.set(PEL_SLOT_IRRADIANCE, texture.desc());
+    EXPECT_EQ(shown.execute(), f.shade().light);
 }
 
 TEST(Textures, OfOtherKindsAreRefused) {
@@ -201,27 +186,18 @@ TEST(Textures, OfOtherKindsAreRefused) {
 }
 
 TEST(Textures, OfAPelScatter) {
-    constexpr uint32_t side = 32;
-    std::vector<float> light, places;
-    for (uint32_t i = 0; i < side * side; ++i) {
-        for (int c = 0; c < 3; ++c) light.push_back(i % side < side / 2 ? 1.0f : 0.0f);
-        for (const uint32_t v : {i % side, i / side, 0u}) places.push_back(0.3f * float(v));
-    }
-    const auto scattered = [&](const PelImageDesc& irradiance, const PelImageDesc& positions,
-                               const PelImageDesc& out) {
-        pellucid::Scatter scatter(device());
-        scatter.setMaterial(1, pellucid::Profile::skin(), 1);
-        scatter.execute(pelScatterParamsDefaults(), irradiance, &positions, nullptr, nullptr, out);
-        device().finish();
-    };
-    const Buffer e(device(), light), p(device(), places);
-    const auto rgb = [&](const Buffer& b) { return imageDesc(b, PEL_FORMAT_RGB32F, side, side); };
-    scattered(rgb(e), rgb(p), rgb(e));
-    const Texture irradiance(light, 3, side, side), positions(places, 3, side, side),
-        result(std::vector<float>(light.size(), 5), 3, side, side);
-    scattered(irradiance.desc(), positions.desc(), result.desc());
-    const std::vector<float> expected = e.readAll<float>(), texels = result.texels();
-    EXPECT_NE(expected, light);
-    for (size_t i = 0; i < side * side; ++i)
+    const scatter_scene::Picture p = scatter_scene::plane(60, 32, 1, halfLit);
+    const std::vector<float> expected = scatter_scene::run(p, pellucid::Profile::skin()).scattered;
+    EXPECT_NE(expected, p.irradiance);
+    const Texture irradiance(p.irradiance, 3, p.width, p.height),
+        positions(p.positions, 3, p.width, p.height),
+        result(std::vector<float>(p.irradiance.size(), 5), 3, p.width, p.height);
+    pellucid::Scatter scatter(device());
+    scatter.setMaterial(1, pellucid::Profile::skin(), 1);
+    const PelImageDesc places = positions.desc();
+    scatter.execute(p.params, irradiance.desc(), &places, nullptr, nullptr, result.desc());
+    device().finish();
+    const std::vector<float> texels = result.texels();
+    for (size_t i = 0; i < p.pixels(); ++i)
         for (size_t c = 0; c < 3; ++c) ASSERT_EQ(texels[4 * i + c], expected[3 * i + c]) << i;
 }
