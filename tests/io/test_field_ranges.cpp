@@ -42,6 +42,7 @@ std::vector<float> tried(const pel::FieldRange& r) {
     } else {
         values.insert(values.end(), {std::nextafter(r.min, -inf), std::nextafter(r.max, inf), -1, 0});
         std::erase_if(values, [](float v) { return !std::isfinite(v); });
+        values.insert(values.end(), {NAN, inf, -inf});
     }
     return values;
 }
