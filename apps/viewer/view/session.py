@@ -157,8 +157,7 @@ class Session:
         self.shown: Optional[GBuffer] = None  # of the last picture, and the pass that shaded its left side
         self.last_pass: Optional[Pass] = None
         self._rest: Optional[NDArray[np.uint8]] = None  # the last picture at rest
-        # look and projection of the picture whose details the renderer keeps
-        self._detailed: Optional[tuple[Look, NDArray[np.float64]]] = None
+        self._detailed: Any = None  # look and projection of the picture whose details the renderer keeps
         self._shaded: Optional[Shaded] = None
         self._scattered: Any = None  # the state that `scattering_at` was asked for, and its tiles
 
@@ -262,8 +261,9 @@ class Session:
             *self.renderer.shadow_map(self.to_light(lamp), size, self.mesh.up, level)))
 
     def _coarse(self) -> int:
-        """The version of the mesh whose edges are few pixels of a moving picture long."""
-        return self.renderer.level(20 / 270 * self.orbit.distance * np.tan(np.radians(self.orbit.fov) / 2))
+        """The version of the mesh whose edges are few pixels long while something moves: 1, coarse, or 0."""
+        view = self.orbit.distance * np.tan(np.radians(self.orbit.fov) / 2)
+        return int(self.renderer.coarse_edge <= 20 / 270 * view)
 
     def _level(self, small: bool) -> int:
         """The version for a G-buffer. A texture has seams that a coarser mesh would tear apart."""
@@ -419,8 +419,11 @@ class Session:
             pixels, p, seconds = self._shade_views(looks, width, height, small)
         finally:
             self._shift, self._aspect = (0.0, 0.0), 0.0
-        if small > 1:
-            pixels = [self._enlarged(made, width, height) for made in pixels]
+        if self._shaded is not None:
+            made, kept, matrix = self._shaded, self._detailed, self.camera(width / height)[1]
+            rest = kept[1] if kept is not None and kept[0] == self.look else None
+            pixels = [self.renderer.enlarged(matrix, image, made.depth, made.matrix, (width, height),
+                                             self._coarse(), rest, made.inside) for image in pixels]
         self.last_pass, stats = p, p.shader.stats()
         shown = pixels[0] if right is None else self._joined(*pixels)
         if right is None:
@@ -461,11 +464,17 @@ class Session:
     def prepare(self, width: int, height: int) -> None:
         """Builds the kernels that a slider of material will want when it leaves 0 or comes to it, so that
         none has to wait for them. Keeps what moving pictures take from the one at rest."""
-        if self._rest is not None and self._rest.shape[:2] == (height, width) and self.right() is None:
-            self._keep_details(self._rest)
+        if self.look.mode in COSTLY:
+            return
+        g, rest = self.shown, self._rest
+        if g is not None and rest is not None and rest.shape[:2] == g.material.shape and self.right() is None:
+            last, matrix = self.last_pass, self.camera(rest.shape[1] / rest.shape[0])[1]
+            rough = self.frame(rest.shape[1], rest.shape[0], 3).pixels
+            self.renderer.keep_details(rest, g, matrix, rough, list(self.eyes(self.look)))
+            self.shown, self.last_pass, self._detailed = g, last, (self.look.copy(), matrix)
         base = self.look
         structure = (base.mode, base.method, base.ggx, [(lamp.on, lamp.shadow) for lamp in base.lamps])
-        if structure == self._prepared or base.mode in COSTLY:
+        if structure == self._prepared:
             return
         for change in ({"deep_scatter": (1.0, 1.0, 1.0)},
                        {"deep_scatter": (0.0, 0.0, 0.0), "transmission": 0.0}):
@@ -500,25 +509,6 @@ class Session:
             self._scattered = (key, *scattered_tiles(self, self.look, width, height, False)[:2])
         _, method, changed = self._scattered
         return method if changed[row, column] else f"{method}, which leaves this tile as it is"
-
-    def _keep_details(self, rest: NDArray[np.uint8]) -> None:
-        """Of the picture at rest, for those that move."""
-        if self.look.mode in COSTLY or self.shown is None:
-            return
-        height, width = rest.shape[:2]
-        g, last, matrix = self.shown, self.last_pass, self.camera(width / height)[1]
-        rough = self.frame(width, height, 3).pixels
-        self.renderer.keep_details(rest, g, matrix, rough, list(self.eyes(self.look)))
-        self.shown, self.last_pass, self._detailed = g, last, (self.look.copy(), matrix)
-
-    def _enlarged(self, pixels: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
-        """A picture of few pixels in full size, seen from the camera of now, with the details of the one at
-        rest."""
-        assert self._shaded is not None
-        rest = self._detailed[1] if self._detailed is not None and self._detailed[0] == self.look else None
-        return self.renderer.enlarged(self.camera(width / height)[1], pixels, self._shaded.depth,
-                                      self._shaded.matrix, (width, height), self._coarse(), rest,
-                                      self._shaded.inside)
 
     def _joined(self, left: NDArray[np.uint8], right: NDArray[np.uint8]) -> NDArray[np.uint8]:
         width = left.shape[1]
