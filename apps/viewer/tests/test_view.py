@@ -194,6 +194,15 @@ def test_moving_pictures_look_like_those_at_rest(session):
     whole.look.mode = "difference"
     assert (whole.frame(*size, 3).pixels[0, 0] == whole.frame(*size).pixels[0, 0]).all()  # not black
 
+    def moved(*a, **k):  # the page turns the camera while a picture is made
+        whole.orbit.azimuth += 5
+        return drawn(*a, **k)
+
+    expected = whole.frame(*size, 3).pixels
+    whole._shaded, whole.renderer.gbuffer = None, moved
+    whole._gbuffers.clear()
+    assert np.array_equal(whole.frame(*size, 3).pixels, expected)
+
 
 def test_edges_become_smooth(session):
     reset(session)

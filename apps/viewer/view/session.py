@@ -152,11 +152,12 @@ class Session:
         # called as references advance; None: pictures wait for them, and for kernels
         self.report: Optional[Callable[[], None]] = None
         self._preparing = False
-        self._shift, self._aspect = (0.0, 0.0), 0.0  # of the picture that is being made; 0: of its G-buffer
+        self._shift = (0.0, 0.0)
+        self._view: Any = None  # `camera` of the frame that is being made: the page may move it meanwhile
         self._prepared: Any = None
         self.shown: Optional[GBuffer] = None  # of the last picture, and the pass that shaded its left side
         self.last_pass: Optional[Pass] = None
-        self._rest: Optional[NDArray[np.uint8]] = None  # the last picture at rest
+        self._rest: Any = None  # the last picture at rest, and its projection
         self._detailed: Any = None  # look and projection of the picture whose details the renderer keeps
         self._shaded: Optional[Shaded] = None
         self._scattered: Any = None  # the state that `scattering_at` was asked for, and its tiles
@@ -290,6 +291,8 @@ class Session:
 
     def camera(self, aspect: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Eye, and world to clip space in OpenGL's convention."""
+        if self._view is not None:
+            return self._view
         apart = float(np.linalg.norm(self.renderer.centre - self.centre))
         return self.orbit.matrices(self.mesh.up, self.mesh.front, self.centre, self.renderer.radius + apart,
                                    aspect)
@@ -298,7 +301,7 @@ class Session:
         state = self.drawn_state(width, height, small)
         made = self._gbuffers.get((width, height))
         if made is None or made[0] != state:
-            _, matrix = self.camera(self._aspect or width / height)
+            _, matrix = self.camera(width / height)
             while len(self._gbuffers) > 2:
                 self._gbuffers.pop(next(iter(self._gbuffers)))
             made = (state, self.renderer.gbuffer(matrix, width, height, state[3], state[4], self._shift))
@@ -307,7 +310,7 @@ class Session:
 
     def drawn_state(self, width: int, height: int, small: bool = False) -> tuple[Any, ...]:
         """What a G-buffer depends on."""
-        _, matrix = self.camera(self._aspect or width / height)
+        _, matrix = self.camera(width / height)
         # The reference has the mesh's own normals.
         pores = 0.0 if self.look.mode in ("error", "reference") else self.look.pores
         return (matrix.tobytes(), width, height, pores, self._level(small), self._shift)
@@ -413,16 +416,16 @@ class Session:
         right = self.right()
         if right is not None and self.beside:
             width = max(width // 2, 1)
-        self._aspect = width / height
+        self._view = view = self.camera(width / height)
         try:
             looks = [self.look] if right is None else [self.look, right]
             pixels, p, seconds = self._shade_views(looks, width, height, small)
         finally:
-            self._shift, self._aspect = (0.0, 0.0), 0.0
+            self._shift, self._view = (0.0, 0.0), None
         if self._shaded is not None:
-            made, kept, matrix = self._shaded, self._detailed, self.camera(width / height)[1]
+            made, kept = self._shaded, self._detailed
             rest = kept[1] if kept is not None and kept[0] == self.look else None
-            pixels = [self.renderer.enlarged(matrix, image, made.depth, made.matrix, (width, height),
+            pixels = [self.renderer.enlarged(view[1], image, made.depth, made.matrix, (width, height),
                                              self._coarse(), rest, made.inside) for image in pixels]
         self.last_pass, stats = p, p.shader.stats()
         shown = pixels[0] if right is None else self._joined(*pixels)
@@ -432,7 +435,7 @@ class Session:
             self._rest = None
         else:
             shown = self._mean(shown, sample)
-            self._rest, self._detailed = shown, None
+            self._rest, self._detailed = (shown, view[1]), None
         times = {"OpenGL": 1e3 * (time.perf_counter() - started - seconds), "Pellucid": 1e3 * seconds,
                  "on the device": stats.device_milliseconds}
         after = self.device.stats().programs_built
@@ -444,8 +447,10 @@ class Session:
         """Pictures of the looks, the pass of the first, and the seconds that Pellucid took. While only the
         camera moves, shaded pictures serve three times."""
         key = (width, height, small, [look.copy() for look in looks])
-        kept = self._shaded
-        if kept is not None and kept.key == key and kept.left > 0:
+        kept, (eye, matrix) = self._shaded, self._view
+        # The last row is the direction of view.
+        if (kept is not None and kept.key == key and kept.left > 0
+                and np.abs(matrix[3, :3] - kept.matrix[3, :3]).max() < 0.07):
             kept.left -= 1
             return [pixels for pixels, _ in kept.made], kept.made[0][1], 0.0
         width, height = (max(v // max(small, 1), 1) for v in (width, height))
@@ -454,8 +459,7 @@ class Session:
         started = time.perf_counter()
         made = [picture(self, name, look, width, height, small > 0)
                 for name, look in zip(("main", "other"), looks)]
-        seconds, (eye, matrix) = time.perf_counter() - started, self.camera(self._aspect)
-        self._shaded = None
+        seconds, self._shaded = time.perf_counter() - started, None
         if small > 1:
             away = np.einsum("ijk,ijk->ij", g.position - eye, g.normal_geometric) > 0.2 * self.orbit.distance
             self._shaded = Shaded(key, made, depth(g, matrix), matrix, bool(away.mean() > 0.001))
@@ -466,12 +470,15 @@ class Session:
         none has to wait for them. Keeps what moving pictures take from the one at rest."""
         if self.look.mode in COSTLY:
             return
-        g, rest = self.shown, self._rest
-        if g is not None and rest is not None and rest.shape[:2] == g.material.shape and self.right() is None:
-            last, matrix = self.last_pass, self.camera(rest.shape[1] / rest.shape[0])[1]
+        g, last = self.shown, self.last_pass
+        if g is not None and self._rest is not None and self.right() is None:
+            (rest, matrix), self._shaded = self._rest, None
             rough = self.frame(rest.shape[1], rest.shape[0], 3).pixels
-            self.renderer.keep_details(rest, g, matrix, rough, list(self.eyes(self.look)))
-            self.shown, self.last_pass, self._detailed = g, last, (self.look.copy(), matrix)
+            # The camera may have moved since.
+            if rest.shape[:2] == g.material.shape and np.array_equal(self._shaded.matrix, matrix):
+                self.renderer.keep_details(rest, g, matrix, rough, list(self.eyes(self.look)))
+                self._detailed = self.look.copy(), matrix
+            self.shown, self.last_pass = g, last
         base = self.look
         structure = (base.mode, base.method, base.ggx, [(lamp.on, lamp.shadow) for lamp in base.lamps])
         if structure == self._prepared:
