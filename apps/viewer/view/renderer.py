@@ -37,14 +37,6 @@ class GBuffer:
     v: NDArray[np.float32]
 
 
-@dataclass
-class _Target:
-    """Images of one size in OpenGL, and the memory that they are read into."""
-
-    parts: list[Any]  # the framebuffer, and its attachments
-    memory: list[NDArray[np.float32]]
-
-
 def depth(g: GBuffer, view_projection: NDArray[np.float64]) -> NDArray[np.float32]:
     """From the eye, (h, w); FAR on background."""
     x, y, z, one = view_projection[3].astype(np.float32)
@@ -86,7 +78,8 @@ class Renderer:
                                   for fragment in (shaders.ENLARGE_FRAGMENT, detailed)]
         self._screen: list[Any] = []  # of the last enlarged picture: the framebuffer, and its attachments
         self._details: list[Any] = []  # what the picture at rest shows beyond a small one, and its depth
-        self._targets: dict[tuple[int, int], _Target] = {}
+        # by size: the framebuffer and its attachments, and the memory that they are read into
+        self._targets: dict[tuple[int, int], tuple[list[Any], list[NDArray[np.float32]]]] = {}
         self._levels: list[list[Any]] = []  # of the mesh, and of one with fewer triangles
         self._shadow_targets: dict[int, Any] = {}  # by size
         self._pictures: list[Any] = []
@@ -112,7 +105,7 @@ class Renderer:
             vertices[:, 11:13] = mesh.uvs
         vertices[:, 13] = -1 if paint.layers is None else paint.layers
         triangles = np.ascontiguousarray(mesh.triangles, np.uint32)
-        self._coarse_edge, coarse = coarser(vertices, triangles)
+        self.coarse_edge, coarse = coarser(vertices, triangles)
         buffer = self.context.buffer(vertices.tobytes())
         fresh = [self._upload(buffer, indices) for indices in (triangles, coarse)]
         for old in self._levels:
@@ -153,19 +146,15 @@ class Renderer:
                   for program in (self._shadow_program, *self._enlarge_programs)]
         return [draw, *others, indices]
 
-    def level(self, length: float) -> int:
-        """The version of the mesh to draw: 1, the coarse one, if its edges are at most `length`, else 0."""
-        return int(self._coarse_edge <= length)
-
-    def _target(self, width: int, height: int) -> _Target:
+    def _target(self, width: int, height: int) -> tuple[list[Any], list[NDArray[np.float32]]]:
         target = self._targets.pop((width, height), None)
         if target is None:
             while len(self._targets) >= 3:  # a moving picture, one at rest, one that is exported
-                _release(self._targets.pop(next(iter(self._targets))).parts)
+                _release(self._targets.pop(next(iter(self._targets)))[0])
             parts = [self.context.texture((width, height), 4, dtype="f4") for _ in range(4)]
             depth = self.context.depth_renderbuffer((width, height))
-            target = _Target([self.context.framebuffer(parts, depth), *parts, depth],
-                             [np.empty((height, width, 4), np.float32) for _ in range(4)])
+            target = ([self.context.framebuffer(parts, depth), *parts, depth],
+                      [np.empty((height, width, 4), np.float32) for _ in range(4)])
         self._targets[width, height] = target
         return target
 
@@ -174,14 +163,13 @@ class Renderer:
         """Draws the mesh. The images stay as they are until the next call of the same size, and change then.
 
         level : int
-            Which version of the mesh, see `level`.
+            Which version of the mesh: 0, or 1 for the coarse one.
         shift : pair of floats
             Pixels that the picture is moved by, to the right and down.
         """
         assert self.mesh is not None
         self.context.__enter__()  # another renderer of this thread may have been the last
-        target = self._target(width, height)
-        frame = target.parts[0]
+        (frame, *_), images = self._target(width, height)
         frame.use()
         frame.clear(0.0, 0.0, 0.0, 0.0)
         self.context.enable_only(moderngl.DEPTH_TEST)
@@ -196,9 +184,9 @@ class Renderer:
         if self.mesh.eyes:
             program["sclera"].value = tuple(self.mesh.eyes[0]["sclera"])
         self._levels[level][0].render()
-        for attachment, memory in enumerate(target.memory):
+        for attachment, memory in enumerate(images):
             frame.read_into(memory, components=4, attachment=attachment, dtype="f4")
-        position, geometric, shading, albedo = target.memory
+        position, geometric, shading, albedo = images
         return GBuffer(position[..., :3], position[..., 3], geometric[..., :3], geometric[..., 3],
                        shading[..., :3], albedo[..., :3], shading[..., 3], albedo[..., 3])
 

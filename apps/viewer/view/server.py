@@ -31,7 +31,7 @@ class Pace:
     """How many pixels are shaded and shown while something moves: so few that pictures come in time."""
 
     # Scale of the sides, and of how many pixels of a row or column one is shaded.
-    STEPS = ((1.0, 1), (1.0, 2), (1.0, 3), (1.0, 4), (0.8, 4), (0.65, 4), (0.5, 4), (0.35, 4))
+    STEPS = ((1.0, 1), (1.0, 2), (1.0, 3), (1.0, 4), (0.8, 4), (0.65, 4), (0.5, 4))
 
     def __init__(self) -> None:
         self._step = 2

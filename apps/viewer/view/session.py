@@ -152,13 +152,13 @@ class Session:
         # called as references advance; None: pictures wait for them, and for kernels
         self.report: Optional[Callable[[], None]] = None
         self._preparing = False
-        self._shift, self._aspect = (0.0, 0.0), 0.0  # of the picture that is being made; 0: of its G-buffer
+        self._shift = (0.0, 0.0)
+        self._view: Any = None  # `camera` of the frame that is being made: the page may move it meanwhile
         self._prepared: Any = None
         self.shown: Optional[GBuffer] = None  # of the last picture, and the pass that shaded its left side
         self.last_pass: Optional[Pass] = None
-        self._rest: Optional[NDArray[np.uint8]] = None  # the last picture at rest
-        # look and projection of the picture whose details the renderer keeps
-        self._detailed: Optional[tuple[Look, NDArray[np.float64]]] = None
+        self._rest: Any = None  # the last picture at rest, and its projection
+        self._detailed: Any = None  # look and projection of the picture whose details the renderer keeps
         self._shaded: Optional[Shaded] = None
         self._scattered: Any = None  # the state that `scattering_at` was asked for, and its tiles
 
@@ -262,8 +262,9 @@ class Session:
             *self.renderer.shadow_map(self.to_light(lamp), size, self.mesh.up, level)))
 
     def _coarse(self) -> int:
-        """The version of the mesh whose edges are few pixels of a moving picture long."""
-        return self.renderer.level(20 / 270 * self.orbit.distance * np.tan(np.radians(self.orbit.fov) / 2))
+        """The version of the mesh whose edges are few pixels long while something moves: 1, coarse, or 0."""
+        view = self.orbit.distance * np.tan(np.radians(self.orbit.fov) / 2)
+        return int(self.renderer.coarse_edge <= 20 / 270 * view)
 
     def _level(self, small: bool) -> int:
         """The version for a G-buffer. A texture has seams that a coarser mesh would tear apart."""
@@ -290,6 +291,8 @@ class Session:
 
     def camera(self, aspect: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Eye, and world to clip space in OpenGL's convention."""
+        if self._view is not None:
+            return self._view
         apart = float(np.linalg.norm(self.renderer.centre - self.centre))
         return self.orbit.matrices(self.mesh.up, self.mesh.front, self.centre, self.renderer.radius + apart,
                                    aspect)
@@ -298,7 +301,7 @@ class Session:
         state = self.drawn_state(width, height, small)
         made = self._gbuffers.get((width, height))
         if made is None or made[0] != state:
-            _, matrix = self.camera(self._aspect or width / height)
+            _, matrix = self.camera(width / height)
             while len(self._gbuffers) > 2:
                 self._gbuffers.pop(next(iter(self._gbuffers)))
             made = (state, self.renderer.gbuffer(matrix, width, height, state[3], state[4], self._shift))
@@ -307,7 +310,7 @@ class Session:
 
     def drawn_state(self, width: int, height: int, small: bool = False) -> tuple[Any, ...]:
         """What a G-buffer depends on."""
-        _, matrix = self.camera(self._aspect or width / height)
+        _, matrix = self.camera(width / height)
         # The reference has the mesh's own normals.
         pores = 0.0 if self.look.mode in ("error", "reference") else self.look.pores
         return (matrix.tobytes(), width, height, pores, self._level(small), self._shift)
@@ -413,14 +416,17 @@ class Session:
         right = self.right()
         if right is not None and self.beside:
             width = max(width // 2, 1)
-        self._aspect = width / height
+        self._view = view = self.camera(width / height)
         try:
             looks = [self.look] if right is None else [self.look, right]
             pixels, p, seconds = self._shade_views(looks, width, height, small)
         finally:
-            self._shift, self._aspect = (0.0, 0.0), 0.0
-        if small > 1:
-            pixels = [self._enlarged(made, width, height) for made in pixels]
+            self._shift, self._view = (0.0, 0.0), None
+        if self._shaded is not None:
+            made, kept = self._shaded, self._detailed
+            rest = kept[1] if kept is not None and kept[0] == self.look else None
+            pixels = [self.renderer.enlarged(view[1], image, made.depth, made.matrix, (width, height),
+                                             self._coarse(), rest, made.inside) for image in pixels]
         self.last_pass, stats = p, p.shader.stats()
         shown = pixels[0] if right is None else self._joined(*pixels)
         if right is None:
@@ -429,7 +435,7 @@ class Session:
             self._rest = None
         else:
             shown = self._mean(shown, sample)
-            self._rest, self._detailed = shown, None
+            self._rest, self._detailed = (shown, view[1]), None
         times = {"OpenGL": 1e3 * (time.perf_counter() - started - seconds), "Pellucid": 1e3 * seconds,
                  "on the device": stats.device_milliseconds}
         after = self.device.stats().programs_built
@@ -441,8 +447,10 @@ class Session:
         """Pictures of the looks, the pass of the first, and the seconds that Pellucid took. While only the
         camera moves, shaded pictures serve three times."""
         key = (width, height, small, [look.copy() for look in looks])
-        kept = self._shaded
-        if kept is not None and kept.key == key and kept.left > 0:
+        kept, (eye, matrix) = self._shaded, self._view
+        # The last row is the direction of view.
+        if (kept is not None and kept.key == key and kept.left > 0
+                and np.abs(matrix[3, :3] - kept.matrix[3, :3]).max() < 0.07):
             kept.left -= 1
             return [pixels for pixels, _ in kept.made], kept.made[0][1], 0.0
         width, height = (max(v // max(small, 1), 1) for v in (width, height))
@@ -451,8 +459,7 @@ class Session:
         started = time.perf_counter()
         made = [picture(self, name, look, width, height, small > 0)
                 for name, look in zip(("main", "other"), looks)]
-        seconds, (eye, matrix) = time.perf_counter() - started, self.camera(self._aspect)
-        self._shaded = None
+        seconds, self._shaded = time.perf_counter() - started, None
         if small > 1:
             away = np.einsum("ijk,ijk->ij", g.position - eye, g.normal_geometric) > 0.2 * self.orbit.distance
             self._shaded = Shaded(key, made, depth(g, matrix), matrix, bool(away.mean() > 0.001))
@@ -461,11 +468,20 @@ class Session:
     def prepare(self, width: int, height: int) -> None:
         """Builds the kernels that a slider of material will want when it leaves 0 or comes to it, so that
         none has to wait for them. Keeps what moving pictures take from the one at rest."""
-        if self._rest is not None and self._rest.shape[:2] == (height, width) and self.right() is None:
-            self._keep_details(self._rest)
+        if self.look.mode in COSTLY:
+            return
+        g, last = self.shown, self.last_pass
+        if g is not None and self._rest is not None and self.right() is None:
+            (rest, matrix), self._shaded = self._rest, None
+            rough = self.frame(rest.shape[1], rest.shape[0], 3).pixels
+            # The camera may have moved since.
+            if rest.shape[:2] == g.material.shape and np.array_equal(self._shaded.matrix, matrix):
+                self.renderer.keep_details(rest, g, matrix, rough, list(self.eyes(self.look)))
+                self._detailed = self.look.copy(), matrix
+            self.shown, self.last_pass = g, last
         base = self.look
         structure = (base.mode, base.method, base.ggx, [(lamp.on, lamp.shadow) for lamp in base.lamps])
-        if structure == self._prepared or base.mode in COSTLY:
+        if structure == self._prepared:
             return
         for change in ({"deep_scatter": (1.0, 1.0, 1.0)},
                        {"deep_scatter": (0.0, 0.0, 0.0), "transmission": 0.0}):
@@ -500,25 +516,6 @@ class Session:
             self._scattered = (key, *scattered_tiles(self, self.look, width, height, False)[:2])
         _, method, changed = self._scattered
         return method if changed[row, column] else f"{method}, which leaves this tile as it is"
-
-    def _keep_details(self, rest: NDArray[np.uint8]) -> None:
-        """Of the picture at rest, for those that move."""
-        if self.look.mode in COSTLY or self.shown is None:
-            return
-        height, width = rest.shape[:2]
-        g, last, matrix = self.shown, self.last_pass, self.camera(width / height)[1]
-        rough = self.frame(width, height, 3).pixels
-        self.renderer.keep_details(rest, g, matrix, rough, list(self.eyes(self.look)))
-        self.shown, self.last_pass, self._detailed = g, last, (self.look.copy(), matrix)
-
-    def _enlarged(self, pixels: NDArray[np.uint8], width: int, height: int) -> NDArray[np.uint8]:
-        """A picture of few pixels in full size, seen from the camera of now, with the details of the one at
-        rest."""
-        assert self._shaded is not None
-        rest = self._detailed[1] if self._detailed is not None and self._detailed[0] == self.look else None
-        return self.renderer.enlarged(self.camera(width / height)[1], pixels, self._shaded.depth,
-                                      self._shaded.matrix, (width, height), self._coarse(), rest,
-                                      self._shaded.inside)
 
     def _joined(self, left: NDArray[np.uint8], right: NDArray[np.uint8]) -> NDArray[np.uint8]:
         width = left.shape[1]
