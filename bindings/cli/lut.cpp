@@ -82,8 +82,7 @@ void integrate(Arguments& arguments, Desc& desc) {
     }
     const bool picture = arguments.encoding.empty() && io::isPicture(arguments.output);
     std::optional<PelLutEncoding> encoding;
-    if (!arguments.encoding.empty())
-        encoding = chosen<PelLutEncoding>(io::lutEncodings, arguments.encoding);
+    if (!arguments.encoding.empty()) encoding = chosen<PelLutEncoding>(io::lutEncodings, arguments.encoding);
     try {
         if (picture)
             io::checkWritable(arguments.output);
@@ -99,8 +98,8 @@ void integrate(Arguments& arguments, Desc& desc) {
         writeTablePicture(arguments.output, lut, desc.width, rowsOf(desc));
     else
         io::writeLut(arguments.output, lut, encoding);
-    run.report["encoding"] = picture ? "picture: sRGB, to look at; engines need --encoding"
-                                       : io::lutEncodings[*encoding];
+    run.report["encoding"] =
+        picture ? "picture: sRGB, to look at; engines need --encoding" : io::lutEncodings[*encoding];
     run.report["width"] = desc.width;
     run.report["height"] = desc.height;
     run.report["texels"] = uint64_t(desc.width) * rowsOf(desc);
