@@ -84,7 +84,6 @@ Capture::Capture(Device& device, const ShaderState& state, const ScatterInput* s
                                                                      : ReadAs::NUMBERS);
         frame.outputs[slot] = isOutput(slot) && view;
     }
-    frame.images[PEL_SLOT_RADIANCE] = valuesOf(device, state.images[PEL_SLOT_RADIANCE], 3);
     for (const auto& [id, from] : state.materials) {
         CapturedMaterial& to = frame.materials.emplace_back();
         to.id = id;

@@ -22,7 +22,7 @@ struct SlotKey {
     size_t components;
 };
 // Inputs name their channels, outputs their files; of radiance what it holds before.
-#define PELLUCID_INPUT_TARGET(slot, key, ...) {slot, key, 3},
+#define PELLUCID_INPUT_TARGET(...) {__VA_ARGS__},
 #define PELLUCID_INPUT_SHADE(...) {__VA_ARGS__},
 #define PELLUCID_INPUT_PASS(...) {__VA_ARGS__},
 #define PELLUCID_INPUT_OUTPUT(...)
