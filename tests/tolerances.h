@@ -229,7 +229,8 @@ constexpr double lightsAddUp = 2e-2;
 constexpr double scatterLeftOut = 1.6;
 // of those at the default, with ten times its error: 0.70 to 0.77 measured
 constexpr double tapsOfLargeError = 0.85;
-constexpr double scatterSeam = 1.6;  // the same, over the borders of tiles that took different ways
+constexpr double scatterLanes = 2e-6;  // of white, one lane beside sixteen: order of additions
+constexpr double scatterSeam = 1.6;    // the same, over the borders of tiles that took different ways
 // of targetError: how much more a tile steps that begins to count; 0.03 measured
 constexpr double scatterFade = 0.1;
 // of white, in a dark gap: 0.006 in one pixel that few blocks round it are the same surface as

@@ -1,6 +1,7 @@
 // A PelScatter: blocks of pixels, taps on a disk and the separable filter against the sums that they stand
 // for, and what must hold for any picture.
 
+#include "device_lanes.h"
 #include "diffusion/scatter_scene.h"
 #include "reference/diffusion_taps.h"
 #include "test.h"
@@ -68,6 +69,23 @@ TEST(Scatter, EqualsTheSumOverEveryPixel) {
         EXPECT_LT(d.most, tolerance::scatterBlocksMax);
         EXPECT_EQ(result.stats.pixelsTapped, result.stats.pixelsCovered);
     }
+}
+
+// Half a plane that faces the camera and half a steep one, on which pixels on a diagonal lie nearer to each
+// other than those beside each other: narrow parts of the profile count at each, whatever its neighbours are.
+TEST(Scatter, OneLaneFindsTheLightOfSixteen) {
+    Picture p = plane(64, 64, 0.1, [](double u, double v) {
+        return Vec3(Vec3{1, 1, 1} * (u > v ? 1.0 : 0.1));
+    });
+    for (size_t i = 0; i < p.pixels(); ++i)
+        p.positions[3 * i + 2] = -5 * std::max(p.positions[3 * i] + p.positions[3 * i + 1] - 6.4f, 0.0f);
+    Frame f(p, PEL_SCATTERING_SCREEN);
+    f.profile = narrow();
+    const auto light = [&](int lanes) {
+        ShownImages shown(lanes::deviceOf(lanes), 1, 1);
+        return f.shade(shown).light;
+    };
+    EXPECT_LT(difference(p, light(1), light(16)).most, tolerance::scatterLanes);
 }
 
 TEST(Scatter, TapsAreThoseOfTheOracle) {
