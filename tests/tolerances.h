@@ -291,7 +291,7 @@ constexpr double heldMemory = 0.05;  // tables of profiles and lists of a few hu
 constexpr double environmentAmbient = 4e-3;
 // relative RMS, 0.04 to 0.1 measured: lobes are round, as if they were seen along the normal
 constexpr double environmentSpecular = 0.12;
-constexpr double environmentShare = 2e-3;  // 1024 samples, and linear between 32 x 32 nodes
+constexpr double environmentShare = 2e-3;  // 512 samples, and linear between 32 x 32 nodes
 
 // --- eyes ---
 // RMS, of the table's mean; 0.7 % measured, of which the photons' noise is half

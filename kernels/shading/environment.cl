@@ -78,9 +78,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment
 }
 
 // Bilinear in one face of a mip.
-static inline float4 mipAlong(__global const float4* texels, uint mip, float3 d) {
+static inline float4 texelsAt(__global const float4* texels, uint mip, const CubePoint p) {
     const uint size = PEL_ENVIRONMENT_SIZE >> mip;
-    const CubePoint p = cubePoint(vec3(d.x, d.y, d.z));
     const float x = clamp(fma(p.u, 0.5f * (float)size, 0.5f * (float)size - 0.5f), 0.0f, (float)(size - 1));
     const float y = clamp(fma(p.v, 0.5f * (float)size, 0.5f * (float)size - 0.5f), 0.0f, (float)(size - 1));
     const uint i = (uint)x, j = (uint)y, i1 = min(i + 1, size - 1), j1 = min(j + 1, size - 1);
@@ -90,22 +89,6 @@ static inline float4 mipAlong(__global const float4* texels, uint mip, float3 d)
     return mix(upper, lower, y - (float)j);
 }
 
-static inline float4 texelsAlong(__global const float4* texels, float mip, float3 d) {
-    const float at = clamp(mip, 0.0f, (float)(PEL_ENVIRONMENT_MIPS - 1));
-    const uint finer = min((uint)at, (uint)(PEL_ENVIRONMENT_MIPS - 2));
-    return mix(mipAlong(texels, finer, d), mipAlong(texels, finer + 1, d), at - (float)finer);
-}
-
-// The second coordinate of Hammersley's points, which are evenly spread: the digits of k in base 2, reversed.
-static inline float radicalInverse(uint k) {
-    k = (k & 0x55555555u) << 1 | (k >> 1 & 0x55555555u);
-    k = (k & 0x33333333u) << 2 | (k >> 2 & 0x33333333u);
-    k = (k & 0x0f0f0f0fu) << 4 | (k >> 4 & 0x0f0f0f0fu);
-    k = (k & 0x00ff00ffu) << 8 | (k >> 8 & 0x00ff00ffu);
-    return (float)(k << 16 | k >> 16) * 0x1p-32f;
-}
-
-// `first`: floats of the levels before.
 // Of the node of a work-item: its direction, and where it is stored.
 static inline bool nodeOf(uint size, Vec3w* n, size_t* at) {
     const uint i = get_global_id(0), across = size + 2, face = get_global_id(1) / across,
@@ -146,53 +129,47 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment
     storeNode(nodes, at, size, sum / whole);
 }
 
+// `lobes`, from `begin` to `end`: directions by their components across the normal and along it, which is
+// their weight, and the mip that they read. `first`: floats of the levels before.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment_level(
-    __global const float4* restrict texels, uint size, float roughness, uint samples, uint first,
-    __global float* restrict nodes) {
+    __global const float4* restrict texels, __global const float4* restrict lobes, uint begin, uint end,
+    uint size, uint first, __global float* restrict nodes) {
     Vec3w n;
     size_t at;
     if (!nodeOf(size, &n, &at)) return;
     Vec3w right, down;
     cubeTangents(n, &right, &down);
-    const float a2 = roughness * roughness;
     float4 sum = (float4)(0.0f);
     float weights = 0.0f;
-    for (uint k = 0; k < samples; ++k) {
-        const float along = ((float)k + 0.5f) / (float)samples, turn = radicalInverse(k);
-        // The view is along the normal, so the half vector's angle is half the direction's.
-        const float half2 = (1.0f - along) / fma(a2 - 1.0f, along, 1.0f), cosine = 2.0f * half2 - 1.0f;
-        const float spread = fma(half2, a2 - 1.0f, 1.0f);
-        if (!(cosine > 0.0f)) continue;
-        const float sine = sqrt(max(fma(-cosine, cosine, 1.0f), 0.0f));
-        const float x = sine * cospi(2.0f * turn), y = sine * sinpi(2.0f * turn);
-        const float3 d = (float3)(fma(right.x, x, fma(down.x, y, n.x * cosine)),
-                                  fma(right.y, x, fma(down.y, y, n.y * cosine)),
-                                  fma(right.z, x, fma(down.z, y, n.z * cosine)));
-        // Solid angles: of a sample, and of a texel of the finest mip on average.
-        const float share = 4.0f * M_PI_F * spread * spread / ((float)samples * a2);
-        const float texel = 4.0f * M_PI_F / (6.0f * PEL_ENVIRONMENT_SIZE * PEL_ENVIRONMENT_SIZE);
-        const float mip = samples > 1 ? 0.5f * log2(share / texel) : 0.0f;
-        sum += cosine * texelsAlong(texels, mip, d);
-        weights += cosine;
+    for (uint k = begin; k < end; ++k) {
+        const float4 s = lobes[k];
+        const CubePoint p = cubePoint(vec3(fma(right.x, s.x, fma(down.x, s.y, n.x * s.z)),
+                                           fma(right.y, s.x, fma(down.y, s.y, n.y * s.z)),
+                                           fma(right.z, s.x, fma(down.z, s.y, n.z * s.z))));
+        const uint finer = (uint)s.w;
+        sum += s.z * mix(texelsAt(texels, finer, p), texelsAt(texels, finer + 1, p), s.w - (float)finer);
+        weights += s.z;
     }
-    storeNode(nodes + first, at, size, sum / max(weights, 1e-30f));
+    storeNode(nodes + first, at, size, sum / weights);
 }
 
 // The shares of both models (shared/environment.h), by half vectors that are spread as the distribution is.
+// `samples`, from `begin` to `end`: the cosine of half a turn, and the squared tangent of the half vector over
+// that of the roughness, of Beckmann's distribution and of GGX.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment_shares(
-    uint samples, uint first, __global float* restrict nodes) {
+    __global const float4* restrict samples, uint begin, uint end, uint first,
+    __global float* restrict nodes) {
     const uint i = get_global_id(0), j = get_global_id(1) % PEL_SHARE_NODES,
                ggx = get_global_id(1) / PEL_SHARE_NODES;
     if (i >= PEL_SHARE_NODES || ggx > 1) return;
     const float nv = max((float)i / (float)(PEL_SHARE_NODES - 1), 0.02f), across = sqrt(1.0f - nv * nv);
     const float root = (float)j / (float)(PEL_SHARE_NODES - 1), a = max(root * root, 1e-3f), a2 = a * a;
     float ofF0 = 0.0f, rest = 0.0f;
-    for (uint k = 0; k < samples; ++k) {
-        const float along = ((float)k + 0.5f) / (float)samples, turn = radicalInverse(k);
-        // The squared tangent of the half vector: of GGX, and of Beckmann's distribution.
-        const float tangent2 = ggx ? a2 * along / (1.0f - along) : -a2 * log(1.0f - along);
+    for (uint k = begin; k < end; ++k) {
+        const float4 s = samples[k];
+        const float tangent2 = a2 * (ggx ? s.z : s.y);
         const float nh = rsqrt(1.0f + tangent2), sine = sqrt(max(1.0f - nh * nh, 0.0f));
-        const float vh = fma(nh, nv, sine * across * cospi(2.0f * turn));
+        const float vh = fma(nh, nv, sine * across * s.x);
         const float nl = fma(2.0f * vh, nh, -nv);
         if (!(nl > 0.0f && vh > 0.0f)) continue;
         const float masking = nl * sqrt(fma(nv * nv, 1.0f - a2, a2)) + nv * sqrt(fma(nl * nl, 1.0f - a2, a2));
@@ -202,6 +179,6 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment
         rest = fma(weight, base5, rest);
     }
     const uint at = first + ggx * PEL_SHARE_FLOATS + j * PEL_SHARE_NODES + i;
-    nodes[at] = ofF0 / (float)samples;
-    nodes[at + PEL_SHARE_NODES * PEL_SHARE_NODES] = rest / (float)samples;
+    nodes[at] = ofF0 / (float)(end - begin);
+    nodes[at + PEL_SHARE_NODES * PEL_SHARE_NODES] = rest / (float)(end - begin);
 }

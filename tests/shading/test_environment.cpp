@@ -135,18 +135,23 @@ TEST_F(Environment, SpecularLightIsTheIntegralOverTheLobe) {
 }
 
 TEST_F(Environment, EvenLightIsReflectedEvenly) {
-    surround([](Vec3) { return Rgb{1, 1, 1}; });
-    shader_.commit().execute();
-    for (size_t i = 0; i < count; i += 5) {
-        const Vec3 n = pixels_.normals[i], v = pixels_.views[i];
-        const double share = integral(
-                                 [](Vec3) {
-                                     return Rgb{1, 1, 1};
-                                 },
-                                 [&](Vec3 d) { return reference::specularGgx(n, d, v, 0.3, 0.3, 0, 1) / pi; })
-                                 .x;
-        EXPECT_NEAR(diffuse(i).x, 0.5, 1e-4);
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(at(specular_, i)[c], share, tolerance::environmentShare) << i;
+    const Sky even = [](Vec3) { return Rgb{1, 1, 1}; };
+    for (const PelSpecularModel model : {PEL_SPECULAR_GGX, PEL_SPECULAR_KSK}) {
+        material_.specularModel = model;
+        shader_.setMaterial(1, material_);
+        surround(even);
+        shader_.commit().execute();
+        for (size_t i = 0; i < count; i += 5) {
+            const Vec3 n = pixels_.normals[i], v = pixels_.views[i];
+            const Rgb share = integral(even, [&](Vec3 d) {
+                return (model == PEL_SPECULAR_GGX ? reference::specularGgx(n, d, v, 0.3, 0.3, 0, 1)
+                                                  : reference::specular(n, d, v, 0.3, 1)) /
+                       pi;
+            });
+            EXPECT_NEAR(diffuse(i).x, 0.5, 1e-4);
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(at(specular_, i)[c], share.x, tolerance::environmentShare) << model << ' ' << i;
+        }
     }
 }
 
