@@ -510,10 +510,14 @@ class Methods {
                 addErrors(row, valuesAt(shot.light, truth.pixels), truth, s.subsets);
                 row["flip"] = finite(io::flip(valuesAt(shot.light, crop.pixels), crop.light, crop.width));
                 row["flip_noise"] = crop.noise;
-                if (setting.shown && scale > 1) addPicture(name, setting, s, shot.light);
+                for (const ShownPart& part : shownParts)
+                    if (setting.shown && name == part.scene)
+                        addPicture(part, setting.name(), valuesAt(shot.light, part.pixels(s)));
                 shot.light = {};
             });
         }
+        for (const ShownPart& part : shownParts)
+            if (name == part.scene) addPicture(part, "walk", readPart(request_.data + "/bench", part, s));
         run(contenders, name, "methods", request_.quick ? 3 : 5);
         const double plain = timeOfPlain(contenders);
         std::ranges::sort(contenders, {}, [](const Contender& c) { return c.setting.name(); });
@@ -614,30 +618,14 @@ class Methods {
                          {"error_mean", sum / count}});
     }
 
-    // The part of a picture where methods differ, as the bytes of a PNG file in base 64.
-    void addPicture(const std::string& name, const Setting& setting, const LitScene& s,
-                    const std::vector<float>& light) {
-        constexpr struct {
-            const char* scene;
-            double x, y, width;  // middle and width, as parts of the picture
-            float exposure;
-        } parts[] = {{"side-4", 0.46, 0.56, 0.5, 1}, {"ear-4", 0.61, 0.52, 0.36, 2.5f}};
-        for (const auto& part : parts) {
-            if (name != part.scene) continue;
-            const int side = int(part.width * s.width), x0 = int(part.x * s.width) - side / 2,
-                      y0 = int(part.y * s.height) - side / 2;
-            std::vector<float> crop;
-            for (int y = y0; y < y0 + side; ++y)
-                for (int c = 0; c < 3 * side; ++c)
-                    crop.push_back(sceneAlbedo *
-                                   light[3 * (size_t(y) * size_t(s.width) + size_t(x0)) + size_t(c)]);
-            const std::vector<uint8_t> pixels = io::toSrgb8(crop, io::ToneMap{part.exposure});
-            const std::string file = io::pngPictures.encode("picture.png", side, side, 3, pixels, true);
-            pictures_.push_back({{"scene", name},
-                                 {"method", setting.name()},
-                                 {"exposure", part.exposure},
-                                 {"png", base64(file)}});
-        }
+    // A part of a picture, as the bytes of a PNG file in base 64. `light`: RGB at `pixels`.
+    void addPicture(const ShownPart& part, const std::string& method, std::vector<float> light) {
+        const size_t side = size_t(std::sqrt(double(light.size() / 3)));
+        const std::vector<uint8_t> pixels = io::toSrgb8(light, io::ToneMap{part.exposure});
+        const std::string file =
+            io::pngPictures.encode("picture.png", uint32_t(side), uint32_t(side), 3, pixels, true);
+        pictures_.push_back(
+            {{"scene", part.scene}, {"method", method}, {"exposure", part.exposure}, {"png", base64(file)}});
     }
 
     static std::string base64(const std::string& bytes) {

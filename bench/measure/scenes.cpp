@@ -12,7 +12,8 @@ using namespace lit_scenes;
 
 constexpr size_t truthPoints = 640, clipPoints = 256;
 constexpr int cropSide = 48;
-constexpr uint32_t truthWalks = 256, clipWalks = 64, cropWalks = 1024;  // for each point, channel and half
+constexpr uint32_t truthWalks = 256, clipWalks = 64, cropWalks = 1024,
+                   partWalks = 48;  // for each point, channel and half
 constexpr int pictureSize = 512, clipSize = 256, mapSize = 2048;
 constexpr std::array<double, 3> burleyLengths{0.29205, 0.10902, 0.05411};  // mm
 
@@ -67,9 +68,9 @@ void write(const std::string& path, const std::vector<std::vector<float>>& layer
     const size_t shape[] = {layers.size(), layers[0].size() / 3, 3};
     io::writeNpy(path, shape, all, type);
 }
-std::vector<std::vector<float>> readLayers(const std::string& path, size_t values) {
+std::vector<std::vector<float>> readLayers(const std::string& path, size_t values, size_t least = 2) {
     const io::NpyArray array = io::readNpy(path);
-    if (array.shape.size() != 3 || array.shape[1] * 3 != values || array.shape[0] < 2)
+    if (array.shape.size() != 3 || array.shape[1] * 3 != values || array.shape[0] < least)
         throw std::runtime_error(path + " is the truth of another scene");
     std::vector<std::vector<float>> layers;
     for (size_t k = 0; k < array.shape[0]; ++k)
@@ -152,6 +153,25 @@ void makeCrop(const std::string& path, const Stage& stage, const FrozenScene& sc
     write(path, {light.first, light.second});
 }
 
+void makePart(const ShownPart& part, const std::string& path, const Stage& stage, const FrozenScene& scene,
+              double scale, const Say& say) {
+    SceneRequest request = scene.request;
+    request.profileScale = scale;
+    const LitScene s = stage.look(request, usualProfile());
+    const std::vector<size_t> all = part.pixels(s);
+    std::vector<size_t> covered;
+    std::ranges::copy_if(all, std::back_inserter(covered), [&](size_t i) { return s.covered[i]; });
+    const sample::WalkedLight light = walk(stage, s, covered, scale, partWalks, say);
+    const size_t side = size_t(std::sqrt(double(all.size())));
+    std::vector<float> means(3 * (side / 2) * (side / 2));
+    for (size_t i = 0, next = 0; i < all.size(); ++i) {
+        if (!s.covered[all[i]]) continue;
+        float* mean = &means[3 * (i / side / 2 * (side / 2) + i % side / 2)];
+        for (size_t c = 0; c < 3; ++c, ++next) mean[c] += (light.first[next] + light.second[next]) / 8;
+    }
+    write(path, {means});
+}
+
 // The pixels of `frame` that show these points; SIZE_MAX: none within a pixel's width.
 std::vector<size_t> pixelsThatShow(const LitScene& frame, const std::vector<float>& points) {
     std::vector<size_t> found;
@@ -229,6 +249,27 @@ Crop readCrop(const std::string& folder, const std::string& name, const LitScene
     return crop;
 }
 
+std::vector<size_t> ShownPart::pixels(const LitScene& s) const {
+    const int side = int(width * s.width) / 2 * 2, x0 = int(x * s.width) - side / 2,
+              y0 = int(y * s.height) - side / 2;
+    std::vector<size_t> all;
+    for (int k = 0; k < side * side; ++k)
+        all.push_back(size_t(y0 + k / side) * size_t(s.width) + size_t(x0 + k % side));
+    return all;
+}
+
+std::vector<float> readPart(const std::string& folder, const ShownPart& part, const LitScene& scene) {
+    const size_t count = part.pixels(scene).size(), side = size_t(std::sqrt(double(count)));
+    const std::vector<float> means =
+        readLayers(fileOf(folder, std::string("part-") + part.scene), 3 * count / 4, 1)[0];
+    std::vector<float> light;
+    for (size_t i = 0; i < count; ++i) {
+        const float* mean = &means[3 * (i / side / 2 * (side / 2) + i % side / 2)];
+        light.insert(light.end(), mean, mean + 3);
+    }
+    return light;
+}
+
 ClipTruth readClip(const std::string& folder, const FrozenClip& clip, const std::vector<LitScene>& frames) {
     ClipTruth t{clipPixels(frames), {}};
     t.light = read(fileOf(folder, clip.name), at(frames[0].positions, t.pixels[0]));
@@ -267,13 +308,17 @@ void makeTruth(const Device& device, const std::string& folder, const std::strin
         std::optional<Stage> stage;
         for (const double scale : radiusScales) {
             const std::string name = scene.name + ("-" + std::to_string(int(scale)));
-            const std::string points = fileOf(folder, name), crop = fileOf(folder, "crop-" + name);
-            if (std::filesystem::exists(points) && std::filesystem::exists(crop)) continue;
-            if (!stage) stage.emplace(device, scene.body(headFile), 1);
-            if (!std::filesystem::exists(points))
-                makeScene(device, points, *stage, scene, scale, progress(name));
-            if (!std::filesystem::exists(crop))
-                makeCrop(crop, *stage, scene, scale, progress(name + ", cropped"));
+            const auto makeMissing = [&](const std::string& file, const char* what, const auto& make) {
+                const std::string path = fileOf(folder, file);
+                if (std::filesystem::exists(path)) return;
+                if (!stage) stage.emplace(device, scene.body(headFile), 1);
+                make(path, *stage, scene, scale, progress(name + what));
+            };
+            makeMissing(name, "", std::bind_front(makeScene, std::cref(device)));
+            makeMissing("crop-" + name, ", cropped", makeCrop);
+            for (const ShownPart& part : shownParts)
+                if (name == part.scene)
+                    makeMissing("part-" + name, ", shown", std::bind_front(makePart, std::cref(part)));
         }
     }
     const Stage stage(device, frozenScenes()[0].body(headFile), 1);

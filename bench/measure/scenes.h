@@ -50,6 +50,19 @@ struct Crop {
 // Throws std::runtime_error where `folder` has none.
 Crop readCrop(const std::string& folder, const std::string& name, const lit_scenes::LitScene& scene);
 
+// A part of a scene's picture that reports show, at the larger radius.
+struct ShownPart {
+    const char* scene;
+    double x, y, width;  // middle and width, as parts of the picture
+    float exposure;
+
+    std::vector<size_t> pixels(const lit_scenes::LitScene& scene) const;  // of a square, row by row
+};
+constexpr ShownPart shownParts[] = {{"side-4", 0.46, 0.56, 0.5, 1}, {"ear-4", 0.61, 0.52, 0.36, 2.5f}};
+// RGB of light there, the same for 2 x 2 pixels, in radiance with `sceneAlbedo`. Throws as readCrop().
+std::vector<float> readPart(const std::string& folder, const ShownPart& part,
+                            const lit_scenes::LitScene& scene);
+
 // What each method made of a scene on PoCL, for an albedo of 1: three values for each of `pixels`.
 struct KeptPictures {
     std::vector<size_t> pixels;
