@@ -32,12 +32,14 @@ constexpr double sphereMean = 1e-5;  // energy: the mean of the form sphere is e
 constexpr double surfaceNear = 3e-5;
 // a measured profile that ends at a step: the rule along edges meets it between its points
 constexpr double surfaceStep = 2e-4;
-constexpr double surfaceFar = 1e-4;       // what a hierarchy of that tolerance may leave out
-constexpr double surfaceSphere = 1e-4;    // a sphere of 200,000 facets against the closed form
-constexpr double walkReflected = 3e-3;    // three standard errors of 200,000 photons
-constexpr double walkErrors = 4.5;        // standard errors of a bin, of 60 bins
-constexpr double walkTheirs = 5e-4;       // of the other walk, smoothed over N.L
-constexpr double throughSlab = 0.015;     // light from beyond the profile's reach, in a slab of 12 paths
+constexpr double surfaceFar = 1e-4;     // what a hierarchy of that tolerance may leave out
+constexpr double surfaceSphere = 1e-4;  // a sphere of 200,000 facets against the closed form
+constexpr double walkReflected = 3e-3;  // three standard errors of 200,000 photons
+constexpr double walkErrors = 4.5;      // standard errors of a bin, of 60 bins
+constexpr double walkTheirs = 5e-4;     // of the other walk, smoothed over N.L
+constexpr double throughSlab = 0.015;   // light from beyond the profile's reach, in a slab of 12 paths
+constexpr double slabReflects =
+    0.01;  // over a half-space: twice 0.0025 of noise in 100,000 walks, 0.004 of the fit
 constexpr double throughSlabPart = 0.03;  // relative: sums over blocks of texels
 constexpr double publishedDeltaE = 1e-4;  // published to four decimals
 constexpr double flip = 3e-5;        // the authors' program sums in floats, with more digits of sRGB's matrix

@@ -23,6 +23,7 @@ struct Setting {
     bool shown = false;           // the setting of this method that pictures, frames and clips have
     bool moving = false;          // in frames and clips too, beside a history that needs several frames
     double budget = 0;            // of time, ns per pixel of skin; 0: none
+    bool thickness = false;       // PEL_SLOT_THICKNESS is given
     int texture = 0;              // texels a side of the texture that is scattered; 0: none
     const char* tunes = nullptr;  // its name in records for PelShaderOptions.timeBudget
 
@@ -85,6 +86,7 @@ std::vector<Setting> settings() {
     }
     for (const int size : {512, 1024})
         add("auto", "map of " + text(size, "texels"), PEL_SCATTERING_AUTO).mapSize = size;
+    add("auto", "with thickness", PEL_SCATTERING_AUTO).thickness = true;
     Setting& light = add("light", "map of 2048 texels", PEL_SCATTERING_LIGHT);
     light.quick = light.shown = true;
     light.tunes = "light";
@@ -503,8 +505,10 @@ class Methods {
             if (setting.texture && s.gbuffer.uv.data.empty()) continue;
             if (setting.request.historyWeight > 0) continue;
             attempt(name + ": " + setting.name(), "methods", [&] {
+                Setting given = setting;
+                if (given.thickness) given.request.thickness = thicknessOf(stage, s);
                 s.lamps = setting.mapSize ? stage.lampsOf(s.lighting, setting.mapSize) : lamps;
-                contenders.push_back(contenderOf(setting, scene, s, scale));
+                contenders.push_back(contenderOf(given, scene, s, scale));
                 Shot& shot = contenders.back().shot;
                 Json& row = errors[setting.name()];
                 addErrors(row, valuesAt(shot.light, truth.pixels), truth, s.subsets);

@@ -1,14 +1,25 @@
 // Irradiance / pi at each pixel, before it scatters: all lights with sharp shadows, and the ambient light
 // (section 6 of the mathematics without a profile); without specular light and albedo.
 //
-// Inputs: shading normals, positions or depth if a light has a position, ambient occlusion, shadows per pixel
-// and light, ids. Output: planes of RGB, NaN where an input is. Pixels of materials that use the tables
-// (PEL_SCATTER_PREINTEGRATED) are not changed. One work-group: a run of tiles; one work-item: PEL_WIDTH
-// pixels of a row at a time. Variants: as shade.cl.
+// Inputs: shading normals, positions or depth if a light has a position, ambient occlusion, thickness of the
+// body, shadows per pixel and light, ids. Output: planes of RGB, NaN where an input is. Pixels of materials
+// that use the tables (PEL_SCATTER_PREINTEGRATED) are not changed. One work-group: a run of tiles; one
+// work-item: PEL_WIDTH pixels of a row at a time. Variants: as shade.cl.
 #define IMAGES_RESTRICT restrict
 #include "lib/image/planes.clh"
 #include "lib/shading/tiles.clh"
 #include "shading/scene.clh"
+
+#if PEL_FORMAT_THICKNESS
+// What a slab of this thickness reflects, over what a half-space does: the rest leaves on the far side
+// (section 12 of the mathematics, "Slabs"). `path`: the mean free path. 1 where either is unknown.
+static inline floatw keptBySlab(floatw thickness, floatw path) {
+    const floatw t = thickness / path * -1.44269504f, kept = 1.0f - 0.4635f * exp2(1.088f * t) -
+                                                             0.4238f * exp2(0.3548f * t) -
+                                                             0.1127f * exp2(4.3f * t);
+    return selectw((floatw)(1.0f), kept, (thickness > 0.0f) & (path > 0.0f));
+}
+#endif
 
 // Irradiance at PEL_WIDTH pixels from (x, y) on. Where no light arrives its shadow does not matter.
 static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMaterial* materials, uintw id,
@@ -52,6 +63,17 @@ static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMat
         e = add3(e, scale3(mul3(color, through), arrives * lambertOf(light, sample, -cosine)));
 #endif
     }
+#if PEL_FORMAT_THICKNESS
+    const floatw thickness = loadScalar(PEL_FORMAT_THICKNESS, SPAN(THICKNESS));
+#define PEL_RED_(k, s) (wanted s ? materials[id s].gain[0] : 0.0f)
+#define PEL_GREEN_(k, s) (wanted s ? materials[id s].gain[1] : 0.0f)
+#define PEL_BLUE_(k, s) (wanted s ? materials[id s].gain[2] : 0.0f)
+    e = mul3(e, vec3(keptBySlab(thickness, PEL_LANES(PEL_RED_)), keptBySlab(thickness, PEL_LANES(PEL_GREEN_)),
+                     keptBySlab(thickness, PEL_LANES(PEL_BLUE_))));
+#undef PEL_RED_
+#undef PEL_GREEN_
+#undef PEL_BLUE_
+#endif
     const floatw none = NAN;
     return select3(vec3(none, none, none), e, valid);
 }

@@ -247,8 +247,9 @@ struct ShadeRequest {
     float timeBudget = 0;
     float historyWeight = 0;
     uint32_t frameIndex = 0;
-    std::vector<float> motion = {};   // PEL_SLOT_MOTION, two floats a pixel
-    std::vector<float> texture = {};  // a scattered one, square; the body has texture coordinates
+    std::vector<float> motion = {};     // PEL_SLOT_MOTION, two floats a pixel
+    std::vector<float> texture = {};    // a scattered one, square; the body has texture coordinates
+    std::vector<float> thickness = {};  // PEL_SLOT_THICKNESS
 };
 
 inline scatter_scene::Picture pictureOf(const LitScene& s) {
@@ -269,6 +270,18 @@ inline std::vector<float> motionBetween(const LitScene& before, const LitScene& 
             motion.push_back(float((1 - clip.y) / 2 * now.height - 0.5 - y));
         }
     return motion;
+}
+
+// How thick the body is below each covered pixel, along the normal.
+inline std::vector<float> thicknessOf(const Stage& stage, const LitScene& s) {
+    std::vector<float> thickness(s.covered.size(), INFINITY);
+    for (size_t i = 0; i < thickness.size(); ++i) {
+        if (!s.covered[i]) continue;
+        const float *p = &s.positions[3 * i], *n = &s.normals[3 * i];
+        const Vec3 inwards{-n[0], -n[1], -n[2]}, from = Vec3{p[0], p[1], p[2]} + inwards * 1e-2;
+        thickness[i] = float(stage.scene().intersect({from, inwards}).distance);
+    }
+    return thickness;
 }
 
 // What a shader made of a scene; `shader` makes the same frame again.
@@ -295,6 +308,7 @@ inline Shot shoot(const Device& device, const LitScene& s, const Profile& profil
     f.options.halfRate = request.halfRate;
     f.options.timeBudget = request.timeBudget;
     f.options.historyWeight = request.historyWeight, f.options.frameIndex = request.frameIndex;
+    if (!request.thickness.empty()) f.images[PEL_SLOT_THICKNESS] = request.thickness;
     if (!request.motion.empty()) f.images[PEL_SLOT_MOTION] = request.motion;
     f.texture = request.texture;
     for (size_t i = 0; !f.texture.empty() && i < s.covered.size(); ++i)

@@ -381,6 +381,47 @@ TEST(LightSpace, SlabsLetThroughWhatRandomWalksDo) {
     }
 }
 
+// Its lit side, where the host says how thick it is: what does not leave on the far side. A thickness that is
+// unknown, or without end, changes nothing.
+TEST(LightSpace, SlabsReflectWhatRandomWalksDo) {
+    constexpr float path[] = {0.3f, 0.6f, 1.2f};  // mm
+    const float albedos[] = {0.8f, 0.8f, 0.8f};
+    const uint32_t side = 24, middle = 3 * (side / 2 * side + side / 2);
+    const auto reflected = [](double paths) {
+        return reference::walkSlab({1, 0.99055}, paths, 1, 1, sized(100000, 1000), 7).reflected;
+    };
+    const double half = reflected(INFINITY);
+    std::map<float, double> slabs;  // by the thickness in mean free paths
+    for (const PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE, byAuto}) {
+        Frame f = sheet(side, method);
+        f.giveIrradiance = false;
+        f.profile = Profile::burley(path, albedos, PEL_BURLEY_SEARCHLIGHT);
+        f.material.curvatureGain = 1;
+        f.lamps.resize(1);
+        std::copy_n(std::array{0.0f, 0.6f, 0.8f}.data(), 3, f.lamps[0].light.toLight);
+        const std::vector<float> endless = f.shade().light;
+        const auto lightOf = [&](float thickness) {
+            f.images[PEL_SLOT_THICKNESS].assign(f.picture.pixels(), thickness);
+            return f.shade().light;
+        };
+        const PelProfileInfo info = f.profile.info();
+        for (float thickness : {0.1f, 0.3f, 1.0f, 3.0f, 10.0f}) {
+            const std::vector<float> light = lightOf(thickness);
+            for (size_t c = 0; c < 3; ++c) {
+                const float paths = thickness / info.meanFreePath[c];
+                if (!slabs.contains(paths)) slabs[paths] = reflected(paths) / half;
+                EXPECT_NEAR(light[middle + c] / endless[middle + c], slabs[paths],
+                            testsAreSmall() ? 0.1 : tolerance::slabReflects)
+                    << paths << " mean free paths, method " << int(method) << ", channel " << c;
+            }
+        }
+        for (float unknown : {0.0f, -1.0f, notANumber, infinity, 1e30f})
+            EXPECT_EQ(lightOf(unknown), endless) << unknown << ", method " << int(method);
+        f.material.curvatureGain = 0;
+        EXPECT_EQ(lightOf(0.3f), endless) << "no medium, method " << int(method);
+    }
+}
+
 // A slab that is lit from behind as far as the point: half of the light of one that is lit beyond it, at each
 // border of the map.
 TEST(LightSpace, AllTexelsUpToABorderCount) {

@@ -850,9 +850,12 @@ typedef enum PelImageSlot {
     PEL_SLOT_CURVATURE = 7,         /* 1/length. With a curvature LUT: direct scattering */
     PEL_SLOT_ALBEDO = 8,            /* RGB. Not set: PelMaterial.albedo */
     PEL_SLOT_AMBIENT_OCCLUSION = 9, /* 0 to 1, multiplies the ambient term */
-    PEL_SLOT_THICKNESS = 10,        /* length, from the host, instead of shadow map taps */
-    PEL_SLOT_ROUGHNESS = 11,        /* multiplies PelMaterial.roughness */
-    PEL_SLOT_SPECULAR = 12,         /* multiplies PelMaterial.specular */
+    /* length along the inward normal, instead of shadow map taps. Irradiance that is made here loses what
+     * leaves on the far side of so thin a body, where the profile's mean free path is known; 0 or less, NaN:
+     * unknown */
+    PEL_SLOT_THICKNESS = 10,
+    PEL_SLOT_ROUGHNESS = 11, /* multiplies PelMaterial.roughness */
+    PEL_SLOT_SPECULAR = 12,  /* multiplies PelMaterial.specular */
     PEL_SLOT_UV = 13, /* u, v of the normal map: two components, float or half. Needed by normal maps */
     /* du/dx, dv/dx, du/dy, dv/dy per pixel: four components. Not set: only the diffusion radius chooses the
      * level of a normal map */
