@@ -200,8 +200,7 @@ double Scalp::height(Vec3 p) const {
     while (line[i][0] < angle) ++i;
     const double t = (angle - line[i - 1][0]) / (line[i][0] - line[i - 1][0]);
     const double at = line[i - 1][1] + (line[i][1] - line[i - 1][1]) * t * t * (3 - 2 * t);
-    const double ragged =
-        0.03 * (std::sin(0.32 * p.y + 0.21 * p.z) + std::sin(0.57 * p.z - 0.43 * p.y + p.x));
+    const double ragged = 0.03 * (std::sin(0.32 * p.y + 0.2 * p.z) + std::sin(0.6 * p.z - 0.4 * p.y));
     return (p.y - betweenEyes.y) / eyeDistance - at + ragged;
 }
 

@@ -38,11 +38,6 @@ PelMaterial skin() {
     return m;
 }
 
-// The first lamp's map has the view's name alone.
-std::string shadowMapFile(const std::string& view, const DemoLight& lamp) {
-    return view + (lamp.name == "Key" ? "" : "_" + lamp.name) + "_shadowmap.exr";
-}
-
 // Shows the head's frame; near and far plane enclose all of it.
 sample::Camera framed(const sample::Scene& mesh, const DemoHead& head, const sample::Framing& framing,
                       double aspect) {
@@ -64,7 +59,7 @@ void addShadow(DemoView& view, const sample::Scene& mesh, const DemoLight& lamp,
     std::ranges::copy(map.worldToUvz.toFloats(), light.light.worldToShadow);
     light.light.shadowProjection = PEL_SHADOW_PARALLEL;
     light.light.shadowDepthRange = float(map.depthRange);
-    light.shadowMapFile = shadowMapFile(view.name, lamp);
+    light.shadowMapFile = view.name + (lamp.name == "Key" ? "" : "_" + lamp.name) + "_shadowmap.exr";
     light.shadowMapChannel = "Z";
     io::Image& depth = view.images[light.shadowMapFile];
     depth.width = depth.height = map.size;
@@ -195,7 +190,6 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
         wetness = demo::dressEyes(g, head.pose.up);
         demo::shadeScalp(g, head.scalp);
     }
-    const sample::Image occlusion = sample::ambientOcclusion(mesh, g, request.rays);
     demo::StrandLight onHair;
     onHair.occluders = &mesh;
     for (const DemoLight& lamp : request.lights) {
@@ -234,7 +228,8 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     add(PEL_SLOT_ALBEDO, "Albedo", "RGB", g.albedo.data);
     add(PEL_SLOT_ROUGHNESS, "Roughness", "V", g.roughness.data);
     add(PEL_SLOT_SPECULAR, "Specular", "V", g.specular.data);
-    add(PEL_SLOT_AMBIENT_OCCLUSION, "AmbientOcclusion", "V", occlusion.data);
+    add(PEL_SLOT_AMBIENT_OCCLUSION, "AmbientOcclusion", "V",
+        sample::ambientOcclusion(mesh, g, request.rays).data);
     add(PEL_SLOT_MATERIAL, "Material", "I", std::vector<float>(g.material.begin(), g.material.end()));
     if (!wetness.empty()) add(PEL_SLOT_WETNESS, "Wetness", "V", wetness);
     add(PEL_SLOT_RADIANCE, "Before", "RGB", before.data);

@@ -43,8 +43,7 @@ struct Detail {
     SkinDetail settings;
     WaveField pores, folds, blood, pigment, furrows;
 
-    // The slope of lines that run up and down and spread away from `middle`: a field that is stretched along
-    // them.
+    // The slope of lines that run up and down and spread from `middle`: a field that is stretched along them.
     Vec3 furrowSlope(Vec3 p, Vec3 middle, const Footprint& pixel) const {
         constexpr double stretch = 6, spread = 0.035;  // spread per mm
         const double y = p.y - middle.y, x = (p.x - middle.x) / (1 + spread * std::abs(y));

@@ -33,8 +33,7 @@ LinearColor EyeLook::at(Vec3 p) const {
     const double vein = corner * std::pow(std::abs(std::cos(phase)), 16);
     // The sclera darkens and greys towards the iris over a width that varies.
     const double fromAxis = dot(out, gaze) > 0 ? std::hypot(across, height) : 1;
-    const double turn = std::atan2(height, across);
-    const double width = 0.07 + 0.02 * std::sin(3 * turn + 1) + 0.012 * std::sin(7 * turn);
+    const double width = 0.07 + 0.03 * std::sin(3 * std::atan2(height, across) + 1);
     const double grey = 0.4 * (1 - smoothstep(limbus, limbus + width, fromAxis));
     const LinearColor white{sclera[0] * (1 - 0.06 * vein), sclera[1] * (1 - 0.24 * corner - 0.22 * vein),
                             sclera[2] * (1 - 0.28 * corner - 0.2 * vein)};
