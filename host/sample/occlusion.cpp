@@ -18,8 +18,8 @@ Vec3 across(Vec3 n) {
 }
 
 // The share of rays that hit nothing, of those above their pixel's horizon, over similar pixels of a pattern;
-// 1 where there are none. Each ray starts `offset` from the surface in directionAt(normal, x, y), for a point
-// of the unit disk. One set of points over all pixels of the pattern: equal steps of the area, golden azimuths.
+// 1 where there are none. Each ray starts `offset` from the surface in directionAt(normal, x, y), (x, y) in
+// the unit disk. All pixels of the pattern share a set of points: equal steps of the area, golden azimuths.
 template <class DirectionAt>
 Image unoccluded(const Scene& scene, const GBuffer& g, int rays, double offset, DirectionAt&& directionAt) {
     if (rays < 1) throw std::invalid_argument("occlusion: at least one ray a pixel");
