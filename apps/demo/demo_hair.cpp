@@ -23,7 +23,7 @@ class Hair {
     // `side`: 1 for the left eye, which is at positive x. Lashes stand in clumps of two or three, whose tips
     // meet.
     void addLashes(const sample::EyeLook& eye, double side) {
-        constexpr int upper = 34, lower = 17;
+        constexpr int upper = 34, lower = 22;
         for (int clump = 0; clump < upper + lower; ++clump) {
             const bool above = clump < upper;
             const int count = above ? 2 + clump % 2 : 2, of = above ? upper : lower;
@@ -147,7 +147,7 @@ class Hair {
             points.push_back(*edge + Vec3{together * u, up * 0.25, 0} +
                              Vec3{fan * u, up * (rise * u * u - 0.15 * u), 1.05 * u - 0.35 * u * u} * length);
         }
-        addStrand(points, up > 0 ? 0.1 : 0.055);
+        addStrand(points, up > 0 ? 0.1 : 0.075);
     }
     void addStrand(std::vector<Vec3> points, double radius, Vec3 normal = {0, 0, 1}) {
         if (points.size() == segments + 1) strands.push_back({std::move(points), radius, normal});

@@ -1,5 +1,5 @@
-// Hair of the demo's head: brows, lashes and short hair on the scalp, as strands that are drawn over the
-// shaded picture. In the G-buffer they would leave gaps in the skin across which no light scatters.
+// Hair of the demo's head: brows, lashes and short hair on the scalp, as strands whose light is added to that
+// of the skin. As surfaces of the G-buffer they would leave gaps across which no light scatters.
 #pragma once
 #include "demo/demo_head.h"
 #include "sample/gbuffer.h"

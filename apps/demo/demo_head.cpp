@@ -56,8 +56,8 @@ std::vector<sample::SkinZone> zonesOf(const io::PartedMesh& head, const Bounds (
         centre.z -= 0.3 * radii.z * e;
         zones.push_back({centre, radii * e, color, edge, specular, roughness, relief});
     };
-    add(0, lipLine - 0.005 * e, {0.39, 0.165, 0.9}, {0.86, 0.56, 0.58}, 0.25, 2.2, 0.6, 0.3);
-    zones.back().furrows = 0.09;
+    add(0, lipLine - 0.005 * e, {0.39, 0.165, 0.9}, {0.86, 0.56, 0.58}, 0.25, 3, 0.5, 0.3);
+    zones.back().furrows = 0.08;
     const Vec3 nose = foremost(head.mesh, 0, noseTip, 0.08 * e);
     for (const double side : {-1.0, 1.0}) {
         add(side * 0.5 * e, left.y, {0.33, 0.2, 0.4}, {0.97, 0.84, 0.83}, 1);
@@ -68,7 +68,8 @@ std::vector<sample::SkinZone> zonesOf(const io::PartedMesh& head, const Bounds (
         zones.push_back({{x, left.y - 0.25 * e, skin.centre().z - 0.1 * e},
                          Vec3{0.35, 0.75, 0.6} * e,
                          {1.02, 0.76, 0.74},
-                         1});
+                         1,
+                         0.5});
         add(side * 0.37 * e, lipLine, {0.16, 0.12, 0.5}, {0.93, 0.84, 0.82}, 1);  // the mouth's corner
         // Nostril: what little light comes out again has passed through its walls, and is red.
         zones.push_back({{side * 0.165 * e, noseTip - 0.1 * e, nose.z - 0.23 * e},
@@ -125,6 +126,46 @@ void closeMouth(io::PartedMesh& head, double lipLine, double eyeDistance) {
     }
 }
 
+// Where the lids meet beside the nose: the place of the ball nearest to the nose where a small disk fits
+// between them, seen from the front.
+Vec3 innerCorner(const io::PartedMesh& head, const sample::EyeLook& eye, double toNose) {
+    const auto skin = uint32_t(head.part("skin"));
+    std::vector<Vec3> lids, ball;
+    for (size_t c = 0; c < head.mesh.triangles.size(); ++c) {
+        const Vec3 p = positionOf(head.mesh, head.mesh.triangles[c]) - eye.centre;
+        if (p.z > 0.4 * eye.radius && length(p) < 2 * eye.radius)
+            (head.partOf[c / 3] == skin ? lids : ball).push_back(p);
+    }
+    Vec3 corner;
+    for (const Vec3 at : ball)
+        if (toNose * at.x > toNose * corner.x && std::ranges::none_of(lids, [&](Vec3 p) {
+                return std::hypot(p.x - at.x, p.y - at.y) < 0.065 * eye.radius;
+            }))
+            corner = at;
+    return eye.centre + corner;
+}
+
+// The caruncle, a pink and moist hillock that fills the corner between ball and lids.
+void addCaruncle(io::PartedMesh& head, const sample::EyeLook& eye, std::vector<sample::SkinZone>& zones) {
+    const double toNose = eye.centre.x > 0 ? -1 : 1;
+    const Vec3 radii = Vec3{0.21, 0.13, 0.1} * eye.radius;
+    const Vec3 centre = innerCorner(head, eye, toNose) + Vec3{0.4 * radii.x * toNose, 0, -0.5 * radii.z};
+    const sample::Mesh ball = sample::makeSphere(1, 16, 24);
+    for (const uint32_t v : ball.triangles) head.mesh.triangles.push_back(head.mesh.vertexCount() + v);
+    for (size_t v = 0; v < ball.positions.size(); v += 3) {
+        const Vec3 n{ball.positions[v], ball.positions[v + 1], ball.positions[v + 2]};
+        const auto add = [](std::vector<float>& to, Vec3 p) {
+            to.insert(to.end(), {float(p.x), float(p.y), float(p.z)});
+        };
+        add(head.mesh.positions, centre + Vec3{n.x * radii.x, n.y * radii.y, n.z * radii.z});
+        add(head.mesh.normals, normalize(Vec3{n.x / radii.x, n.y / radii.y, n.z / radii.z}));
+    }
+    head.partOf.resize(head.mesh.triangles.size() / 3, uint32_t(head.parts.size()));
+    head.parts.push_back("caruncle");
+    if (!head.cornerUvs.empty()) head.cornerUvs.resize(2 * head.mesh.triangles.size());
+    zones.push_back({centre, radii * 1.3, {1.08, 0.74, 0.72}, 0.4, 2.5, 0.5, 0.5});
+}
+
 // An adult's eye, as large as the ball.
 io::SceneEye modelOf(const sample::EyeLook& look, uint32_t material) {
     io::SceneEye model;
@@ -137,6 +178,7 @@ io::SceneEye modelOf(const sample::EyeLook& look, uint32_t material) {
     for (float* length : {&eye.scleraRadius, &eye.corneaRadius, &eye.limbusRadius, &eye.limbusWidth,
                           &eye.chamberDepth, &eye.pupilRadius})
         *length *= scale;
+    eye.limbusWidth *= 1.3f, eye.limbusDarkening = 0.5f;  // a soft border
     return model;
 }
 
@@ -145,9 +187,9 @@ io::SceneEye modelOf(const sample::EyeLook& look, uint32_t material) {
 double Scalp::height(Vec3 p) const {
     // The hairline's height over the eyes, by the angle from the front in degrees: forehead, temple,
     // sideburn, ear, nape.
-    constexpr double line[][2] = {{0, 1.28},   {22, 1.31},  {40, 1.34},  {52, 1.05}, {61, 0.62},
-                                  {67, 0.28},  {73, 0.0},   {80, -0.1},  {86, 0.0},  {108, 0.0},
-                                  {120, -0.5}, {140, -0.9}, {181, -0.95}};
+    constexpr double line[][2] = {{0, 1.28},  {22, 1.32},  {38, 1.38},  {47, 1.27},  {54, 0.92},  {58, 0.62},
+                                  {64, 0.44}, {69, 0.2},   {73, -0.05}, {77, -0.16}, {82, -0.18}, {86, 0.0},
+                                  {108, 0.0}, {120, -0.5}, {140, -0.9}, {181, -0.95}};
     const Vec3 middle = skin.centre();
     const Vec3 toEar = p - Vec3{std::copysign(skin.high.x, p.x), betweenEyes.y - 0.28 * eyeDistance,
                                 middle.z - 0.1 * eyeDistance};
@@ -158,7 +200,8 @@ double Scalp::height(Vec3 p) const {
     while (line[i][0] < angle) ++i;
     const double t = (angle - line[i - 1][0]) / (line[i][0] - line[i - 1][0]);
     const double at = line[i - 1][1] + (line[i][1] - line[i - 1][1]) * t * t * (3 - 2 * t);
-    return (p.y - betweenEyes.y) / eyeDistance - at;
+    const double ragged = 0.03 * (std::sin(0.32 * p.y + 0.2 * p.z) + std::sin(0.6 * p.z - 0.4 * p.y));
+    return (p.y - betweenEyes.y) / eyeDistance - at + ragged;
 }
 
 double Scalp::cover(Vec3 p) const {
@@ -183,6 +226,26 @@ DemoHead loadDemoHead(const std::string& path, int levels) {
     io::cutAndClose(head, "skin", {0, 0.976f, 0.22f}, 0.976f * cut, "cut");
     DemoHead out;
     out.pose = {{0, 1, 0}, {0, 0, 1}};
+    out.looks.resize(DEMO_LASHES);
+    out.looks[DEMO_SKIN - 1].albedo = {0.72f, 0.50f, 0.40f};
+    out.looks[DEMO_EYES - 1].kind = out.looks[DEMO_RIGHT_EYE - 1].kind = sample::Look::Kind::Eye;
+    // Behind closed lips hardly any light comes: a fifth of teeth's and tongue's own albedo.
+    out.looks[DEMO_TEETH - 1] = {sample::Look::Kind::Plain, {0.15f, 0.14f, 0.12f}};
+    out.looks[DEMO_TONGUE - 1] = {sample::Look::Kind::Plain, {0.11f, 0.045f, 0.04f}};
+    out.looks[DEMO_CUT - 1] = {sample::Look::Kind::Plain, {0.02f, 0.02f, 0.02f}};
+
+    const Bounds skin = boundsOfPart(head, "skin");
+    if (hasFace) out.zones = zonesOf(head, eyes, lipLineOf(upperTeeth), skin);
+    for (const Bounds& ball : eyes) {
+        if (ball.empty()) continue;
+        sample::EyeLook eye;
+        eye.radius = 0.5 * (ball.high.y - ball.low.y);
+        // The cornea bulges: the ball's middle is behind that of its box.
+        eye.centre = {ball.centre().x, ball.centre().y, ball.low.z + eye.radius};
+        out.eyes.push_back(eye);
+        out.eyeModels.push_back(modelOf(eye, &ball == eyes ? DEMO_EYES : DEMO_RIGHT_EYE));
+        addCaruncle(head, eye, out.zones);
+    }
     for (const uint32_t part : head.partOf) {
         const std::string& name = head.parts[part];
         out.materials.push_back(name == "eye_right"          ? DEMO_RIGHT_EYE
@@ -192,25 +255,6 @@ DemoHead loadDemoHead(const std::string& path, int levels) {
                                 : name == "cut"              ? DEMO_CUT
                                                              : DEMO_SKIN);
     }
-    out.looks.resize(7);
-    out.looks[DEMO_SKIN - 1].albedo = {0.72f, 0.50f, 0.40f};
-    out.looks[DEMO_EYES - 1].kind = out.looks[DEMO_RIGHT_EYE - 1].kind = sample::Look::Kind::Eye;
-    // Behind closed lips hardly any light comes: a fifth of teeth's and tongue's own albedo.
-    out.looks[DEMO_TEETH - 1] = {sample::Look::Kind::Plain, {0.15f, 0.14f, 0.12f}};
-    out.looks[DEMO_TONGUE - 1] = {sample::Look::Kind::Plain, {0.11f, 0.045f, 0.04f}};
-    out.looks[DEMO_CUT - 1] = {sample::Look::Kind::Plain, {0.02f, 0.02f, 0.02f}};
-
-    const Bounds skin = boundsOfPart(head, "skin");
-    for (const Bounds& ball : eyes) {
-        if (ball.empty()) continue;
-        sample::EyeLook eye;
-        eye.radius = 0.5 * (ball.high.y - ball.low.y);
-        // The cornea bulges: the ball's middle is behind that of its box.
-        eye.centre = {ball.centre().x, ball.centre().y, ball.low.z + eye.radius};
-        out.eyes.push_back(eye);
-        out.eyeModels.push_back(modelOf(eye, &ball == eyes ? DEMO_EYES : DEMO_RIGHT_EYE));
-    }
-    if (hasFace) out.zones = zonesOf(head, eyes, lipLineOf(upperTeeth), skin);
     if (out.eyes.size() == 2) {
         const Vec3 left = out.eyes[0].centre, right = out.eyes[1].centre;
         out.scalp = {(left + right) * 0.5, length(left - right), skin};

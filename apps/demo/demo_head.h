@@ -15,7 +15,8 @@ enum DemoMaterial : uint32_t {
     DEMO_TONGUE = 4,
     DEMO_CUT = 5,
     DEMO_RIGHT_EYE = 6,
-    DEMO_TEARS = 7  // along the lower lids, in G-buffers alone
+    DEMO_TEARS = 7,  // along the lower lids, in G-buffers alone, as the next
+    DEMO_LASHES = 8  // before an eye
 };
 
 // A hair: points from root to tip, mm, and the radius at the root, from which it tapers.

@@ -108,12 +108,14 @@ std::vector<DemoViewRequest> requests(const Arguments& a) {
     parseSize(a.size, key.width, key.height);
     key.name = "key";
     key.framing.azimuth = 25;
-    key.lights = {{"Key", 54, 22, {0.92f, 0.845f, 0.76f}}, {"Rim", -132, 25, {0.22f, 0.25f, 0.30f}}};
+    key.lights = {{"Key", 54, 22, {0.92f, 0.845f, 0.76f}, true, 0.15},
+                  {"Rim", -132, 25, {0.22f, 0.25f, 0.30f}}};
     key.skyScale = 0.16f;
     back = key;
     back.name = "backlit";
-    back.lights = {{"Key", 174, 8, {2.8f, 2.64f, 2.43f}, false}};
-    back.skyScale = 0.13f;
+    back.lights = {{"Key", 174, 8, {2.8f, 2.64f, 2.43f}, false, 0.15},
+                   {"Rim", -118, 20, {0.5f, 0.56f, 0.64f}}};
+    back.skyScale = 0.2f;
     return {key, back};
 }
 
@@ -129,7 +131,7 @@ std::vector<float> shadeAs(Run& run, Stages& stages, io::LutStore& luts, const D
     return radiance;
 }
 
-// What each view is shaded as: Lambert, by tables, auto.
+// What each view is shaded as: Lambert, by tables, on the screen.
 std::array<io::SceneFile, 3> scenesOf(const DemoView& view) {
     return {withoutScattering(view.scene), byTables(view.scene), view.scene};
 }
@@ -138,7 +140,7 @@ std::array<io::SceneFile, 3> scenesOf(const DemoView& view) {
 std::vector<io::Picture> finePictures(Run& run, io::LutStore& luts, const sample::Scene& scene,
                                       const DemoHead& head, DemoViewRequest request) {
     constexpr uint64_t most = uint64_t(4096) * 2304;  // pixels; a G-buffer of them takes 1 GB
-    request.width *= 2, request.height *= 2;
+    request.width *= 2, request.height *= 2, request.rays /= 2;
     if (uint64_t(request.width) * request.height > most) return {};
     Stages::begin(request.name + ": pictures with smooth edges");
     const DemoView view = renderDemoView(scene, head, request);
@@ -166,7 +168,7 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
     ShadedView shaded;
     shaded.lambert = shadeAs(run, stages, luts, view, "Lambert", scenes[0]);
     shaded.tables = shadeAs(run, stages, luts, view, "by tables", scenes[1]);
-    shaded.complete = shadeAs(run, stages, luts, view, "auto", scenes[2]);
+    shaded.complete = shadeAs(run, stages, luts, view, "on the screen", scenes[2]);
     stages.measure(view.name + ": pictures at twice the size",
                    [&] { shaded.fine = finePictures(run, luts, scene, head, request); });
     const std::string& folder = a.output;

@@ -14,7 +14,6 @@ struct DemoView {
     io::Image gbuffer;
     io::SceneFile scene;
     io::ShadowMaps images;  // by the names of their files in the scene: shadow maps, surroundings
-    sample::Image hair;     // of drawStrands: it is drawn over the picture
     double gbufferMilliseconds = 0, shadowMapMilliseconds = 0;
 };
 
@@ -24,6 +23,7 @@ struct DemoLight {
     double azimuth, elevation;  // degrees, as in sample::headDirection
     float color[3];             // irradiance / pi
     bool box = true;            // it is seen in reflections, as a soft box
+    double radius = 0;          // at a distance of 1; 0: its shadows are sharp
 };
 
 struct DemoViewRequest {
@@ -32,6 +32,7 @@ struct DemoViewRequest {
     std::vector<DemoLight> lights;  // the first one's reflection is in the sky
     float skyScale = 1;             // of the ambient light
     uint32_t width = 1280, height = 720;
+    int rays = 8;  // a pixel, for the light of the sky; half of them to each lamp with a size
 };
 
 // A scene with only the two tables that the views use, curvature and shadow.
@@ -54,8 +55,7 @@ struct ShadedView {
     std::vector<io::Picture> fine;
 };
 
-// With brows and lashes, before a dark backdrop that is lighter in the middle.
-io::Picture developed(const DemoView& view, std::vector<float> radiance);
+io::Picture developed(const DemoView& view, const std::vector<float>& radiance);
 
 // The complete picture of a view, NAME.png in `folder`, and NAME_lambert.png without scattering. Returns the
 // name of the first, as do the next two.

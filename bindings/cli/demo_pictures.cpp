@@ -5,22 +5,8 @@
 
 namespace pellucid::cli {
 
-io::Picture developed(const DemoView& view, std::vector<float> radiance) {
-    const int width = view.gbuffer.width, height = view.gbuffer.height;
-    const std::vector<float>& material = view.gbuffer.channel("Material.I").pixels;
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const size_t i = size_t(y) * width + x;
-            if (material[i] == 0) {
-                const float r = std::hypot(x - 0.5f * width, y - 0.45f * height) / height;
-                const float grey = 0.012f + 0.03f * std::exp(-3 * r * r);
-                radiance[3 * i] = 0.9f * grey, radiance[3 * i + 1] = grey, radiance[3 * i + 2] = 1.15f * grey;
-            }
-            for (int c = 0; c < 3; ++c)
-                radiance[3 * i + c] =
-                    radiance[3 * i + c] * (1 - view.hair.at(3, x, y)) + view.hair.at(c, x, y);
-        }
-    return {width, height, io::toSrgb8(radiance)};
+io::Picture developed(const DemoView& view, const std::vector<float>& radiance) {
+    return {view.gbuffer.width, view.gbuffer.height, io::toSrgb8(radiance)};
 }
 
 namespace {
@@ -172,8 +158,8 @@ std::string writeSheet(const std::string& folder, const std::vector<ShadedView>&
         };
         add("Lambert", view.lambert);
         add("by tables", view.tables);
-        add("auto", view.complete);
-        tiles.push_back({"auto - Lambert, x 4", io::shrunk(cropped(difference(view, 4), part), sheetShrink)});
+        add("on the screen", view.complete);
+        tiles.push_back({"difference, x 4", io::shrunk(cropped(difference(view, 4), part), sheetShrink)});
     }
     const ShadedView& lit = views.back();
     const Crop glow = brightestChange(lit);
@@ -184,7 +170,7 @@ std::string writeSheet(const std::string& folder, const std::vector<ShadedView>&
     };
     close("Lambert", lit.lambert, 0);
     close("by tables", lit.tables, 1);
-    close("auto", lit.complete, 2);
+    close("on the screen", lit.complete, 2);
     tiles.push_back({"curvature", curvatureMap(views.front().view)});
     tiles.push_back({"curvature LUT: N.L across", lutPicture(curvatureLut)});
     tiles.push_back({"shadow LUT: shadow across", lutPicture(shadowLut)});

@@ -38,11 +38,6 @@ PelMaterial skin() {
     return m;
 }
 
-// The first lamp's map has the view's name alone.
-std::string shadowMapFile(const std::string& view, const DemoLight& lamp) {
-    return view + (lamp.name == "Key" ? "" : "_" + lamp.name) + "_shadowmap.exr";
-}
-
 // Shows the head's frame; near and far plane enclose all of it.
 sample::Camera framed(const sample::Scene& mesh, const DemoHead& head, const sample::Framing& framing,
                       double aspect) {
@@ -64,7 +59,7 @@ void addShadow(DemoView& view, const sample::Scene& mesh, const DemoLight& lamp,
     std::ranges::copy(map.worldToUvz.toFloats(), light.light.worldToShadow);
     light.light.shadowProjection = PEL_SHADOW_PARALLEL;
     light.light.shadowDepthRange = float(map.depthRange);
-    light.shadowMapFile = shadowMapFile(view.name, lamp);
+    light.shadowMapFile = view.name + (lamp.name == "Key" ? "" : "_" + lamp.name) + "_shadowmap.exr";
     light.shadowMapChannel = "Z";
     io::Image& depth = view.images[light.shadowMapFile];
     depth.width = depth.height = map.size;
@@ -85,9 +80,9 @@ sample::Sky studio(const DemoHead& head, const DemoViewRequest& request) {
                  0.22,
                  0.35,
                  {boxRadiance * lamp.color[0], boxRadiance * lamp.color[1], boxRadiance * lamp.color[2]}});
-    const double window = 40 * request.skyScale;
+    const double window = 70 * request.skyScale;
     sky.panels.push_back(
-        {sample::headDirection(head.pose, -18, 18), 0.12, 0.18, {window, 1.04 * window, 1.15 * window}});
+        {sample::headDirection(head.pose, -56, 18), 0.11, 0.15, {window, 1.04 * window, 1.15 * window}});
     return sky;
 }
 
@@ -118,11 +113,41 @@ std::vector<io::SceneMaterial> materialsOf(const DemoHead& head) {
         materials[demo::DEMO_EYES - 1].profile = materials[demo::DEMO_RIGHT_EYE - 1].profile = "cream";
         materials[demo::DEMO_TEETH - 1].material = materials[demo::DEMO_TONGUE - 1].material =
             glossy(0.05f, 0.2f);
-        materials[demo::DEMO_CUT - 1].material = glossy(0, 1);
+        materials[demo::DEMO_CUT - 1].material = materials[demo::DEMO_LASHES - 1].material = glossy(0, 1);
         materials[demo::DEMO_TEARS - 1].material = glossy(0.6f, 0.25f);
         materials[demo::DEMO_TEARS - 1].material.specularModel = PEL_SPECULAR_GGX;
     }
+    // As "auto" would choose, which leaves soft shadows of lamps with a shadow map aside.
+    for (io::SceneMaterial& m : materials)
+        m.material.scattering = m.profile.empty() ? PEL_SCATTERING_NONE : PEL_SCATTERING_SCREEN;
     return materials;
+}
+
+// What is behind the head, lighter in the middle.
+sample::Rgb backdrop(int x, int y, int width, int height) {
+    const double r = std::hypot(x - 0.5 * width, y - 0.45 * height) / height;
+    const double grey = 0.012 + 0.03 * std::exp(-3 * r * r);
+    return {0.9 * grey, grey, 1.15 * grey};
+}
+
+// Lays hair over the G-buffer: skin under it sends less light back, by albedo and specular, but scatters on.
+// Returns what the scene's radiance holds before shading, which is added: the light of hair, the backdrop.
+sample::Image layHair(sample::GBuffer& g, sample::Image hair) {
+    for (int y = 0; y < g.height; ++y)
+        for (int x = 0; x < g.width; ++x) {
+            const float left = 1 - hair.at(3, x, y);
+            uint32_t& id = g.material[size_t(y) * size_t(g.width) + size_t(x)];
+            // An eye's gloss knows neither albedo nor specular.
+            if (left < 0.5f && (id == demo::DEMO_EYES || id == demo::DEMO_RIGHT_EYE)) id = demo::DEMO_LASHES;
+            const sample::Rgb behind = backdrop(x, y, g.width, g.height);
+            for (int c = 0; c < 3; ++c) {
+                g.albedo.at(c, x, y) *= left;
+                if (id == 0) hair.at(c, x, y) += left * float(behind[size_t(c)]);
+            }
+            g.specular.at(0, x, y) *= left;
+        }
+    hair.data.resize(3 * hair.planeSize());
+    return hair;
 }
 
 }  // namespace
@@ -165,8 +190,32 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
         wetness = demo::dressEyes(g, head.pose.up);
         demo::shadeScalp(g, head.scalp);
     }
-    view.gbuffer.width = width;
-    view.gbuffer.height = height;
+    demo::StrandLight onHair;
+    onHair.occluders = &mesh;
+    for (const DemoLight& lamp : request.lights) {
+        const sample::DirectionalLight direction{
+            sample::headDirection(head.pose, lamp.azimuth, lamp.elevation)};
+        io::SceneLight light;
+        light.light.type = PEL_LIGHT_DIRECTIONAL;
+        copy(light.light.toLight, direction.toLight);
+        std::ranges::copy(lamp.color, light.light.color);
+        addShadow(view, mesh, lamp, direction, light);
+        if (lamp.radius > 0) {
+            light.wideShadow = lamp.name + "Shadow.V";
+            view.gbuffer.channels.push_back(
+                {light.wideShadow, io::ChannelType::Float,
+                 sample::softShadow(mesh, g, direction.toLight, lamp.radius, request.rays / 2).data});
+        }
+        view.scene.lights.push_back(light);
+        onHair.lamps.push_back({direction.toLight, {lamp.color[0], lamp.color[1], lamp.color[2]}});
+    }
+
+    const sample::Sky sky = studio(head, request);
+    addSurroundings(view, head, sky);
+    onHair.sky = sky, onHair.sky.panels.clear();
+    const sample::Image before = layHair(g, demo::drawStrands(head.strands, onHair, camera, g));
+    view.scene.options.accumulate = 1;
+    view.gbuffer.width = width, view.gbuffer.height = height;
     const auto add = [&](PelImageSlot slot, const char* name, const char* components,
                          std::span<const float> planes) {
         io::addPlanes(view.scene, view.gbuffer, slot, name, components, planes);
@@ -179,28 +228,12 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     add(PEL_SLOT_ALBEDO, "Albedo", "RGB", g.albedo.data);
     add(PEL_SLOT_ROUGHNESS, "Roughness", "V", g.roughness.data);
     add(PEL_SLOT_SPECULAR, "Specular", "V", g.specular.data);
-    add(PEL_SLOT_AMBIENT_OCCLUSION, "AmbientOcclusion", "V", sample::ambientOcclusion(mesh, g).data);
+    add(PEL_SLOT_AMBIENT_OCCLUSION, "AmbientOcclusion", "V",
+        sample::ambientOcclusion(mesh, g, request.rays).data);
     add(PEL_SLOT_MATERIAL, "Material", "I", std::vector<float>(g.material.begin(), g.material.end()));
     if (!wetness.empty()) add(PEL_SLOT_WETNESS, "Wetness", "V", wetness);
+    add(PEL_SLOT_RADIANCE, "Before", "RGB", before.data);
 
-    demo::StrandLight onHair;
-    onHair.occluders = &mesh;
-    for (const DemoLight& lamp : request.lights) {
-        const sample::DirectionalLight direction{
-            sample::headDirection(head.pose, lamp.azimuth, lamp.elevation)};
-        io::SceneLight light;
-        light.light.type = PEL_LIGHT_DIRECTIONAL;
-        copy(light.light.toLight, direction.toLight);
-        std::ranges::copy(lamp.color, light.light.color);
-        addShadow(view, mesh, lamp, direction, light);
-        view.scene.lights.push_back(light);
-        onHair.lamps.push_back({direction.toLight, {lamp.color[0], lamp.color[1], lamp.color[2]}});
-    }
-
-    const sample::Sky sky = studio(head, request);
-    addSurroundings(view, head, sky);
-    onHair.sky = sky, onHair.sky.panels.clear();
-    view.hair = demo::drawStrands(head.strands, onHair, camera, g);
     copy(view.scene.camera.position, camera.eye);
     std::ranges::copy(camera.inverseViewProjection(aspect).toFloats(),
                       view.scene.camera.inverseViewProjection);
@@ -225,21 +258,29 @@ DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3
     if (!skin) {
         view.scene.eyes.clear();
         view.scene.channels[PEL_SLOT_WETNESS].clear();
-        std::ranges::fill(view.hair.data, 0.0f);
         for (float& id : ids)
             if (id == float(demo::DEMO_EYES) || id >= float(demo::DEMO_RIGHT_EYE)) id = demo::DEMO_SKIN;
+        std::ranges::fill(pixelsOf(PEL_SLOT_SPECULAR, 0), 1.0f);
     }
+    const int width = view.gbuffer.width;
     for (size_t c = 0; c < 3; ++c) {
         std::vector<float>& albedo = pixelsOf(PEL_SLOT_ALBEDO, c);
-        for (size_t i = 0; i < ids.size(); ++i)
+        std::vector<float>& before = pixelsOf(PEL_SLOT_RADIANCE, c);
+        for (size_t i = 0; i < ids.size(); ++i) {
             if (ids[i] == float(demo::DEMO_SKIN))
                 albedo[i] = std::min(1.0f, (skin ? albedo[i] : sample::Look().albedo[c]) * tint[c]);
+            if (!skin)
+                before[i] =
+                    ids[i] ? 0
+                           : float(backdrop(int(i) % width, int(i) / width, width, view.gbuffer.height)[c]);
+        }
     }
     return view;
 }
 
 io::SceneFile withoutScattering(io::SceneFile scene) {
     for (io::SceneMaterial& m : scene.materials) m.profile.clear();
+    scene = byTables(std::move(scene));  // of which there are none
     // One normal for all channels, as a renderer without scattering has.
     scene.channels[PEL_SLOT_NORMAL_BLURRED].clear();
     scene.channels[PEL_SLOT_NORMAL_GEOMETRIC] = scene.channels[PEL_SLOT_NORMAL_SHADING];

@@ -43,11 +43,13 @@ struct Detail {
     SkinDetail settings;
     WaveField pores, folds, blood, pigment, furrows;
 
-    // The slope of lines that run up and down: a field that is stretched along them.
-    Vec3 furrowSlope(Vec3 p, const Footprint& pixel) const {
-        constexpr double stretch = 6;
+    // The slope of lines that run up and down and spread from `middle`: a field that is stretched along them.
+    Vec3 furrowSlope(Vec3 p, Vec3 middle, const Footprint& pixel) const {
+        constexpr double stretch = 6, spread = 0.035;  // spread per mm
+        const double y = p.y - middle.y, x = (p.x - middle.x) / (1 + spread * std::abs(y));
         Vec3 slope;
-        furrows.slope({p.x, p.y / stretch, p.z / stretch}, &pixel, 1, &slope);
+        furrows.slope({x + 0.5 * std::sin(0.8 * y + 0.35 * x), p.y / stretch, p.z / stretch}, &pixel, 1,
+                      &slope);
         const Vec3 across{slope.x, 0, 0};
         return across - pixel.normal * dot(across, pixel.normal);
     }
@@ -126,6 +128,7 @@ class Renderer {
         Vec3 shading = geometric, blurred = geometric;
         Vec3 albedo{look.albedo[0], look.albedo[1], look.albedo[2]};
         double specular = 1, roughness = 1, relief = 1, furrows = 0;
+        Vec3 furrowed;
         if (look.kind == Look::Kind::Eye) albedo = eyeColor(position);
         if (look.kind == Look::Kind::Skin) {
             for (const SkinZone& zone : options_.zones) {
@@ -137,6 +140,7 @@ class Renderer {
                 roughness *= 1 + weight * (zone.roughness - 1);
                 relief *= 1 + weight * (zone.relief - 1);
                 furrows += weight * zone.furrows;
+                if (zone.furrows > 0) furrowed = zone.centre;
             }
         }
         if (detail_ && look.kind == Look::Kind::Skin) {
@@ -153,7 +157,7 @@ class Renderer {
             const SkinDetail& s = detail_->settings;
             const double poreSlope = relief * s.poreSlope, width = roughness * s.roughness;
             Vec3 slope = pores[0] * poreSlope + folds[0] * s.foldSlope;
-            if (furrows > 0) slope = slope + detail_->furrowSlope(position, pixel) * furrows;
+            if (furrows > 0) slope = slope + detail_->furrowSlope(position, furrowed, pixel) * furrows;
             shading = normalize(geometric - slope);
             blurred = normalize(geometric - pores[1] * poreSlope - folds[1] * s.foldSlope);
             // The squared roughness is the mean square slope of a surface's facets.

@@ -4,6 +4,8 @@
 
 namespace pellucid::sample {
 
+constexpr double limbus = 0.5;  // from the axis of gaze, of the eye's radius [Le Grand and El Hage]
+
 static double smoothstep(double from, double to, double x) {
     const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
     return t * t * (3 - 2 * t);
@@ -29,8 +31,13 @@ LinearColor EyeLook::at(Vec3 p) const {
     // Veins run from the corners to the iris, and waver.
     const double phase = 44 * height + 1.7 * std::sin(9 * across + 7 * height) + 0.9 * std::sin(31 * across);
     const double vein = corner * std::pow(std::abs(std::cos(phase)), 16);
-    return {sclera[0] * (1 - 0.06 * vein), sclera[1] * (1 - 0.24 * corner - 0.22 * vein),
-            sclera[2] * (1 - 0.28 * corner - 0.2 * vein)};
+    // The sclera darkens and greys towards the iris over a width that varies.
+    const double fromAxis = dot(out, gaze) > 0 ? std::hypot(across, height) : 1;
+    const double width = 0.07 + 0.03 * std::sin(3 * std::atan2(height, across) + 1);
+    const double grey = 0.4 * (1 - smoothstep(limbus, limbus + width, fromAxis));
+    const LinearColor white{sclera[0] * (1 - 0.06 * vein), sclera[1] * (1 - 0.24 * corner - 0.22 * vein),
+                            sclera[2] * (1 - 0.28 * corner - 0.2 * vein)};
+    return mix(white, {0.5 * white[0], 0.5 * white[1], 0.56 * white[2]}, grey);
 }
 
 }  // namespace pellucid::sample

@@ -5,39 +5,39 @@
 
 namespace pellucid::sample {
 
-constexpr int pattern = 4;           // pixels along a side
-constexpr double offset = 0.05;      // mm from the surface, for the vertex normals lean from the triangles'
-constexpr double alikeNormal = 0.8;  // cosine
-constexpr double alikeHeight = 0.5;  // mm above or below the tangent plane
+constexpr int pattern = 4;             // pixels along a side
+constexpr double normalOffset = 0.05;  // mm from the surface, for the vertex normals lean from the triangles'
+constexpr double facetOffset = 0.3;    // facets at a slant to the light throw no shadow on their neighbours
+constexpr double alikeNormal = 0.8;    // cosine
+constexpr double alikeHeight = 0.5;    // mm above or below the tangent plane
 
-// The share of cosine-distributed rays from `p` that hit nothing. `k`: the place in the pattern.
-static float unoccluded(const Scene& scene, Vec3 p, Vec3 n, int rays, int k) {
-    const Vec3 across = normalize(std::abs(n.x) < 0.5 ? cross(n, {1, 0, 0}) : cross(n, {0, 1, 0})),
-               along = cross(n, across);
-    int clear = 0;
-    for (int i = 0; i < rays; ++i) {
-        // One set of points over all pixels of the pattern: equal steps of cosine squared, golden azimuths.
-        const double step = i * pattern * pattern + k, height2 = (step + 0.5) / (pattern * pattern * rays),
-                     angle = 2 * std::numbers::pi * std::fmod(step / std::numbers::phi, 1.0);
-        const double side = std::sqrt(1 - height2);
-        const Vec3 d =
-            across * (side * std::cos(angle)) + along * (side * std::sin(angle)) + n * std::sqrt(height2);
-        clear += !scene.occluded({p + n * offset, d}, INFINITY);
-    }
-    return float(clear) / float(rays);
+namespace {
+
+Vec3 across(Vec3 n) {
+    return normalize(std::abs(n.x) < 0.5 ? cross(n, {1, 0, 0}) : cross(n, {0, 1, 0}));
 }
 
-Image ambientOcclusion(const Scene& scene, const GBuffer& g, int rays) {
-    if (rays < 1) throw std::invalid_argument("ambientOcclusion: at least one ray a pixel");
-    Image own(g.width, g.height, 1, 1), mean(g.width, g.height, 1, 1);
+// The share of rays that hit nothing, of those above their pixel's horizon, over similar pixels of a pattern;
+// 1 where there are none. Each ray starts `offset` from the surface in directionAt(normal, x, y), (x, y) in
+// the unit disk. All pixels of the pattern share a set of points: equal steps of the area, golden azimuths.
+template <class DirectionAt>
+Image unoccluded(const Scene& scene, const GBuffer& g, int rays, double offset, DirectionAt&& directionAt) {
+    if (rays < 1) throw std::invalid_argument("occlusion: at least one ray a pixel");
+    Image own(g.width, g.height, 2), mean(g.width, g.height, 1, 1);  // own: clear ones, and those above
     const auto isBackground = [&](int x, int y) { return g.coverage.at(0, x, y) == 0; };
 #pragma omp parallel for schedule(dynamic, 4)
     for (int y = 0; y < g.height; ++y)
         for (int x = 0; x < g.width; ++x)
-            if (!isBackground(x, y))
-                own.at(0, x, y) =
-                    unoccluded(scene, vectorAt(g.position, x, y), vectorAt(g.geometricNormal, x, y), rays,
-                               x % pattern + pattern * (y % pattern));
+            for (int i = 0; i < rays && !isBackground(x, y); ++i) {
+                const Vec3 p = vectorAt(g.position, x, y), n = vectorAt(g.geometricNormal, x, y);
+                const double step = i * pattern * pattern + x % pattern + pattern * (y % pattern),
+                             radius = std::sqrt((step + 0.5) / (pattern * pattern * rays)),
+                             angle = 2 * std::numbers::pi * std::fmod(step / std::numbers::phi, 1.0);
+                const Vec3 d = directionAt(n, radius * std::cos(angle), radius * std::sin(angle));
+                if (dot(n, d) <= 0) continue;
+                own.at(0, x, y) += !scene.occluded({p + n * offset, d}, INFINITY);
+                own.at(1, x, y) += 1;
+            }
 #pragma omp parallel for schedule(dynamic, 4)
     for (int y = 0; y < g.height; ++y)
         for (int x = 0; x < g.width; ++x) {
@@ -50,11 +50,25 @@ Image ambientOcclusion(const Scene& scene, const GBuffer& g, int rays) {
                     if (dot(n, vectorAt(g.geometricNormal, u, v)) < alikeNormal ||
                         std::abs(dot(n, vectorAt(g.position, u, v) - p)) > alikeHeight)
                         continue;
-                    sum += own.at(0, u, v), count += 1;
+                    sum += own.at(0, u, v), count += own.at(1, u, v);
                 }
-            mean.at(0, x, y) = sum / count;
+            if (count > 0) mean.at(0, x, y) = sum / count;
         }
     return mean;
+}
+
+}  // namespace
+
+Image ambientOcclusion(const Scene& scene, const GBuffer& g, int rays) {
+    return unoccluded(scene, g, rays, normalOffset, [](Vec3 n, double x, double y) {
+        return across(n) * x + cross(n, across(n)) * y + n * std::sqrt(1 - x * x - y * y);
+    });
+}
+
+Image softShadow(const Scene& scene, const GBuffer& g, Vec3 toLight, double radius, int rays) {
+    const Vec3 right = across(toLight) * radius, up = cross(toLight, right);
+    return unoccluded(scene, g, rays, facetOffset,
+                      [&](Vec3, double x, double y) { return normalize(toLight + right * x + up * y); });
 }
 
 }  // namespace pellucid::sample

@@ -1,4 +1,4 @@
-// Ambient occlusion of a G-buffer, by rays.
+// Ambient occlusion and soft shadows of a G-buffer, by rays.
 #pragma once
 #include "sample/gbuffer.h"
 
@@ -9,5 +9,9 @@ namespace pellucid::sample {
 // 4 x 4 pattern, and the mean over as many similar neighbours; the result depends on no thread. Throws
 // std::invalid_argument for `rays` below 1.
 Image ambientOcclusion(const Scene& scene, const GBuffer& gbuffer, int rays = 8);
+
+// The same for light from a disk around `toLight` (unit), of this radius at a distance of 1: how much of the
+// part above the pixel's horizon is not hidden; 1 where there is none.
+Image softShadow(const Scene& scene, const GBuffer& gbuffer, Vec3 toLight, double radius, int rays);
 
 }  // namespace pellucid::sample

@@ -49,8 +49,8 @@ TEST_F(Demo, ShadeMakesTheSamePicturesAndSomebodyLookedAtThem) {
             if (m.id == id) return std::pair(m.material.specular, m.material.roughness);
         return std::pair(-1.0f, -1.0f);
     };
-    for (const uint32_t id : {2u, 5u, 6u})
-        EXPECT_EQ(gloss(id), std::pair(0.0f, 1.0f)) << "eyes, and where the head is cut: " << id;
+    for (const uint32_t id : {2u, 5u, 6u, 8u})
+        EXPECT_EQ(gloss(id), std::pair(0.0f, 1.0f)) << "eyes, lashes, and where the head is cut: " << id;
     for (const uint32_t id : {3u, 4u})
         EXPECT_EQ(gloss(id), std::pair(0.05f, 0.2f)) << "teeth and tongue: " << id;
     EXPECT_GT(gloss(7).first, 0) << "tears";

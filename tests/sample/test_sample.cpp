@@ -290,6 +290,13 @@ TEST(SampleDetail, WhitesOfEyesArePinkAtTheCorners) {
     EXPECT_LT(eye.at(corner)[1], 0.8 * eye.sclera[1]);
     EXPECT_GT(eye.at(corner)[0], 0.9 * eye.sclera[0]);
     EXPECT_EQ(eye.at(above), eye.sclera);
+    // Grey along the iris, over a width that varies.
+    const auto beside = [&](double fromAxis, double x, double y) {
+        return eye.at(eye.radius * Vec3{x * fromAxis, y * fromAxis, std::sqrt(1 - fromAxis * fromAxis)})[0];
+    };
+    EXPECT_LT(beside(0.505, 0, 1), 0.85 * eye.sclera[0]);
+    EXPECT_EQ(beside(0.62, 0, 1), eye.sclera[0]);
+    EXPECT_GT(std::abs(beside(0.53, 0, 1) - beside(0.53, 0, -1)), 0.02);
 }
 
 TEST(SampleDetail, PixelsOfAnEyeHaveItsColours) {
@@ -426,6 +433,25 @@ TEST(Sample, AmbientOcclusionUnderASquareIsItsFormFactor) {
     for (const float open : occlusionOf(floor).data) EXPECT_EQ(open, 1);
     const sample::Scene scene(floor.view());
     EXPECT_THROW(sample::ambientOcclusion(scene, sample::GBuffer(), 0), std::invalid_argument);
+}
+
+// A roof over x < 0, 30 mm above a floor: its edge hides the part of the disk beyond a line.
+TEST(Sample, SoftShadowIsTheHiddenPartOfADisk) {
+    constexpr double height = 30, radius = 0.06;
+    sample::Mesh mesh = sample::makeRectangle(-2000, 2000, -2000, 2000, 0);
+    mesh.append(sample::makeRectangle(-2000, 0, -2000, 2000, height));
+    const sample::Scene scene(mesh.view());
+    const sample::Camera below{.eye = {0, 0, height / 2}, .target = {}, .up = {0, 1, 0}, .nearPlane = 1};
+    const sample::GBuffer g = sample::renderGBuffer(scene, below, 40, 40, plain());
+    const sample::Image lit = sample::softShadow(scene, g, {0, 0, 1}, radius, 8);
+    for (int x = 0; x < 40; ++x) {
+        const double u = std::clamp(g.position.at(0, x, 20) / (height * radius), -1.0, 1.0);
+        const double expected = 0.5 + (u * std::sqrt(1 - u * u) + std::asin(u)) / std::numbers::pi;
+        EXPECT_NEAR(lit.at(0, x, 20), expected, 0.06) << x;  // 128 samples, four pixels
+    }
+    for (const float all : sample::softShadow(scene, g, {0, 0, -1}, radius, 8).data)
+        EXPECT_EQ(all, 1) << "nothing of it is above the horizon";
+    EXPECT_THROW(sample::softShadow(scene, g, {0, 0, 1}, radius, 0), std::invalid_argument);
 }
 
 TEST(SampleShadowMap, OfASphere) {

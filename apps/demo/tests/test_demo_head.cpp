@@ -100,6 +100,27 @@ TEST_P(DemoHeads, LipsAreRedderGlossierAndSmootherThanCheeks) {
     }
 }
 
+// Seen from the front, a pink hillock of skin lies between the lids, on the eye's side next to the nose.
+TEST_P(DemoHeads, EachEyeHasACaruncle) {
+    for (size_t i = 0; i < 2; ++i) {
+        const sample::EyeLook& eye = head.eyes[i];
+        const sample::SkinZone& zone = head.zones[head.zones.size() - 2 + i];
+        EXPECT_LT(zone.color[1], 0.85 * zone.color[0]);
+        const double toNose = (eye.centre.x > 0 ? -1 : 1) * (zone.centre.x - eye.centre.x) / eye.radius;
+        EXPECT_NEAR(toNose, 0.7, 0.2);
+        double seen = 0;  // mm^2 of the ellipsoid
+        for (double x = -4; x < 4; x += 0.1)
+            for (double y = -4; y < 4; y += 0.1) {
+                const sample::Ray ray{{zone.centre.x + x, zone.centre.y + y, 500}, {0, 0, -1}};
+                const Vec3 p = ray.origin + ray.direction * scene.intersect(ray).distance - zone.centre,
+                           r = zone.radii * (1 / 1.3);
+                if (std::abs(std::hypot(p.x / r.x, p.y / r.y, p.z / r.z) - 1) < 0.03) seen += 0.01;
+            }
+        EXPECT_GT(seen, 2);
+        EXPECT_LT(seen, 20);
+    }
+}
+
 // Brows grow above the eyes out of the skin, lashes from the lids' edges, short hair on the scalp; none
 // starts or ends in the head.
 TEST_P(DemoHeads, HairGrowsOutOfTheSkin) {
