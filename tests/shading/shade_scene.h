@@ -113,11 +113,11 @@ inline Shader& setFrame(Shader& shader, const Frame& f, const Buffer& target,
 inline std::vector<float> shade(const Device& device, const Frame& f, const Tables& tables,
                                 PelShaderStats* stats = nullptr,
                                 const std::function<void(Shader&)>& change = {}) {
-    auto [shader, target] = shaderOf(f, device, tables);
-    if (change) change(shader);
-    shader.commit().execute();
-    if (stats) *stats = shader.stats();
-    return target.readAll<float>();
+    FrameShader made = shaderOf(f, device, tables);
+    if (change) change(made.shader);
+    made.shader.commit().execute();
+    if (stats) *stats = made.shader.stats();
+    return made.target.readAll<float>();
 }
 
 // On the tests' own device, and with the counts.

@@ -1,8 +1,8 @@
 // Every allocation of a shader fails, alone or with all that come after it: an error each time, or less
 // memory at a time, and nothing broken after it.
 //
-// This program defines operator new itself, which is linked before the others: it lets one call of the library
-// fail, as the spy does of OpenCL's.
+// This program defines operator new itself, which is linked before the others: it lets one call of the
+// library fail, as the spy does of OpenCL's.
 #include <dlfcn.h>
 #include "test.h"
 

@@ -74,7 +74,9 @@ Vec3 halfLit(double x, double) {
 
 TEST(Textures, GiveTheBitsOfBuffers) {
     Frame f = randomFrame(3, 70, 40, 2);
-    auto [buffers, target] = shaderOf(f);
+    FrameShader made = shaderOf(f);
+    Shader& buffers = made.shader;
+    const Buffer& target = made.target;
     const std::vector<float> threes(3 * f.pixels(), 3);
     target.write(threes.data(), target.bytes());
     buffers.commit().execute();
