@@ -7,8 +7,7 @@
 
 // `call` returns an error or throws one; its message holds all of `words`.
 template <class Call>
-void expectRefused(const std::vector<const char*>& words, const Call& call,
-                   PelError expected = PEL_ERROR_INVALID_ARGUMENT) {
+void expectRefused(PelError expected, const std::vector<const char*>& words, const Call& call) {
     PelError code = PEL_SUCCESS;
     if constexpr (std::is_same_v<std::invoke_result_t<Call>, PelError>) {
         code = call();
@@ -25,6 +24,10 @@ void expectRefused(const std::vector<const char*>& words, const Call& call,
         EXPECT_NE(message.find(word), std::string::npos) << '"' << word << "\" in: " << message;
 }
 
+template <class Call>
+void expectRefused(const std::vector<const char*>& words, const Call& call) {
+    expectRefused(PEL_ERROR_INVALID_ARGUMENT, words, call);
+}
 template <class Call>
 void expectRefused(const char* word, const Call& call) {
     expectRefused(std::vector{word}, call);

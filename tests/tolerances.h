@@ -25,7 +25,6 @@ constexpr double closedEnds = 1e-5;       // a difference of texels over what li
 constexpr double floatWeights = 1e-6;     // weights and variances are written as floats
 // a fit that has reached its optimum, by floats: weights of neighbours trade places
 constexpr double fittedAgain = 1e-4;
-constexpr double sphereMean = 1e-5;  // energy: the mean of the form sphere is exactly 1/4
 
 // --- the surface integral, of the largest irradiance ---
 // float sums round borders of triangles, which cancel; a table of 64 rows an octave

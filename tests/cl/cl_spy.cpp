@@ -20,7 +20,10 @@ constexpr const char* names[types] = {"contexts", "queues",  "memory objects",
                                       "programs", "kernels", "events"};
 std::atomic<int64_t> live[types];
 std::atomic<int64_t> memoryBytes;
-std::atomic<uint64_t> buffersMade, bytesCopied, transfers, launches, bytesFilled, fills, waits;
+std::atomic<uint64_t> buffersMade, bytesCopied, transfers, launches, bytesFilled, fills, waits, builds;
+std::atomic<spy::Call> failing{spy::Call::none};
+std::atomic<int> untilFailure{0};
+std::atomic<bool> failsOn{false};
 std::atomic<bool> warned;  // the compiler, about a kernel
 
 // Never destroyed: the library may launch until the very end.
@@ -70,6 +73,12 @@ void remember(cl_kernel kernel) {
     if (info(kernel, CL_KERNEL_FUNCTION_NAME, sizeof name - 1, name, nullptr) != CL_SUCCESS) return;
     const std::lock_guard lock(seen().mutex);
     ++seen().launches[name];
+}
+
+template <class T>
+T* refused(cl_int why, cl_int* code) {
+    if (code) *code = why;
+    return nullptr;
 }
 
 template <class T>
@@ -162,7 +171,23 @@ namespace spy {
 Counts counts() {
     return {live[contexts], live[queues], live[memory], live[programs], live[kernels],
             live[events],   memoryBytes,  buffersMade,  bytesCopied,    transfers,
-            launches,       bytesFilled,  fills,        waits};
+            launches,       bytesFilled,  fills,        waits,          builds};
+}
+
+void failAt(Call call, int nth, bool lasting) {
+    failing = Call::none;
+    untilFailure = nth, failsOn = lasting;
+    failing = call;
+}
+
+bool strikes(Call call) {
+    if (failing != call) return false;
+    const int left = --untilFailure;
+    return left == 0 || (left < 0 && failsOn);
+}
+
+int callsUntilFailure() {
+    return untilFailure;
 }
 
 uint64_t launchesOf(const char* kernel) {
@@ -214,6 +239,8 @@ cl_command_queue clCreateCommandQueue(cl_context context, cl_device_id device,
     return made(queues, REAL(clCreateCommandQueue)(context, device, properties, code));
 }
 cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t bytes, void* host, cl_int* code) {
+    if (spy::strikes(spy::Call::createBuffer))
+        return refused<_cl_mem>(CL_MEM_OBJECT_ALLOCATION_FAILURE, code);
     cl_mem buffer = REAL(clCreateBuffer)(context, flags, bytes, host, code);
     if (buffer) {
         const std::lock_guard lock(heldMutex);
@@ -222,6 +249,11 @@ cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t bytes, void
     }
     if (buffer && (flags & CL_MEM_COPY_HOST_PTR)) ++transfers, bytesCopied += bytes;
     return made(memory, buffer);
+}
+cl_int clSetMemObjectDestructorCallback(cl_mem buffer, void(CL_CALLBACK* callback)(cl_mem, void*),
+                                        void* user) {
+    if (spy::strikes(spy::Call::destructorCallback)) return CL_INVALID_OPERATION;
+    return REAL(clSetMemObjectDestructorCallback)(buffer, callback, user);
 }
 cl_mem clCreateImage(cl_context context, cl_mem_flags flags, const cl_image_format* format,
                      const cl_image_desc* desc, void* host, cl_int* code) {
@@ -244,12 +276,14 @@ cl_program clCreateProgramWithBinary(cl_context context, cl_uint count, const cl
 }
 cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
                       void(CL_CALLBACK* notify)(cl_program, void*), void* user) {
+    ++::builds;
     if (const char* folder = std::getenv("PELLUCID_DUMP_PROGRAMS")) dumpProgram(folder, program, options);
     const cl_int code = REAL(clBuildProgram)(program, count, devices, options, notify, user);
     if (code == CL_SUCCESS && count == 1) lookForWarnings(program, devices[0]);
     return code;
 }
 cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* code) {
+    if (spy::strikes(spy::Call::createKernel)) return refused<_cl_kernel>(CL_OUT_OF_HOST_MEMORY, code);
     return made(kernels, REAL(clCreateKernel)(program, name, code));
 }
 cl_event clCreateUserEvent(cl_context context, cl_int* code) {
@@ -258,6 +292,7 @@ cl_event clCreateUserEvent(cl_context context, cl_int* code) {
 cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
                               const size_t* offset, const size_t* global, const size_t* local, cl_uint waits,
                               const cl_event* list, cl_event* event) {
+    if (spy::strikes(spy::Call::launch)) return CL_MEM_OBJECT_ALLOCATION_FAILURE;
     const cl_int code =
         REAL(clEnqueueNDRangeKernel)(queue, kernel, dimensions, offset, global, local, waits, list, event);
     if (code == CL_SUCCESS) ++launches, remember(kernel);

@@ -20,6 +20,7 @@ struct [[gnu::visibility("default")]] Counts {
     uint64_t bytesFilled;  // by clEnqueueFillBuffer
     uint64_t fills;        // how many of those
     uint64_t waits;        // clFinish and clWaitForEvents
+    uint64_t builds;       // clBuildProgram
 
     int64_t left() const {
         return contexts + queues + memory + programs + kernels + events;
@@ -30,5 +31,13 @@ struct [[gnu::visibility("default")]] Counts {
 // Of one kernel, since the program began; and programs that were made from source which has its name.
 [[gnu::visibility("default")]] uint64_t launchesOf(const char* kernel);
 [[gnu::visibility("default")]] uint64_t programsWith(const char* kernel);
+
+// Calls that fail on demand, before they reach OpenCL. `host` is for a program that has others to fail.
+enum class Call { none, host, createBuffer, createKernel, launch, destructorCallback };
+// From now on the nth call of this kind fails, and where that is `lasting` all after it.
+[[gnu::visibility("default")]] void failAt(Call call, int nth, bool lasting = false);
+// Whether this call is one to fail; and how many must still come before the first one: 0 or less when it has.
+[[gnu::visibility("default")]] bool strikes(Call call);
+[[gnu::visibility("default")]] int callsUntilFailure();
 
 }  // namespace spy

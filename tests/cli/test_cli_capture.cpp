@@ -55,9 +55,7 @@ class Capture : public CommandTest {
         fs::rename(path("captures"), path("captures-" + std::to_string(++number_)));
     }
     void expectRepeats(const Frame& f, const std::function<void(Shader&)>& change = {}) {
-        Shader shader(device());
-        setFrame(device(), shader, f, tables());
-        const Buffer target = setTarget(device(), shader, f);
+        auto [shader, target] = shaderOf(f);
         if (change) change(shader);
         expectRepeats(shader, target);
     }
@@ -92,9 +90,7 @@ std::vector<Profile> profiles() {
 // Lights of all types with maps of both projections and wide shadows, tables of the caller's, every image.
 TEST_F(Capture, RepeatsLightsAndTables) {
     const Frame f = randomFrame(5, 70, 40, 3);
-    Shader shader(device());
-    setFrame(device(), shader, f, tables());
-    const Buffer target = setTarget(device(), shader, f);
+    auto [shader, target] = shaderOf(f);
     const Buffer diffuse = setTarget(device(), shader, f, PEL_SLOT_OUT_DIFFUSE),
                  thickness = setTarget(device(), shader, f, PEL_SLOT_OUT_THICKNESS);
     expectRepeats(shader, target);
@@ -111,9 +107,7 @@ TEST_F(Capture, RepeatsWhatRadianceHeld) {
     Random random(3);
     for (const uint32_t accumulate : {0, 1}) {
         f.options.accumulate = accumulate;
-        Shader shader(device());
-        setFrame(device(), shader, f, tables());
-        const Buffer target = setTarget(device(), shader, f);
+        auto [shader, target] = shaderOf(f);
         std::vector<float> held(3 * f.pixels());
         for (float& v : held) v = random.uniform();
         target.write(held.data(), target.bytes());
@@ -368,9 +362,7 @@ TEST_F(Capture, RepeatsEyesCubesAndNormalMaps) {
 TEST_F(Capture, WritesTheRegionAlone) {
     Frame f = randomFrame(5, 70, 40, 2);
     f.options.regionX = 7, f.options.regionY = 3, f.options.regionWidth = 50, f.options.regionHeight = 31;
-    Shader shader(device());
-    setFrame(device(), shader, f, tables());
-    const Buffer target = setTarget(device(), shader, f);
+    auto [shader, target] = shaderOf(f);
     capture(shader);
     const std::vector<float> all = target.readAll<float>();
     std::vector<float> region;
@@ -399,9 +391,7 @@ TEST_F(Capture, WritesEachShaderOnceAndNothingOver) {
     EXPECT_FALSE(fs::exists(path("captures/shader-4")));
     EXPECT_TRUE(fs::exists(path("captures/head____left-1/scene.toml")));
     const std::string before = read(path("captures/shader-3/scene.toml"));
-    Shader third(device());
-    setFrame(device(), third, f, tables());
-    const Buffer c = setTarget(device(), third, f);
+    auto [third, c] = shaderOf(f);
     capture(third);
     EXPECT_EQ(read(path("captures/shader-3/scene.toml")), before);
     EXPECT_EQ(read(path("captures/shader-4/scene.toml")), before);
@@ -434,9 +424,7 @@ TEST_F(Capture, SaysWhatIsLeftOut) {
     write("a_file", "");
     const Frame plain = randomFrame(1, 32, 16, 1);
     for (const char* folder : {"captures", "a_file"}) {
-        Shader other(device());
-        setFrame(device(), other, plain, tables());
-        const Buffer kept = setTarget(device(), other, plain);
+        auto [other, kept] = shaderOf(plain);
         capture(other, folder);
         const std::vector<float> shaded = kept.readAll<float>();
         EXPECT_TRUE(std::ranges::any_of(shaded, [](float v) { return v > 0; }));

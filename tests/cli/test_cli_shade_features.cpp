@@ -279,36 +279,6 @@ TEST_F(ShadeFeatures, MapsOfPigmentsAreSkin) {
     refuses("Carotene.V");
 }
 
-// Those beside the methods themselves, of which tests/cli/test_cli_capture.cpp shades a frame each.
-TEST_F(ShadeFeatures, ControlsOfMethods) {
-    addPlane();
-    add(PEL_SLOT_UV, {"UV.U", "UV.V"}, [](int x, int, size_t c) { return c ? 0.5f : float(x) / width; });
-    addChannels(gbuffer_, {"B.R", "B.G", "B.B"}, [](int, int, size_t) { return 0.3; });
-    addChannels(gbuffer_, {"W.V"}, [](int, int, size_t) { return 0; });
-    scene_.materials[0].profile = "skin";
-    PelMaterial& m = scene_.materials[0].material;
-    m.scattering = PEL_SCATTERING_NONE;
-    const auto plain = shaded();
-    m.scattering = PEL_SCATTERING_SCREEN;
-    m.scatterTaps = 9;
-    const auto disk = shaded();
-    EXPECT_NE(disk, plain);
-    m.thinThickness = 0.2f;
-    scene_.channels[PEL_SLOT_IRRADIANCE_BACK] = {"B.R", "B.G", "B.B"};
-    EXPECT_NE(shaded(), disk);
-    m.thinThickness = 0;
-    scene_.channels[PEL_SLOT_SCATTER_WEIGHT] = {"W.V"};
-    EXPECT_EQ(shaded(), plain);  // nothing of it is taken
-    scene_.channels[PEL_SLOT_SCATTER_WEIGHT].clear();
-    io::writeExr(path("lit.exr"), imageOf(4, 2, colorNames, [](int, int, size_t) { return 0.75; }));
-    m.scattering = PEL_SCATTERING_TEXTURE;
-    m.scatterTaps = 0;
-    scene_.materials[0].scatteredTexture = "lit.exr";
-    EXPECT_NEAR(shaded()[3 * 5], 0.75 * 0.5, 1e-3);  // times the albedo
-    scene_.materials[0].scatteredTexture = "no.exr";
-    refuses("no.exr");
-}
-
 // The front of a ball of 12 mm in units of 10 mm becomes an eye, whose table and textures come from files.
 TEST_F(ShadeFeatures, EyesOfScenes) {
     begin(24, 24);

@@ -18,8 +18,7 @@ TEST(Device, EnumeratesAndSelects) {
 
 TEST(Device, UnknownSelectorListsWhatThereIs) {
     const std::string first = Device::all()[0].name;
-    expectRefused(
-        {"no such device", first.c_str()}, [] { Device("no such device"); }, PEL_ERROR_NO_DEVICE);
+    expectRefused(PEL_ERROR_NO_DEVICE, {"no such device", first.c_str()}, [] { Device("no such device"); });
     EXPECT_THROW(Device("4000000000"), Error);
 }
 
@@ -160,9 +159,8 @@ TEST(Events, WaitingForAFailedEventIsAnError) {
     ASSERT_EQ(clSetUserEventStatus(failed, -5), CL_SUCCESS);
     const PelSubmit after{&event, 1, nullptr};
     int back[2] = {};
-    expectRefused(
-        {"PelSubmit.waits[0]"}, [&] { return pelBufferRead(buffer.get(), 0, sizeof back, back, &after); },
-        PEL_ERROR_OUT_OF_MEMORY);
+    expectRefused(PEL_ERROR_OUT_OF_MEMORY, {"PelSubmit.waits[0]"},
+                  [&] { return pelBufferRead(buffer.get(), 0, sizeof back, back, &after); });
     int done = 7;
     EXPECT_NE(pelEventIsDone(event, &done), PEL_SUCCESS);
     EXPECT_NE(pelEventWait(event), PEL_SUCCESS);
@@ -202,8 +200,7 @@ TEST(Errors, ProgressCallbacksMayThrow) {
     desc.indices = triangle;
     device.setProgress([](void*, double, const char*) -> int { throw std::runtime_error("enough of it"); },
                        nullptr);
-    expectRefused(
-        {"enough of it"}, [&] { MeshTopology(device, desc); }, PEL_ERROR_UNKNOWN);
+    expectRefused(PEL_ERROR_UNKNOWN, {"enough of it"}, [&] { MeshTopology(device, desc); });
     device.setProgress(nullptr, nullptr);
     MeshTopology(device, desc);
 }
@@ -280,6 +277,6 @@ TEST(Device, MemoryComesFromTheHost) {
     EXPECT_EQ(zeros.readAll<float>(), std::vector<float>(1024));
     EXPECT_EQ(ones.readAll<float>(), std::vector<float>(100, 1));
     host.full = true;
-    expectRefused(
-        {"PelDeviceDesc.allocate has no 64 bytes"}, [&] { Buffer(device, 64); }, PEL_ERROR_OUT_OF_MEMORY);
+    expectRefused(PEL_ERROR_OUT_OF_MEMORY, {"PelDeviceDesc.allocate has no 64 bytes"},
+                  [&] { Buffer(device, 64); });
 }

@@ -41,17 +41,6 @@ class EachKind : public testing::TestWithParam<size_t> {
     const Kind& kind() const { return kinds()[GetParam()]; }
 };
 
-TEST_P(EachKind, CountsItsHolders) {
-    Handle made = kind().create();
-    for (int i = 0; i < 3; ++i) kind().retain(made);
-    for (int i = 0; i < 3; ++i) {
-        kind().release(made);
-        EXPECT_EQ(kind().use(made), PEL_SUCCESS) << pelGetErrorMessage();
-    }
-    kind().release(made);
-    EXPECT_EQ(kind().use(made), PEL_ERROR_INVALID_ARGUMENT);
-}
-
 TEST_P(EachKind, ReleasedTwiceIsAnError) {
     const Handle made = kind().create(), other = kind().create();
     kind().release(made);

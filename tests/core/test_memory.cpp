@@ -1,42 +1,16 @@
 // Memory that runs out is an error, never the end of the process. Each test runs in a fork, which is the
 // first to use OpenCL there (and must not, itself, be the parent of others): limits of a process cannot be
 // raised again.
-#include <CL/cl.h>
-#include <dlfcn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "cl/cl_spy.h"
 #include "cl/error.h"
 #include "cl/machine.h"
 #include "mesh/mesh_calls.h"
 
 using namespace pellucid;
-
-namespace {
-
-std::atomic<int> untilFailure{0};   // calls of clCreateBuffer; 0: none fails
-std::atomic<bool> callbacks{true};  // the driver says when a buffer ends
-
-}  // namespace
-
-extern "C" __attribute__((visibility("default"))) cl_mem clCreateBuffer(cl_context context,
-                                                                        cl_mem_flags flags, size_t bytes,
-                                                                        void* host, cl_int* code) {
-    if (untilFailure > 0 && --untilFailure == 0) {
-        if (code) *code = CL_MEM_OBJECT_ALLOCATION_FAILURE;
-        return nullptr;
-    }
-    return reinterpret_cast<decltype(clCreateBuffer)*>(dlsym(RTLD_NEXT, "clCreateBuffer"))(context, flags,
-                                                                                           bytes, host, code);
-}
-
-extern "C" __attribute__((visibility("default"))) cl_int clSetMemObjectDestructorCallback(
-    cl_mem memory, void(CL_CALLBACK* callback)(cl_mem, void*), void* user) {
-    if (!callbacks) return CL_INVALID_OPERATION;
-    return reinterpret_cast<decltype(clSetMemObjectDestructorCallback)*>(
-        dlsym(RTLD_NEXT, "clSetMemObjectDestructorCallback"))(memory, callback, user);
-}
 
 namespace {
 
@@ -254,15 +228,15 @@ TEST(Memory, DriversThatRefuse) {
             const uint64_t before = used().addresses;
             int failures = 0;
             for (int n = 1; n < 100; ++n) {
-                untilFailure = n;
+                spy::failAt(spy::Call::createBuffer, n);
                 PelError error = PEL_SUCCESS;
                 try {
                     calls[call]();
                 } catch (const Error& e) {
                     error = e.code();
                 }
-                const bool struck = untilFailure == 0;
-                untilFailure = 0;
+                const bool struck = spy::callsUntilFailure() <= 0;
+                spy::failAt(spy::Call::none, 0);
                 CHILD_EXPECT(error == (struck ? PEL_ERROR_OUT_OF_MEMORY : PEL_SUCCESS));
                 calls[call]();  // as if nothing had been
                 if (!struck) break;
@@ -280,7 +254,7 @@ TEST(Memory, IsTheDriversWhereBuffersEndUnseen) {
         const Device device("");
         requireSharedMemory(device);
         const std::vector<float> expected = table(device);
-        callbacks = false;
+        spy::failAt(spy::Call::destructorCallback, 1, true);
         for (const size_t bytes : {size_t(16), size_t(1) << 20, size_t(40) << 20}) {
             const Buffer buffer(device, bytes);
             CHILD_EXPECT(buffer.readAll<char>() == std::vector<char>(bytes));

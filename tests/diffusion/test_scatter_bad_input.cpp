@@ -217,8 +217,7 @@ TEST(ScatterBadInput, MapsWithoutTheObject) {
 TEST(ScatterControls, WhatAMethodCannotDoIsRefused) {
     Frame f(plane(8, 8, 1, [](double, double) { return Vec3{}; }), PEL_SCATTERING_SCREEN);
     f.material.borderColor[0] = 1;
-    expectRefused(
-        {"scatterTaps of 8 to 256"}, [&] { f.shade(); }, PEL_ERROR_UNSUPPORTED);
+    expectRefused(PEL_ERROR_UNSUPPORTED, {"scatterTaps of 8 to 256"}, [&] { f.shade(); });
     f.material.scatterTaps = 16;
     f.shade();
     f.material = whiteMaterial(Profile(), PEL_SCATTERING_SCREEN);

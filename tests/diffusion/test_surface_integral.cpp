@@ -295,7 +295,6 @@ TEST(SurfaceIntegral, TellsHowFarItIsAndCanBeCancelled) {
     EXPECT_TRUE(std::is_sorted(told.fractions.begin(), told.fractions.end()));
     EXPECT_EQ(told.fractions.back(), 1);
     told = {{}, 2};
-    expectRefused(
-        {}, [&] { integrate(mesh.desc(), points); }, PEL_ERROR_CANCELLED);
+    expectRefused(PEL_ERROR_CANCELLED, {}, [&] { integrate(mesh.desc(), points); });
     device().setProgress(nullptr, nullptr);
 }

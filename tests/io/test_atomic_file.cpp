@@ -127,24 +127,6 @@ TEST_F(AtomicFileTest, TemporaryNamesAreRandomAndNoLinkIsFollowed) {
     EXPECT_EQ(read(path(longName)), "new");
 }
 
-TEST_F(AtomicFileTest, WhatIsNoFileIsNeitherReadNorReplaced) {
-    ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
-    std::filesystem::create_symlink("/dev/full", path("full"));
-    std::filesystem::create_symlink("/dev/zero", path("zero"));
-    std::filesystem::create_directory(path("folder"));
-    for (const auto& [name, what] : {std::pair{"pipe", "is a pipe"},
-                                     {"full", "is a device"},
-                                     {"zero", "is a device"},
-                                     {"folder", "is a folder"}}) {
-        const std::string file = path(name);
-        EXPECT_TRUE(contains(refusal(name), what));
-        EXPECT_TRUE(contains(messageOf<FileError>([&] { checkWritable(file); }), what));
-        EXPECT_TRUE(contains(messageOf<FileError>([&] { readWholeFile(file); }), what));
-        EXPECT_TRUE(contains(messageOf<FileError>([&] { checkReadable(file); }), what));
-    }
-    EXPECT_EQ(otherThanFile(path("pipe")), "a pipe");
-}
-
 TEST_F(AtomicFileTest, AbandonedFilesAreRemovedAndLiveOnesAreNot) {
     int ready[2], leave[2];
     ASSERT_EQ(::pipe(ready), 0);

@@ -145,24 +145,6 @@ TEST(Picture, TextIsWrittenInsideItsBox) {
     EXPECT_EQ(textWidth(""), 0);
 }
 
-TEST(Picture, SheetsHoldTheirTiles) {
-    const std::vector<Tile> tiles = {{"A", Picture(30, 20, Srgb8{255, 0, 0})},
-                                     {"B", Picture(40, 10, Srgb8{0, 255, 0})},
-                                     {"C", Picture(10, 30, Srgb8{0, 0, 255})}};
-    const Picture sheet = contactSheet(tiles, 2, 1);
-    const int label = textHeight(1) + 6;
-    EXPECT_EQ(sheet.width, 6 + 30 + 6 + 40 + 6);
-    EXPECT_EQ(sheet.height, 6 + 20 + label + 6 + 30 + label + 6);
-    EXPECT_EQ(at(sheet, 6, 6), (Srgb8{255, 0, 0}));
-    EXPECT_EQ(at(sheet, 35, 25), (Srgb8{255, 0, 0}));
-    EXPECT_EQ(at(sheet, 42, 6), (Srgb8{0, 255, 0}));
-    EXPECT_EQ(at(sheet, 6, 6 + 20 + label + 6), (Srgb8{0, 0, 255}));
-    int brightest = 0;  // the A below its tile
-    for (int y = 26; y < 26 + label; ++y)
-        for (int x = 6; x < 16; ++x) brightest = std::max<int>(brightest, at(sheet, x, y)[0]);
-    EXPECT_GT(brightest, 150);
-}
-
 TEST(Picture, PastingIsCutAtEachBorder) {
     const Srgb8 paper{9, 9, 9};
     for (int y : {-5, -2, -1, 0, 3, 4, 7})
@@ -178,28 +160,4 @@ TEST(Picture, PastingIsCutAtEachBorder) {
                         << i << ", " << j << " pasted at " << x << ", " << y;
                 }
         }
-}
-
-TEST(Picture, ShrinkingAveragesLight) {
-    Picture p(4, 2);
-    p.paint(0, 0, {255, 255, 255});
-    p.paint(1, 1, {255, 255, 255});
-    const Picture small = shrunk(p, 2);
-    EXPECT_EQ(small.width, 2);
-    EXPECT_EQ(at(small, 0, 0), (Srgb8{188, 188, 188}));  // half the light is sRGB 188
-    EXPECT_EQ(at(small, 1, 0), (Srgb8{0, 0, 0}));
-}
-
-TEST(Picture, ColoursFollowValuesAndMask) {
-    const std::vector<float> values = {0, 5, 10, 3}, mask = {1, 1, 1, 0};
-    const Picture p = colored(2, 2, values, 0, 10, mask, {1, 2, 3});
-    EXPECT_EQ(at(p, 0, 0), sequentialColor(0));
-    EXPECT_EQ(at(p, 1, 0), sequentialColor(0.5f));
-    EXPECT_EQ(at(p, 0, 1), sequentialColor(1));
-    EXPECT_EQ(at(p, 1, 1), (Srgb8{1, 2, 3}));
-    EXPECT_EQ(at(colored(2, 2, values, 0, 10, mask), 1, 1), (Srgb8{20, 20, 20}));
-    const Picture bar = colorBar(200, 0, 0.25, "1/mm", 1);
-    EXPECT_EQ(at(bar, 0, 0), sequentialColor(0.5f / 200));
-    EXPECT_EQ(at(bar, 199, 0), sequentialColor(199.5f / 200));
-    EXPECT_THROW(Picture(2, 2, std::vector<uint8_t>(11)), std::invalid_argument);
 }

@@ -100,17 +100,20 @@ TEST(LutEncodings, FaceWorksShadowTable) {
                     "fw_lut_shadow_A_u8.npy", true);
 }
 
-// Subnormal halves, ties, both ends of the range and beyond them, where the nearest finite half stands.
+// Every half, and what lies between two of them: rounded to the nearest, at a tie to the even one. Beyond the
+// range the nearest finite half stands.
 TEST(LutEncodings, HalvesOfAnyTexel) {
     PelLutInfo info = pelLutInfoDefaults();
     info.kind = PEL_LUT_SPECULAR;
-    info.specular.width = 512, info.specular.height = 2;
-    std::vector<float> texels;
-    for (int i = 0; i < 512 * 2 * 3; ++i)
-        texels.push_back((i % 2 ? -1.0f : 1.0f) * std::exp2f(float(i) * (48.0f / 3072) - 31));
-    for (float value : {0.0f, -0.0f, 0x1p-25f, 0x1.8p-24f, 0x1.ffcp-15f, 0x1p-14f, 2049.0f, 65504.0f})
-        texels.pop_back(), texels.insert(texels.begin(), value);
-    for (float value : {65520.0f, -1e30f, 3e38f}) texels.pop_back(), texels.insert(texels.begin(), value);
+    info.specular.width = 512, info.specular.height = 83;
+    std::vector<float> texels{-0.0f, 65504.0f, 65520.0f, -1e30f, 3e38f};
+    for (uint16_t h = 0; h < 0x7bff; ++h) {
+        const float sign = h % 2 ? -1 : 1, low = fromHalf(h), high = fromHalf(uint16_t(h + 1)),
+                    tie = low + (high - low) / 2;
+        for (float value : {low, tie, std::nextafter(tie, low), std::nextafter(tie, high)})
+            texels.push_back(sign * value);
+    }
+    texels.resize(3 * info.specular.width * info.specular.height);
     std::vector<uint16_t> halves;
     for (float texel : texels) halves.push_back(toHalf(std::clamp(texel, -65504.0f, 65504.0f)));
     EXPECT_EQ(Lut(Device(""), info, texels).read<uint16_t>(PEL_LUT_HALF), halves);

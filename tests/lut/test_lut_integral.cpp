@@ -180,26 +180,6 @@ TEST(LutIntegral, OneColumnIsTheMiddle) {
         }
 }
 
-// D integrated over the light's directions is a quarter in each row of a sphere's table on the axis of roots:
-// no light is lost. u = s |s|, du/2 = |s| ds, which vanishes at the middle; trapezoids between texels.
-TEST(LutIntegral, MeanOverTheSphereIsAQuarter) {
-    const Device device("");
-    constexpr uint32_t width = 2049;
-    for (const ProfileCase& profile : fixture::profiles()) {
-        const auto desc = curvatureTable(profile.ours, PEL_FORM_SPHERE, width, sized(12u, 2u), 0.05, 1000);
-        const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
-        for (size_t row = 0; row < desc.height; ++row)
-            for (size_t c = 0; c < 3; ++c) {
-                double mean = 0;
-                for (uint32_t x = 0; x < width; ++x) {
-                    const double s = -1 + 2.0 * x / (width - 1), end = x == 0 || x + 1 == width ? 0.5 : 1;
-                    mean += texels[(row * width + x) * 3 + c] * std::abs(s) * end * 2 / (width - 1);
-                }
-                EXPECT_NEAR(mean, 0.25, tolerance::sphereMean) << profile.name << " row " << row;
-            }
-    }
-}
-
 // Closed ends: (T - T(0)) / (T(1) - T(0)) per row of the oracle's T, 0 and 1 at the ends of the axis of
 // roots, whose columns are even in the position across the edge and whose rows are even in the root of
 // 1/width.

@@ -191,8 +191,7 @@ TEST(TableBounds, CausticTablesAreCancelled) {
     const std::vector<float> whole = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
     EXPECT_GT(calls.count, 2);
     calls = {0, 2};
-    expectRefused(
-        {}, [&] { Lut(device, desc); }, PEL_ERROR_CANCELLED);
+    expectRefused(PEL_ERROR_CANCELLED, {}, [&] { Lut(device, desc); });
     EXPECT_EQ(calls.count, 2);
     // In one part the texels are the same.
     calls = {};

@@ -74,17 +74,17 @@ TEST(CurvatureScattered, PointsAndTrianglesSplitAtTheirCentroids) {
     expectAccurate("poked, coarse", poked(flatGrid(40, 40), 0.3, 1, 21));
     // Normals averaged over slivers within slivers are off by 8 degrees: only exact ones.
     expectAccurate("poked four times", poked(flatGrid(70, 70), 0.7, 4, 3), false);
-    for (uint32_t seed : {21u, 22u, 23u})
+    // Without the points of the three-ring the worst of these are 13 to 98 % off.
+    for (uint32_t seed : {23u, 25u, 28u})
         expectAccurate("random, poked three times", poked(delaunay(uniformPoints(2500, seed)), 0.5, 3, seed),
                        false);
 }
 
 TEST(CurvatureScattered, RedGreenRefinement) {
     // Some vertices halve an edge of a sliver. They have four neighbours and few points, which amplify the
-    // rounding of float positions: without the points of the three-ring the worst are 11 to 28 % off.
-    for (uint32_t seed : {2u, 4u, 6u, 7u})
-        expectAccurate("red and green, random", redGreen(delaunay(uniformPoints(5000, seed)), 0.3, seed),
-                       seed < 5);
+    // rounding of float positions: those of the three-ring belong to them.
+    for (uint32_t seed : {4u, 6u, 7u, 9u})
+        expectAccurate("red and green, random", redGreen(delaunay(uniformPoints(5000, seed)), 0.3, seed));
 }
 
 TEST(CurvatureScattered, FitsOfLowerDegreeAreCounted) {

@@ -1,114 +1,11 @@
 #include "reference/scattered.h"
 
+#include <boost/polygon/voronoi.hpp>
 #include <map>
 #include <random>
 
 namespace reference {
 namespace {
-
-double across(Vec2 a, Vec2 b, Vec2 c) {
-    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
-// Whether d lies in the circle through a, b, c (counter-clockwise).
-bool inCircle(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
-    const auto row = [&](Vec2 p) {
-        return Vec3{p.x - d.x, p.y - d.y, (p.x - d.x) * (p.x - d.x) + (p.y - d.y) * (p.y - d.y)};
-    };
-    return determinant(row(a), row(b), row(c)) > 0;
-}
-
-class Delaunay {
-  public:
-    explicit Delaunay(const std::vector<Vec2>& points) : points_(points) {
-        const int count = int(points.size());
-        // Far enough away to leave the hull alone but for slivers.
-        points_.insert(points_.end(), {{-1000, -1000}, {2000, -1000}, {0.5, 2000}});
-        nodes_.push_back({{count, count + 1, count + 2}, {-1, -1, -1}, false});
-        // Along rows of cells, every other row backwards: the walk to the next point is short.
-        std::vector<int> order(points.size());
-        for (int i = 0; i < count; ++i) order[size_t(i)] = i;
-        const int cells = std::max(1, int(std::sqrt(count / 4.0)));
-        const auto key = [&](int i) {
-            const int x = int(points[size_t(i)].x * cells), y = int(points[size_t(i)].y * cells);
-            return std::pair(y, y % 2 ? -x : x);
-        };
-        std::sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
-        for (int i : order) insert(i);
-    }
-    std::vector<Triangle> triangles() const {
-        std::vector<Triangle> result;
-        const int count = int(points_.size()) - 3;
-        for (const Node& n : nodes_)
-            if (!n.dead && n.corners[0] < count && n.corners[1] < count && n.corners[2] < count)
-                result.push_back(n.corners);
-        return result;
-    }
-
-  private:
-    struct Node {
-        Triangle corners;
-        std::array<int, 3> beside;  // the triangle on the other side of the edge that faces corner i
-        bool dead;
-    };
-    Vec2 at(int i) const { return points_[size_t(i)]; }
-    int find(int point) const {
-        for (int t = last_;;) {
-            const Node& n = nodes_[size_t(t)];
-            int i = 0;
-            while (i < 3 && across(at(n.corners[(i + 1) % 3]), at(n.corners[(i + 2) % 3]), at(point)) >= 0)
-                ++i;
-            if (i == 3) return t;
-            t = n.beside[size_t(i)];
-        }
-    }
-    void insert(int point) {
-        std::vector<int> open{find(point)};
-        nodes_[size_t(open[0])].dead = true;
-        std::map<int, int> from;  // of the cavity's outline, by its first corner: the new triangle there
-        std::vector<std::array<int, 3>> outline;  // edge, triangle outside
-        while (!open.empty()) {
-            const Node n = nodes_[size_t(open.back())];
-            open.pop_back();
-            for (int i = 0; i < 3; ++i) {
-                const int outside = n.beside[size_t(i)], a = n.corners[(i + 1) % 3],
-                          b = n.corners[(i + 2) % 3];
-                if (outside >= 0) {
-                    Node& o = nodes_[size_t(outside)];
-                    if (o.dead) continue;
-                    if (inCircle(at(o.corners[0]), at(o.corners[1]), at(o.corners[2]), at(point))) {
-                        o.dead = true;
-                        open.push_back(outside);
-                        continue;
-                    }
-                }
-                outline.push_back({a, b, outside});
-            }
-        }
-        // Edges towards triangles that died later are inside.
-        std::erase_if(outline, [&](const auto& e) { return e[2] >= 0 && nodes_[size_t(e[2])].dead; });
-        for (const auto& [a, b, outside] : outline) {
-            from[a] = int(nodes_.size());
-            if (outside >= 0)
-                for (int i = 0; i < 3; ++i) {
-                    Node& o = nodes_[size_t(outside)];
-                    if (o.corners[(i + 1) % 3] == b && o.corners[(i + 2) % 3] == a)
-                        o.beside[size_t(i)] = int(nodes_.size());
-                }
-            nodes_.push_back({{a, b, point}, {-1, -1, outside}, false});
-        }
-        for (const auto& [a, b, outside] : outline) {
-            const int t = from.at(a), next = from.at(b);
-            nodes_[size_t(t)].beside[0] = next;  // across (b, point)
-            nodes_[size_t(next)].beside[1] = t;
-        }
-        last_ = int(nodes_.size()) - 1;
-    }
-
-    std::vector<Vec2> points_;
-    std::vector<Node> nodes_;
-    int last_ = 0;
-};
 
 Vec2 middle(Vec2 a, Vec2 b) {
     return {(a.x + b.x) / 2, (a.y + b.y) / 2};
@@ -125,7 +22,19 @@ std::vector<Vec2> uniformPoints(int count, uint32_t seed) {
 }
 
 FlatMesh delaunay(const std::vector<Vec2>& points) {
-    return {points, Delaunay(points).triangles()};
+    std::vector<boost::polygon::point_data<int>> sites;
+    for (Vec2 p : points) sites.emplace_back(int(std::lround(p.x * 0x1p30)), int(std::lround(p.y * 0x1p30)));
+    boost::polygon::voronoi_diagram<double> diagram;
+    boost::polygon::construct_voronoi(sites.begin(), sites.end(), &diagram);
+    FlatMesh mesh{points, {}};
+    for (const auto& vertex : diagram.vertices()) {
+        // The cells round it, counter-clockwise; more than three where points lie on one circle.
+        const auto* const first = vertex.incident_edge();
+        const auto corner = [](const auto* edge) { return int(edge->cell()->source_index()); };
+        for (const auto* edge = first->rot_next(); edge->rot_next() != first; edge = edge->rot_next())
+            mesh.triangles.push_back({corner(first), corner(edge), corner(edge->rot_next())});
+    }
+    return mesh;
 }
 
 FlatMesh flatGrid(int columns, int rows) {
@@ -220,11 +129,13 @@ AnalyticMesh lifted(const FlatMesh& mesh, const Surface& surface) {
         out.mesh.normals.push_back(out.truth.back().normal);
     }
     out.mesh.triangles = mesh.triangles;
-    // Parameters may turn the other way round than the surface's outside.
-    const Triangle& t = mesh.triangles.front();
+    // Parameters may turn the other way round than the surface's outside; slivers at the hull may as well.
+    double outwards = 0;
     const auto& p = out.mesh.positions;
-    if (dot(cross(p[size_t(t[1])] - p[size_t(t[0])], p[size_t(t[2])] - p[size_t(t[0])]),
-            out.mesh.normals[size_t(t[0])]) < 0)
+    for (const auto& [a, b, c] : mesh.triangles)
+        outwards +=
+            dot(cross(p[size_t(b)] - p[size_t(a)], p[size_t(c)] - p[size_t(a)]), out.mesh.normals[size_t(a)]);
+    if (outwards < 0)
         for (Triangle& turned : out.mesh.triangles) std::swap(turned[1], turned[2]);
     return out;
 }

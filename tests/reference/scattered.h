@@ -14,7 +14,7 @@ struct FlatMesh {
 
 std::vector<Vec2> uniformPoints(int count, uint32_t seed);
 
-// Incremental, by cavities [Bowyer 1981; Watson 1981]. No two points may be equal.
+// The dual of the Voronoi diagram of the points, on a grid of 2^30 cells a side. No two may be equal.
 FlatMesh delaunay(const std::vector<Vec2>& points);
 
 FlatMesh flatGrid(int columns, int rows);

@@ -87,6 +87,21 @@ inline Buffer setTarget(const Device& device, Shader& shader, const Frame& f,
     return target;
 }
 
+// A shader of the whole frame, and the radiance that it writes.
+struct FrameShader {
+    Shader shader;
+    Buffer target;
+};
+inline FrameShader shaderOf(const Frame& f, const Device& on, const Tables& tables) {
+    FrameShader made{Shader(on), {}};
+    setFrame(on, made.shader, f, tables);
+    made.target = setTarget(on, made.shader, f);
+    return made;
+}
+inline FrameShader shaderOf(const Frame& f) {
+    return shaderOf(f, device(), tables());
+}
+
 // On the tests' own device, with radiance into a buffer.
 inline Shader& setFrame(Shader& shader, const Frame& f, const Buffer& target,
                         PelFormat format = PEL_FORMAT_RGB32F) {
@@ -98,13 +113,11 @@ inline Shader& setFrame(Shader& shader, const Frame& f, const Buffer& target,
 inline std::vector<float> shade(const Device& device, const Frame& f, const Tables& tables,
                                 PelShaderStats* stats = nullptr,
                                 const std::function<void(Shader&)>& change = {}) {
-    Shader shader(device);
-    setFrame(device, shader, f, tables);
-    const Buffer target = setTarget(device, shader, f);
-    if (change) change(shader);
-    shader.commit().execute();
-    if (stats) *stats = shader.stats();
-    return target.readAll<float>();
+    FrameShader made = shaderOf(f, device, tables);
+    if (change) change(made.shader);
+    made.shader.commit().execute();
+    if (stats) *stats = made.shader.stats();
+    return made.target.readAll<float>();
 }
 
 // On the tests' own device, and with the counts.

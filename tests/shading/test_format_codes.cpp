@@ -1,5 +1,4 @@
-// Packed images, tight and padded, with every code of every component; and colours written as halves: every
-// half, and what lies between two of them, rounds to the nearest, at a tie to the even one.
+// Packed images, tight and padded, with every code of every component.
 #include "shade_scene.h"
 #include "test.h"
 
@@ -204,39 +203,3 @@ INSTANTIATE_TEST_SUITE_P(All, FormatCodes,
                              return std::string(std::get<0>(info.param).name) +
                                     (std::get<1>(info.param) ? "Padded" : "Tight");
                          });
-
-TEST(HalfStores, RoundToNearestEven) {
-    constexpr uint16_t largest = 0x7bff;
-    std::vector<float> values;
-    for (uint16_t h = 0; h < largest; ++h) {
-        const float low = fromHalf(h), high = fromHalf(uint16_t(h + 1)), tie = low + (high - low) / 2;
-        values.insert(values.end(), {low, tie, std::nextafter(tie, low), std::nextafter(tie, high)});
-    }
-    constexpr uint32_t width = 211;  // no multiple of a vector
-    const uint32_t height = uint32_t((values.size() / 3 + width) / width);
-    values.resize(size_t(3) * width * height);
-    // Irradiance given by the host, albedo 1, nothing else: what is written is what was given.
-    std::vector<float> normals(values.size());
-    for (size_t i = 2; i < normals.size(); i += 3) normals[i] = 1;
-    PelMaterial material = pelMaterialDefaults();
-    material.scattering = PEL_SCATTERING_NONE;
-    material.specular = 0;
-    std::fill_n(material.albedo, 3, 1.0f);
-    Shader shader(device());
-    const Buffer out(device(), std::vector<uint16_t>(values.size()));
-    const auto image = [&](const Buffer& buffer, PelFormat format) {
-        return imageDesc(buffer, format, width, height);
-    };
-    shader.set(PEL_SLOT_NORMAL_SHADING, image(Buffer(device(), normals), PEL_FORMAT_RGB32F))
-        .set(PEL_SLOT_IRRADIANCE, image(Buffer(device(), values), PEL_FORMAT_RGB32F))
-        .set(PEL_SLOT_RADIANCE, image(out, PEL_FORMAT_RGB16F))
-        .setMaterial(1, material)
-        .commit()
-        .execute();
-    const auto halves = out.readAll<uint16_t>();
-    size_t wrong = 0;
-    for (size_t i = 0; i < values.size(); ++i)
-        if (halves[i] != toHalf(values[i]) && ++wrong <= 5)
-            ADD_FAILURE() << values[i] << " is " << halves[i] << ", not " << toHalf(values[i]);
-    EXPECT_EQ(wrong, 0u);
-}

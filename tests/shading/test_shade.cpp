@@ -289,31 +289,6 @@ std::vector<float> shadeInto(Shader& shader, const Frame& f) {
     return target.readAll<float>();
 }
 
-TEST(ShadeLayouts, PlanarAndRgbaGiveTheSameBits) {
-    const Frame f = randomFrame(4, 90, 21, 1);
-    Shader shader(device());
-    setFrame(device(), shader, f, tables());
-    for (PelImageSlot slot : {PEL_SLOT_POSITION, PEL_SLOT_ALBEDO, PEL_SLOT_NORMAL_BLURRED}) {
-        std::vector<float> planes(f.pixels() * 3);
-        for (size_t i = 0; i < f.pixels(); ++i)
-            for (int c = 0; c < 3; ++c) planes[c * f.pixels() + i] = float(f.slots[slot].at(i, c));
-        shader.set(slot, imageDesc(Buffer(device(), planes), PEL_FORMAT_PLANAR_RGB32F, f.width, f.height));
-    }
-    std::vector<float> four(f.pixels() * 4, NAN);
-    for (size_t i = 0; i < f.pixels(); ++i)
-        for (int c = 0; c < 3; ++c) four[4 * i + c] = float(f.slots[PEL_SLOT_NORMAL_SHADING].at(i, c));
-    shader.set(PEL_SLOT_NORMAL_SHADING,
-               imageDesc(Buffer(device(), four), PEL_FORMAT_RGBA32F, f.width, f.height));
-    const auto expected = shade(f);
-    EXPECT_EQ(shadeInto(shader, f), expected);
-
-    const Buffer planar(device(), f.pixels() * 3 * sizeof(float));
-    shader.set(PEL_SLOT_RADIANCE, imageDesc(planar, PEL_FORMAT_PLANAR_RGB32F, f.width, f.height));
-    shader.commit().execute();
-    const auto planes = planar.readAll<float>();
-    for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(planes[i % 3 * f.pixels() + i / 3], expected[i]);
-}
-
 TEST(ShadeLayouts, OutputOverAnInput) {
     const Frame f = randomFrame(6, 75, 30, 1);
     const auto expected = shade(f);

@@ -27,8 +27,7 @@ TEST(ShadeBadInput, ExecuteNeedsACommit) {
     for (size_t i = 0; i <= std::size(setters); ++i) {
         SCOPED_TRACE("setter " + std::to_string(i));
         if (i > 0) setters[i - 1]();  // before the first one nothing was ever committed
-        expectRefused(
-            {"pelShaderCommit"}, [&] { s.execute(); }, PEL_ERROR_INVALID_STATE);
+        expectRefused(PEL_ERROR_INVALID_STATE, {"pelShaderCommit"}, [&] { s.execute(); });
         s.commit().execute();
     }
 }
@@ -86,8 +85,7 @@ TEST(ShadeBadInput, WhatCommitMisses) {
                            PelError code = PEL_ERROR_INVALID_ARGUMENT) {
         Ready r;
         change(r);
-        expectRefused(
-            words, [&] { r.shader.commit(); }, code);
+        expectRefused(code, words, [&] { r.shader.commit(); });
     };
     const auto set = [](Ready& r, PelImageSlot slot, PelFormat format, uint32_t width = 32,
                         uint64_t offset = 0) {

@@ -367,12 +367,11 @@ TEST(ShadeBands, BlurredNormalsWithTheirHalo) {
 TEST(ShadeBands, ABudgetThatIsTooSmallSaysWhatWouldDo) {
     Frame f = passesFrame(1, 150, 61);
     f.options.scratchBudget = 1000;
-    Shader shader(device());
-    setFrame(device(), shader, f, tables());
-    const auto target = setTarget(device(), shader, f);
-    expectRefused(
-        {("at least " + std::to_string(150 * 48 * 61 + 2 * 400 * 40)).c_str()}, [&] { shader.commit(); },
-        PEL_ERROR_OUT_OF_MEMORY);
+    FrameShader made = shaderOf(f);
+    Shader& shader = made.shader;
+    expectRefused(PEL_ERROR_OUT_OF_MEMORY,
+                  {("at least " + std::to_string(150 * 48 * 61 + 2 * 400 * 40)).c_str()},
+                  [&] { shader.commit(); });
     f.options.scratchBudget = 150 * 48 * 61 + 2 * 400 * 40;
     shader.set(f.options).commit().execute();
     // Without passes there is no scratch memory to limit.

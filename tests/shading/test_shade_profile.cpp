@@ -327,8 +327,7 @@ TEST(ShadeProfile, AutoKeepsToTheScratchBudget) {
     // A method that was asked for is not replaced, and bands do not suffice for it.
     material.scattering = PEL_SCATTERING_SCREEN;
     shading.shader.setMaterial(1, material);
-    expectRefused(
-        {"needs at least"}, [&] { said(needed - 1); }, PEL_ERROR_OUT_OF_MEMORY);
+    expectRefused(PEL_ERROR_OUT_OF_MEMORY, {"needs at least"}, [&] { said(needed - 1); });
 }
 
 // Texels that are longer than light reaches; and a map that is smaller, which holds no body of that profile:

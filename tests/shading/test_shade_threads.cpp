@@ -12,9 +12,7 @@ namespace {
 void shadeOften(const Device& device, const Tables& tables, const Frame& f, const std::vector<float>& right,
                 int* wrong) {
     for (int i = 0; i < 3; ++i) {
-        Shader shader(device);
-        setFrame(device, shader, f, tables);
-        const auto target = setTarget(device, shader, f);
+        auto [shader, target] = shaderOf(f, device, tables);
         shader.commit();
         for (int k = 0; k < 4; ++k) {
             shader.execute();
@@ -138,8 +136,7 @@ TEST(ShadeProgress, IsToldAndMayCancel) {
         };
         Listener listener{0, 3};
         pellucid::check(pelDeviceSetProgress(own.get(), listen, &listener));
-        expectRefused(
-            {"shading"}, [&] { shader.execute(); }, PEL_ERROR_CANCELLED);
+        expectRefused(PEL_ERROR_CANCELLED, {"shading"}, [&] { shader.execute(); });
         EXPECT_GT(made().first, 0u) << "not all";
         EXPECT_GT(made().second, 0u) << "what was made before";
         listener = {};
@@ -167,9 +164,7 @@ TEST(ShadeStats, PassesByName) {
         desc.selector = device().info().name;
         desc.profiling = profiling;
         const pellucid::Device own(desc);
-        Shader shader(own);
-        setFrame(own, shader, f, makeTables(own));
-        const auto target = setTarget(own, shader, f);
+        auto [shader, target] = shaderOf(f, own, makeTables(own));
         shader.commit();
         own.finish();
         EXPECT_TRUE(shader.passes().empty()) << "nothing was executed";
@@ -214,9 +209,8 @@ TEST(ShadeStats, PassesByName) {
     }
     uint32_t room = 1;
     PelPassStats one = pelPassStatsDefaults();
-    Shader shader(device());
-    setFrame(device(), shader, f, tables());
-    const auto target = setTarget(device(), shader, f);
+    FrameShader made = shaderOf(f);
+    Shader& shader = made.shader;
     shader.commit().execute();
     expectRefused("2 structures", [&] { return pelShaderGetPasses(shader.get(), &one, &room); });
     PelPassStats two[2] = {one, {}};  // each is as long as the first says
@@ -231,9 +225,7 @@ TEST(ShadeStats, PassesByName) {
 
 TEST(ShadeStats, NothingIsSentOrBuiltTwice) {
     Frame f = randomFrame(5, 120, 60, 1);
-    Shader shader(device());
-    setFrame(device(), shader, f, tables());
-    const auto target = setTarget(device(), shader, f);
+    auto [shader, target] = shaderOf(f);
     shader.commit().execute();
     PelShaderStats stats = shader.stats();
     const uint64_t shiny = stats.pixelsSpecular, tiles = stats.tilesShaded;

@@ -14,12 +14,7 @@ uint32_t programsOf(const std::vector<Frame>& frames) {
     shadow.kind = PEL_LUT_SHADOW;
     const std::vector<float> texels(curvature.curvature.width * curvature.curvature.height * 3, 0.5f);
     const Tables tables{pellucid::Lut(own, curvature, texels), pellucid::Lut(own, shadow, texels), {}, {}};
-    for (const Frame& f : frames) {
-        Shader shader(own);
-        setFrame(own, shader, f, tables);
-        const auto target = setTarget(own, shader, f);
-        shader.commit();
-    }
+    for (const Frame& f : frames) shaderOf(f, own, tables).shader.commit();
     return own.stats().programsBuilt;
 }
 

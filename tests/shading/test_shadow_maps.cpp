@@ -356,9 +356,7 @@ TEST(ShadowFilter, IsUsedByDefault) {
             Frame f = litFrame();
             f.lights[0].params.shadowFilterTexels = on ? pelLightDefaults().shadowFilterTexels : 0;
             if (besideScreen) f.materials[2].scattering = PEL_SCATTERING_NONE;
-            Shader shader(device());
-            setFrame(device(), shader, f, tables());
-            const auto target = setTarget(device(), shader, f);
+            auto [shader, target] = shaderOf(f);
             shader.commit().execute();
             const auto shown = target.readAll<float>();
             size_t dark = 0;
@@ -504,8 +502,7 @@ TEST(ShadowForms, WhatIsRefused) {
         {cascades, "one sign", [](auto& p, Light&) { p.cascadeDepthRange[0] *= -1; }},
     };
     const auto refused = [](PelError code, const char* word, const std::vector<Light>& lights) {
-        expectRefused(
-            {word}, [&] { shadeForms(formFrame(1, 9, 3), lights); }, code);
+        expectRefused(code, {word}, [&] { shadeForms(formFrame(1, 9, 3), lights); });
     };
     for (size_t i = 0; i < std::size(rows); ++i) {
         SCOPED_TRACE("row " + std::to_string(i));
@@ -536,7 +533,7 @@ TEST(ShadowForms, WhatIsRefused) {
         if (format == PEL_FORMAT_R32F)
             run();
         else
-            expectRefused({"R32F"}, run, PEL_ERROR_UNSUPPORTED);
+            expectRefused(PEL_ERROR_UNSUPPORTED, {"R32F"}, run);
     }
 }
 

@@ -74,9 +74,9 @@ Vec3 halfLit(double x, double) {
 
 TEST(Textures, GiveTheBitsOfBuffers) {
     Frame f = randomFrame(3, 70, 40, 2);
-    Shader buffers(device());
-    setFrame(device(), buffers, f, tables());
-    const Buffer target = setTarget(device(), buffers, f);
+    FrameShader made = shaderOf(f);
+    Shader& buffers = made.shader;
+    const Buffer& target = made.target;
     const std::vector<float> threes(3 * f.pixels(), 3);
     target.write(threes.data(), target.bytes());
     buffers.commit().execute();
@@ -132,9 +132,8 @@ TEST(Textures, GiveTheBitsOfBuffers) {
 TEST(Textures, OfMapsThatRestAreKept) {
     Frame f = randomFrame(3, 40, 24, 1);
     Light& light = f.lights[0];
-    Shader shader(device());
-    setFrame(device(), shader, f, tables());
-    const Buffer target = setTarget(device(), shader, f);
+    FrameShader made = shaderOf(f);
+    Shader& shader = made.shader;
     Texture map(light.map.values, 1, light.mapSize, light.mapSize);
     const std::vector<float> lit(light.map.values.size(), 1);
     shader.set(0, PEL_LIGHT_WIDE_SHADOW, nullptr).set(0, PEL_LIGHT_SHADOW_MAP, map.desc());
@@ -142,7 +141,7 @@ TEST(Textures, OfMapsThatRestAreKept) {
         map.write(texels);
         light.params.shadowMapVersion = version;
         shader.set(std::vector<PelLight>{light.params}).commit().execute();
-        return target.readAll<float>();
+        return made.target.readAll<float>();
     };
     const std::vector<float> first = shaded(0, light.map.values), other = shaded(0, lit);
     EXPECT_NE(first, other);
