@@ -1,5 +1,4 @@
 // pellucid profile skin, and profile pigments: skin by what it is made of. Needs no device.
-#include <cstdio>
 
 #include "command.h"
 #include "fields/field_ranges.h"
