@@ -4,7 +4,7 @@
 
 #include "core/check_range.h"
 #include "core/struct_size.h"
-#include "core/threads.h"
+#include "system/threads.h"
 #include "fields/color_difference.h"
 #include "fields/skin_spectra.h"
 #include "lut/skin_transport.h"
