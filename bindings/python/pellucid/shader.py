@@ -199,7 +199,8 @@ class Shader(OfThisProcess):
             and -y, +y along x and z, -y along x and -z, +z along x and -y, -z along -x and -y. Read at each
             execution. None removes it.
         """
-        return self._keep("ambient_cube", _below(faces, "ambient"), "ambient_cube", self._handle.set_ambient_cube)
+        return self._keep("ambient_cube", _below(faces, "ambient"), "ambient_cube",
+                          self._handle.set_ambient_cube)
 
     def set_reflection_cube(self, faces: Any) -> Shader:
         """Sets the surroundings that eyes reflect: radiance / pi, six faces as for `set_ambient_cube`, as
