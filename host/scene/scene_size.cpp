@@ -1,18 +1,16 @@
 #include <Imath/ImathBox.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "io/lut/profile_file.h"
+#include "io/shortest.h"
 #include "scene/scene_frame.h"
 
 namespace pellucid::io {
 namespace {
 
 std::string shown(float value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", double(value));
-    return text;
+    return printed("%.4g", value);
 }
 
 // use(values of a slot, pixel) at each pixel that may have a material.
