@@ -268,16 +268,14 @@ void run(const Arguments& a) {
 }  // namespace
 
 void addBatch(CLI::App& app) {
-    auto a = std::make_shared<Arguments>();
-    CLI::App* batch =
-        app.add_subcommand("batch", "Make the look-up tables of a manifest that are not there yet");
-    option(*batch, "manifest", a->manifest, "TOML: [[lut]] and [[grid]] (docs/guide/batch.md)", required);
-    option(*batch, "-o,--output", a->folder, "folder for the files; made if need be", required);
-    option(*batch, "--device", a->devices, "device; several share the work", Word{deviceWord}, oneEach);
-    option(*batch, "-j,--jobs", a->jobs, "tables in flight (default: four per core and device)",
+    auto [batch, a] = subcommand<Arguments>(
+        app, "batch", "Make the look-up tables of a manifest that are not there yet", run);
+    option(batch, "manifest", a.manifest, "TOML: [[lut]] and [[grid]] (docs/guide/batch.md)", required);
+    option(batch, "-o,--output", a.folder, "folder for the files; made if need be", required);
+    option(batch, "--device", a.devices, "device; several share the work", Word{deviceWord}, oneEach);
+    option(batch, "-j,--jobs", a.jobs, "tables in flight (default: four per core and device)",
            inRange(1, 256));
-    option(*batch, "--json", a->json, "one JSON object on stdout");
-    batch->callback([a] { run(*a); });
+    option(batch, "--json", a.json, "one JSON object on stdout");
 }
 
 }  // namespace pellucid::cli

@@ -180,12 +180,10 @@ class Expansion {
         if (r.kind != PEL_LUT_SPECULAR)
             asked *= double(r.profiles.size()) * double(r.radii.size()) * double(r.forms.size()) *
                      double(r.axes.size());
-        if (asked_ + asked > double(mostEntries)) {
-            char digits[32];
-            std::snprintf(digits, sizeof digits, "%.0f", asked);
-            reader.fail("size", concat("asks for ", digits, " tables, and a manifest may ask for ",
-                                       mostEntries, " in all; split it"));
-        }
+        if (asked_ + asked > double(mostEntries))
+            reader.fail("size",
+                        concat("asks for ", printed("%.0f", asked), " tables, and a manifest may ask for ",
+                               mostEntries, " in all; split it"));
         asked_ += asked;
     }
 

@@ -1,11 +1,8 @@
 #include "gltf/gltf_document.h"
 
 #include <charconv>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <sstream>
-
-#include "io/input_file.h"
 
 namespace pellucid::io {
 

@@ -1,11 +1,9 @@
 // The container of a glTF: its JSON, its buffers, and accessors decoded with every bound checked. A small
 // file can name the same accessor or image many times, so all that is decoded counts towards inputLimit().
 #pragma once
-#include <memory>
 #include <nlohmann/json_fwd.hpp>
 
 #include "gltf/gltf_file.h"
-#include "io/file_error.h"
 
 namespace pellucid::io {
 

@@ -1,13 +1,13 @@
 #include "gltf/gltf_file.h"
 
+#include <Imath/ImathQuat.h>
+
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <numbers>
 
 #include "gltf/gltf_document.h"
 #include "io/choice_keys.h"
-#include "io/input_file.h"
 
 namespace pellucid::io {
 namespace {
@@ -63,21 +63,21 @@ GltfMaterial readGltfMaterial(const GltfDocument& document, const GltfValue& mat
     });
     with("KHR_materials_diffuse_transmission", [&](const GltfValue& e) {
         m.diffuseTransmission = e.number("diffuseTransmissionFactor", 0, 0, 1);
-        e.numbers("diffuseTransmissionColorFactor", m.diffuseTransmissionColor.data(), 3, 0, 1);
+        e.numbers("diffuseTransmissionColorFactor", &m.diffuseTransmissionColor.x, 3, 0, 1);
         texture(e, "diffuseTransmissionTexture"), texture(e, "diffuseTransmissionColorTexture");
     });
     with("KHR_materials_volume", [&](const GltfValue& e) {
         m.thickness = e.number("thicknessFactor", 0, 0, 1e6);
         m.attenuationDistance = e.number("attenuationDistance", INFINITY, 1e-9, INFINITY);
-        e.numbers("attenuationColor", m.attenuationColor.data(), 3, 0, 1);
+        e.numbers("attenuationColor", &m.attenuationColor.x, 3, 0, 1);
         texture(e, "thicknessTexture");
     });
     for (const char* name :
          {"KHR_materials_scatter", "KHR_materials_volume_scatter"})  // the draft's name, the later one
         with(name, [&](const GltfValue& e) {
-            Triple color{};
-            e.numbers("multiscatterColor", color.data(), 3, 0, 1);
-            e.numbers("multiscatterColorFactor", color.data(), 3, 0, 1);
+            Triple color(0);
+            e.numbers("multiscatterColor", &color.x, 3, 0, 1);
+            e.numbers("multiscatterColorFactor", &color.x, 3, 0, 1);
             m.multiscatterColor = color;
             m.scatterAnisotropy = e.number("scatterAnisotropy", 0, -1, 1);
             texture(e, "multiscatterColorTexture");
@@ -94,69 +94,45 @@ GltfMaterial readGltfMaterial(const GltfDocument& document, const GltfValue& mat
     return m;
 }
 
-// Row-major, multiplies column vectors.
-using Matrix = std::array<double, 16>;
+using Matrix = Imath::M44d;              // of row vectors: as glTF's columns lie in memory
 constexpr size_t mostMaterials = 255;    // ids of a material channel
 constexpr double mostCoordinate = 1e30;  // metres, of a node or its axes
-constexpr Matrix identity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
-Matrix product(const Matrix& a, const Matrix& b) {
-    Matrix c{};
-    for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j)
-            for (int k = 0; k < 4; ++k) c[size_t(4 * i + j)] += a[size_t(4 * i + k)] * b[size_t(4 * k + j)];
-    return c;
-}
-
-Triple point(const Matrix& m, const Triple& p) {
-    return {m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3], m[4] * p[0] + m[5] * p[1] + m[6] * p[2] + m[7],
-            m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]};
-}
-
-Triple row(const Matrix& m, size_t i) {
-    return {m[4 * i], m[4 * i + 1], m[4 * i + 2]};
+// Where the axes go.
+Triple axis(const Matrix& m, int i) {
+    return {m[i][0], m[i][1], m[i][2]};
 }
 
 // Transforms a normal by the cofactors of the upper left 3 x 3 matrix: correct for mirrored parts, too.
 Triple turned(const Matrix& m, const Triple& n) {
-    return {dot(cross(row(m, 1), row(m, 2)), n), dot(cross(row(m, 2), row(m, 0)), n),
-            dot(cross(row(m, 0), row(m, 1)), n)};
+    const Triple x = axis(m, 0), y = axis(m, 1), z = axis(m, 2);
+    return n.x * y.cross(z) + n.y * z.cross(x) + n.z * x.cross(y);
 }
 
 Triple unit(const Triple& v, const Triple& otherwise) {
-    const double length = std::hypot(v[0], v[1], v[2]);
-    if (!(length > 1e-30) || !std::isfinite(length)) return otherwise;
-    return {v[0] / length, v[1] / length, v[2] / length};
+    const double length = v.length();
+    return length > 1e-30 && std::isfinite(length) ? v / length : otherwise;
 }
 
 // -z of a node, along which its camera or light looks.
 Triple forwardOf(const Matrix& m) {
-    return unit({-m[2], -m[6], -m[10]}, {0, 0, -1});
+    return unit(-axis(m, 2), {0, 0, -1});
 }
 
 Matrix localOf(const GltfValue& node) {
-    Matrix m = identity;
-    if (node.has("matrix")) {  // column by column
-        Matrix columns{};
-        node.numbers("matrix", columns.data(), 16, -1e12, 1e12);
-        for (size_t i = 0; i < 4; ++i)
-            for (size_t j = 0; j < 4; ++j) m[4 * i + j] = columns[4 * j + i];
+    Matrix m;
+    if (node.has("matrix")) {
+        node.numbers("matrix", m.getValue(), 16, -1e12, 1e12);
+        for (int i = 0; i < 4; ++i) m[i][3] = i == 3;  // nodes have no perspective
         return m;
     }
-    double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
-    node.numbers("translation", t, 3, -1e12, 1e12);
-    node.numbers("rotation", q, 4, -2, 2);
-    node.numbers("scale", s, 3, -1e12, 1e12);
-    const double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3], f = norm > 0 ? 2 / norm : 0;
-    const double x = q[0], y = q[1], z = q[2], w = q[3];
-    const double r[9] = {1 - f * (y * y + z * z), f * (x * y - z * w),     f * (x * z + y * w),
-                         f * (x * y + z * w),     1 - f * (x * x + z * z), f * (y * z - x * w),
-                         f * (x * z - y * w),     f * (y * z + x * w),     1 - f * (x * x + y * y)};
-    for (size_t i = 0; i < 3; ++i) {
-        for (size_t j = 0; j < 3; ++j) m[4 * i + j] = r[3 * i + j] * s[j];
-        m[4 * i + 3] = t[i];
-    }
-    return m;
+    Triple move(0), scale(1);
+    double turn[4] = {0, 0, 0, 1};
+    node.numbers("translation", &move.x, 3, -1e12, 1e12);
+    node.numbers("rotation", turn, 4, -2, 2);
+    node.numbers("scale", &scale.x, 3, -1e12, 1e12);
+    const Imath::Quatd rotation(turn[3], turn[0], turn[1], turn[2]);
+    return m.setScale(scale) * rotation.normalized().toMatrix44() * Matrix().setTranslation(move);
 }
 
 // A light of KHR_lights_punctual, of a node with this matrix. Lux, or candela, which is lux at one metre.
@@ -169,12 +145,12 @@ SceneLight readGltfLight(const GltfValue& light, const Matrix& m) {
     SceneLight scene;
     PelLight& l = scene.light;
     l.type = PelLightType(kind - lightTypes);
-    Triple color{1, 1, 1};
-    light.numbers("color", color.data(), 3, 0, 1e6);
+    Triple color(1);
+    light.numbers("color", &color.x, 3, 0, 1e6);
     const double intensity = light.number("intensity", 1, 0, 1e12) / std::numbers::pi,
                  at = l.type == PEL_LIGHT_DIRECTIONAL ? 1 : 1e6;
-    const Triple place = point(m, {0, 0, 0}), forward = forwardOf(m);
-    for (size_t c = 0; c < 3; ++c) {
+    const Triple place = m.translation(), forward = forwardOf(m);
+    for (int c = 0; c < 3; ++c) {
         l.color[c] = float(color[c] * intensity * at);
         l.position[c] = float(place[c]);
         l.toLight[c] = float(-forward[c]);
@@ -200,7 +176,7 @@ class Builder {
     GltfScene build() {
         scene_.mesh.source = document_.path();
         entered_.resize(root_.count("nodes"));
-        for (const size_t node : roots()) enter(node, identity, 0);
+        for (const size_t node : roots()) enter(node, Matrix(), 0);
         if (scene_.mesh.triangles.empty()) throw FileError(document_.path(), "has no triangles in its scene");
         MeshData& mesh = scene_.mesh;
         if (!uvsEverywhere_) mesh.uvs.clear();
@@ -239,9 +215,10 @@ class Builder {
         if (depth > 500) node.fail("is more than 500 nodes deep");
         if (entered_[index]) node.fail("is a child of two nodes, or of itself");
         entered_[index] = true;
-        const Matrix m = product(above, localOf(node));
-        for (const double x : m)
-            if (!(std::abs(x) <= mostCoordinate)) node.fail("is placed or scaled beyond what a float holds");
+        const Matrix m = localOf(node) * above;
+        for (int i = 0; i < 16; ++i)
+            if (!(std::abs(m[i / 4][i % 4]) <= mostCoordinate))
+                node.fail("is placed or scaled beyond what a float holds");
         if (node.has("mesh")) {
             if (node.has("skin")) warn("skins are left out: meshes are in their rest pose");
             for (const Part& part : partsOf(node.reference("mesh", "meshes", root_.count("meshes"))))
@@ -262,11 +239,11 @@ class Builder {
         GltfCamera c;
         c.verticalFov = p["yfov"].number(1e-3, 3.14);
         c.aspect = p.number("aspectRatio", 0, 1e-3, 1e3);
-        c.position = point(m, {0, 0, 0});
+        c.position = m.translation();
         c.forward = forwardOf(m);
-        c.up = unit({m[1], m[5], m[9]}, {0, 1, 0});
+        c.up = unit(axis(m, 1), {0, 1, 0});
         // Sheared axes can coincide; any other direction will do then.
-        if (std::abs(dot(c.up, c.forward)) > 0.999999)
+        if (std::abs(c.up.dot(c.forward)) > 0.999999)
             c.up = std::abs(c.forward[1]) < 0.9 ? Triple{0, 1, 0} : Triple{0, 0, 1};
         scene_.cameras.push_back(c);
     }
@@ -349,23 +326,19 @@ class Builder {
         const size_t vertices = positions.size() / 3, first = scene_.mesh.vertexCount();
         checkSceneSize(part.primitive, vertices, part.triangles.size());
         MeshData& mesh = scene_.mesh;
-        bool bad = normals.empty();
+        bool bad = false;
         for (size_t v = 0; v < vertices; ++v) {
-            const Triple p = point(m, {positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]});
-            for (const double x : p) {
-                if (!std::isfinite(float(x)))
+            const Triple p = vectorOf(&positions[3 * v]) * m,
+                         n = normals.empty() ? Triple(0)
+                                             : unit(turned(m, vectorOf(&normals[3 * v])), Triple(0));
+            bad |= n == Triple(0);
+            for (int c = 0; c < 3; ++c) {
+                if (!std::isfinite(float(p[c])))
                     part.primitive["attributes"]["POSITION"].fail(
                         concat("has vertex ", v, " at a place that is not finite"));
-                mesh.positions.push_back(float(x));
+                mesh.positions.push_back(float(p[c]));
+                mesh.normals.push_back(float(n[c]));
             }
-            Triple n{0, 0, 1};
-            if (!normals.empty()) {
-                const Triple t =
-                    unit(turned(m, {normals[3 * v], normals[3 * v + 1], normals[3 * v + 2]}), {0, 0, 0});
-                bad |= t == Triple{0, 0, 0};
-                n = t == Triple{0, 0, 0} ? n : t;
-            }
-            for (const double x : n) mesh.normals.push_back(float(x));
             for (size_t c = 0; c < 2; ++c) {
                 const float u = uvs.empty() ? 0 : uvs[2 * v + c];
                 mesh.uvs.push_back(std::isfinite(u) ? u : 0);
@@ -375,7 +348,7 @@ class Builder {
             warn("some normals are zero or not finite: all are made from the triangles");
         normalsEverywhere_ &= !bad;
         uvsEverywhere_ &= !uvs.empty();
-        const bool mirrored = dot(cross(row(m, 0), row(m, 1)), row(m, 2)) < 0;
+        const bool mirrored = m.determinant() < 0;
         for (size_t i = 0; i < part.triangles.size(); i += 3)
             for (const size_t k : {size_t{0}, size_t{mirrored ? 2u : 1u}, size_t{mirrored ? 1u : 2u}})
                 mesh.triangles.push_back(uint32_t(first + part.triangles[i + k]));

@@ -1,22 +1,19 @@
 // Scenes of glTF 2.0 (.gltf, .glb): triangles in the world, materials, cameras and lights as plain data
 // [Khronos, glTF 2.0 Specification]. docs/guide/gltf.md says what is left out with a warning.
 #pragma once
+#include <Imath/ImathVec.h>
+
 #include <cmath>
-#include <functional>
-#include <optional>
 
 #include "io/mesh/mesh_file.h"
 #include "io/scene/scene_file.h"
 
 namespace pellucid::io {
 
-using Triple = std::array<double, 3>;
+using Triple = Imath::V3d;
 
-inline double dot(const Triple& a, const Triple& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-inline Triple cross(const Triple& a, const Triple& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+inline Triple vectorOf(const float* v) {
+    return {v[0], v[1], v[2]};
 }
 
 // An encoded picture.
@@ -44,9 +41,9 @@ struct GltfMaterial {
 };
 
 struct GltfCamera {
-    Triple position{}, forward{0, 0, -1}, up{0, 1, 0};  // world; unit
-    double verticalFov = 0;                             // radians
-    double aspect = 0;                                  // width / height; 0: the picture's own
+    Triple position{0, 0, 0}, forward{0, 0, -1}, up{0, 1, 0};  // world; unit
+    double verticalFov = 0;                                    // radians
+    double aspect = 0;                                         // width / height; 0: the picture's own
 };
 
 struct GltfScene {

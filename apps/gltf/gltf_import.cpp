@@ -1,11 +1,12 @@
 #include "gltf/gltf_import.h"
 
+#include <Imath/ImathBox.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <map>
 
 #include "io/atomic_file.h"
-#include "io/input_file.h"
 #include "io/lut/profile_file.h"
 #include "io/shortest.h"
 
@@ -19,24 +20,23 @@ struct LitArea {
 // The brightest channel that a diffuse surface reflects: PelLight.color is irradiance / pi, of lamps at 1 mm.
 double reflected(const std::vector<SceneLight>& lights, const Triple& at, const Triple& normal,
                  const Triple& albedo) {
-    Triple sum{};
+    Triple sum(0);
     for (const SceneLight& scene : lights) {
         const PelLight& l = scene.light;
-        Triple toLight{l.toLight[0], l.toLight[1], l.toLight[2]};
+        Triple toLight = vectorOf(l.toLight);
         double strength = 1;
         if (l.type != PEL_LIGHT_DIRECTIONAL) {
-            for (size_t c = 0; c < 3; ++c) toLight[c] = l.position[c] - at[c];
-            const double distance = std::sqrt(dot(toLight, toLight));
+            toLight = vectorOf(l.position) - at;
+            const double distance = toLight.length();
             if (!(distance > 0) || (l.range > 0 && distance > l.range)) continue;
-            for (double& x : toLight) x /= distance;
+            toLight /= distance;
             strength = 1 / (distance * distance);
-            const Triple axis{l.spotDirection[0], l.spotDirection[1], l.spotDirection[2]};
-            if (l.type == PEL_LIGHT_SPOT && -dot(toLight, axis) < l.spotCosOuter) continue;
+            if (l.type == PEL_LIGHT_SPOT && -toLight.dot(vectorOf(l.spotDirection)) < l.spotCosOuter)
+                continue;
         }
-        const double cosine = std::max(dot(normal, toLight), 0.0);
-        for (size_t c = 0; c < 3; ++c) sum[c] += l.color[c] * strength * cosine * albedo[c];
+        sum += strength * std::max(normal.dot(toLight), 0.0) * vectorOf(l.color) * albedo;
     }
-    return std::ranges::max(sum);
+    return std::max({sum.x, sum.y, sum.z});
 }
 
 // A sample of a few thousand triangles under the lights as the file has them, without shadows and scattering.
@@ -45,21 +45,16 @@ std::vector<LitArea> litSurface(const ImportedGltf& made) {
     std::vector<LitArea> lit;
     const size_t step = std::max<size_t>(mesh.triangleCount() / 8192, 1);
     for (size_t t = 0; t < mesh.triangleCount(); t += step) {
-        Triple centre{}, normal{}, side[2]{};  // sides: from each corner to the next
-        for (size_t k = 0; k < 3; ++k)
-            for (size_t c = 0; c < 3; ++c) {
-                const size_t at = 3 * size_t(mesh.triangles[3 * t + k]) + c;
-                centre[c] += mesh.positions[at] / 3.0;
-                normal[c] += mesh.normals[at];
-                if (k < 2) side[k][c] -= mesh.positions[at];
-                if (k > 0) side[k - 1][c] += mesh.positions[at];
-            }
-        const Triple twice = cross(side[0], side[1]);
-        const double length = std::sqrt(dot(normal, normal)), area = std::sqrt(dot(twice, twice)) / 2;
-        if (!(length > 0) || !(area > 0) || !std::isfinite(area)) continue;
-        for (double& x : normal) x /= length;
-        const double radiance =
-            reflected(made.gltf.lights, centre, normal, made.looks[made.gltf.materialOf[t]].albedo);
+        Triple corner[3], normal(0);
+        for (size_t k = 0; k < 3; ++k) {
+            const size_t vertex = mesh.triangles[3 * t + k];
+            corner[k] = vectorOf(&mesh.positions[3 * vertex]);
+            normal += vectorOf(&mesh.normals[3 * vertex]);
+        }
+        const double area = (corner[1] - corner[0]).cross(corner[2] - corner[1]).length() / 2;
+        if (!(normal.length() > 0) || !(area > 0) || !std::isfinite(area)) continue;
+        const double radiance = reflected(made.gltf.lights, (corner[0] + corner[1] + corner[2]) / 3,
+                                          normal.normalized(), made.looks[made.gltf.materialOf[t]].albedo);
         if (radiance > 0) lit.push_back({radiance, area});
     }
     return lit;
@@ -143,8 +138,7 @@ void toMillimetres(GltfScene& gltf, double unitMm) {
         if (!std::isfinite(p))
             throw FileError(gltf.mesh.source, "has vertices too far away for a float, in mm");
     }
-    for (GltfCamera& camera : gltf.cameras)
-        for (double& p : camera.position) p *= unitMm;
+    for (GltfCamera& camera : gltf.cameras) camera.position *= unitMm;
     for (SceneLight& light : gltf.lights) {
         for (float& p : light.light.position) p = float(p * unitMm);
         light.light.range = float(std::min(light.light.range * unitMm, 1e18));
@@ -154,16 +148,11 @@ void toMillimetres(GltfScene& gltf, double unitMm) {
 // Rays start at the camera in single precision: from far away they would miss a small scene, or hit noise.
 void dropDistantCameras(GltfScene& gltf) {
     constexpr double most = 1e5;  // of the scene's size
-    Triple low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
-    for (size_t i = 0; i < gltf.mesh.positions.size(); ++i) {
-        const double p = gltf.mesh.positions[i];
-        low[i % 3] = std::min(low[i % 3], p), high[i % 3] = std::max(high[i % 3], p);
-    }
-    const double size = std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+    Imath::Box3d box;
+    for (size_t i = 0; i < gltf.mesh.positions.size(); i += 3)
+        box.extendBy(vectorOf(&gltf.mesh.positions[i]));
     const size_t dropped = std::erase_if(gltf.cameras, [&](const GltfCamera& camera) {
-        Triple away;
-        for (size_t c = 0; c < 3; ++c) away[c] = camera.position[c] - (low[c] + high[c]) / 2;
-        return !(std::hypot(away[0], away[1], away[2]) <= most * size);
+        return !((camera.position - box.center()).length() <= most * box.size().length());
     });
     if (dropped)
         warn(gltf,
@@ -224,7 +213,7 @@ void writeObj(const std::string& folder, const ImportedGltf& made) {
             obj += '\n';
         }
         mtl += "newmtl " + made.names[m] + "\nKd";
-        for (const double c : made.looks[m].albedo) mtl += " " + shortest(float(c));
+        for (int c = 0; c < 3; ++c) mtl += " " + shortest(float(made.looks[m].albedo[c]));
         mtl += "\n";
     }
     writeWholeFile(folder + "/mesh.obj", obj);
@@ -245,7 +234,7 @@ ImportedGltf importScene(GltfScene scene, const GltfImportOptions& options) {
     dropDistantCameras(made.gltf);
     addLights(made, options);
     if (!made.gltf.cameras.empty())
-        std::ranges::copy(made.gltf.cameras[0].position, made.scene.camera.position);
+        std::copy_n(&made.gltf.cameras[0].position.x, 3, made.scene.camera.position);
     // The channels that a G-buffer of the mesh should have.
     made.scene.channels[PEL_SLOT_NORMAL_SHADING] = {"Normal.X", "Normal.Y", "Normal.Z"};
     made.scene.channels[PEL_SLOT_POSITION] = {"Position.X", "Position.Y", "Position.Z"};

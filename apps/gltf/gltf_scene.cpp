@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <set>
 
-#include "io/concat.h"
 #include "io/shortest.h"
 
 namespace pellucid::io {
@@ -12,9 +11,8 @@ namespace {
 constexpr double sheet = 0.5;  // mm: thickness that is given to walls without one
 
 std::string triple(const Triple& values) {
-    std::string text = "[";
-    for (const double v : values) text += (text.size() > 1 ? ", " : "") + shortest(float(v));
-    return text + "]";
+    return concat("[", shortest(float(values.x)), ", ", shortest(float(values.y)), ", ",
+                  shortest(float(values.z)), "]");
 }
 
 std::string profileFile(const std::string& name, const std::string& source, const std::string& keys) {

@@ -3,7 +3,6 @@
 #include "cli/mesh_curvature.h"
 #include "gltf/import_view.h"
 #include "io/atomic_file.h"
-#include "io/input_file.h"
 #include "io/shortest.h"
 
 namespace pellucid::cli {
@@ -94,28 +93,26 @@ void run(const Arguments& a) {
 }  // namespace
 
 void addImport(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("import", "Take over a glTF scene: mesh, materials, lights, G-buffer");
-    auto a = std::make_shared<Arguments>();
-    option(*command, "scene", a->file, "glTF 2.0: .glb or .gltf", required);
-    option(*command, "-o,--output", a->output,
-           "folder for scene.toml, mesh.obj, gbuffer.exr; made if need be", required);
-    option(*command, "--profile", a->profiles,
+    auto [command, a] = subcommand<Arguments>(
+        app, "import", "Take over a glTF scene: mesh, materials, lights, G-buffer", run);
+    option(command, "scene", a.file, "glTF 2.0: .glb or .gltf", required);
+    option(command, "-o,--output", a.output, "folder for scene.toml, mesh.obj, gbuffer.exr; made if need be",
+           required);
+    option(command, "--profile", a.profiles,
            "PROFILE of all materials, or MATERIAL=PROFILE of one, in place of what the file says",
            Word{profileWord}, oneEach);
-    option(*command, "--unit-mm", a->unitMm, "millimetres per unit; glTF's unit is the metre",
+    option(command, "--unit-mm", a.unitMm, "millimetres per unit; glTF's unit is the metre",
            inRange(1e-6, 1e9), shown);
-    option(*command, "--size", a->size,
-           "pixels of the G-buffer, WxH (default: 1024 wide, the camera's shape)", Word{"SIZE"});
-    option(*command, "--camera", a->camera,
+    option(command, "--size", a.size, "pixels of the G-buffer, WxH (default: 1024 wide, the camera's shape)",
+           Word{"SIZE"});
+    option(command, "--camera", a.camera,
            "number of the camera, from 0 on; first, or none to frame everything", Word{"CAMERA"}, shown);
-    option(*command, "--lights", a->lights,
+    option(command, "--lights", a.lights,
            "factor of the lights' brightness in lux and candela (default: chosen by how bright the scene "
            "becomes)",
            inRange(1e-9, 1e9));
-    option(*command, "--smooth", a->smoothing, "smoothing passes of the curvature", inRange(0, 1000), shown);
-    addRunOptions(*command, a->run);
-    command->callback([a] { run(*a); });
+    option(command, "--smooth", a.smoothing, "smoothing passes of the curvature", inRange(0, 1000), shown);
+    addRunOptions(command, a.run);
 }
 
 }  // namespace pellucid::cli

@@ -3,7 +3,6 @@
 #include <numbers>
 
 #include "io/image/color_map.h"
-#include "io/image/image_file.h"
 #include "sample/gbuffer.h"
 #include "sample/shadow_map.h"
 

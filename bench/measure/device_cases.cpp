@@ -117,13 +117,12 @@ std::vector<Factory> deviceCases(const Device& device, bool quick) {
                 if (repeat > 0 && milliseconds() - start < least)
                     least = milliseconds() - start, best = lanes;
             }
-        Case c;
-        c.what = std::to_string(bytes >> 20) + " MiB, " +
-                 (best ? "float" + std::to_string(best) : "the driver's own");
-        c.items = c.bytes = 2 * double(bytes);
-        c.unit = "bytes";
-        c.run = [=] { l->copy(best); };
-        return c;
+        return Case{.what = std::to_string(bytes >> 20) + " MiB, " +
+                            (best ? "float" + std::to_string(best) : "the driver's own"),
+                    .items = 2 * double(bytes),
+                    .unit = "bytes",
+                    .bytes = 2 * double(bytes),
+                    .run = [=] { l->copy(best); }};
     };
     const auto arithmetic = [=] {
         const auto l = open();

@@ -184,15 +184,14 @@ struct EyeFrame {
 std::vector<Factory> eyeCases(const Device& device, bool quick) {
     const auto frame = [=] {
         const auto made = std::make_shared<EyeFrame>(device, quick);
-        Case c;
-        c.what = std::to_string(made->width) + "x" + std::to_string(made->height) + ", 5 % an eye";
-        c.items = double(made->width) * made->height;
-        c.unit = "pixels";
-        c.run = [=] { made->shader.execute(); };
-        const int samples = quick ? 200 : 1000;
-        c.error = [=] { return made->error(samples); };
-        c.truth = "the tracer in double precision with the same table, at drawn pixels of the eye; absolute";
-        return c;
+        return Case{.what = std::to_string(made->width) + "x" + std::to_string(made->height) + ", 5 % an eye",
+                    .items = double(made->width) * made->height,
+                    .unit = "pixels",
+                    .run = [=] { made->shader.execute(); },
+                    .error = [=] { return made->error(quick ? 200 : 1000); },
+                    .truth =
+                        "the tracer in double precision with the same table, at drawn pixels of the eye; "
+                        "absolute"};
     };
     return {{"table-eye", "tables", [=] { return tableCase(device, quick); }},
             {"shade-eye", "shading", frame}};

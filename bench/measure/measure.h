@@ -1,8 +1,5 @@
 // The cases of `pellucid bench`, and their measurement.
 #pragma once
-#include <algorithm>
-#include <functional>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <pellucid/pellucid.hpp>
 
@@ -15,16 +12,16 @@ struct Error {
 };
 
 struct Case {
-    std::string what;  // for people: size, settings
-    double items = 0;  // worked on per run
-    std::string unit;  // of the items: "vertices"
+    std::string what{};  // for people: size, settings
+    double items = 0;    // worked on per run
+    std::string unit{};  // of the items: "vertices"
     // Least work by the definition, for shares of the device's own limits; 0: not counted. Bytes: each input
     // read and each output written once. Operations: +, *, comparison, square root, exponential each 1, fused
     // multiply-add 2.
     double bytes = 0, operations = 0;
-    std::function<void()> run;     // returns when the result is there
-    std::function<Error()> error;  // of the last run's result; empty: nothing to compare
-    std::string truth;             // what the result is compared with, and in which unit
+    std::function<void()> run{};     // returns when the result is there
+    std::function<Error()> error{};  // of the last run's result; empty: nothing to compare
+    std::string truth{};             // what the result is compared with, and in which unit
 };
 
 // Making a case may need memory and time, and may fail on a device that lacks something.

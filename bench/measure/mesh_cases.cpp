@@ -69,11 +69,7 @@ std::vector<Factory> meshCases(const Device& device, bool quick) {
         return *made;
     };
     const auto begin = [](const Torus& t, const std::string& more) {
-        Case c;
-        c.what = std::to_string(t.vertices) + " vertices" + more;
-        c.items = t.vertices;
-        c.unit = "vertices";
-        return c;
+        return Case{std::to_string(t.vertices) + " vertices" + more, double(t.vertices), "vertices"};
     };
     // Positions, normals, two triangles per vertex, one result.
     constexpr double bytes = 12 + 12 + 24 + 4;

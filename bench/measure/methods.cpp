@@ -269,8 +269,8 @@ class Methods {
                         one.push_back(contenderOf(setting, scene, s, 1));
                         const double once = one[0].shot.stats.deviceMilliseconds;
                         run(one, name, "frames", int(std::clamp(3000 / once, 1.0, 7.0)));
-                        if (setting.method == "Lambert") plain = timeOfPlain(one);
-                        rows_.push_back(rowOf(one[0], name, "frames", s, plain));
+                        if (setting.method == "Lambert") plain = median(one[0].device);
+                        addTimes(one[0], name, "frames", s, plain);
                     });
             });
             sendRows();
@@ -354,18 +354,25 @@ class Methods {
         // Work-items that run at the same time may not change a bit from one frame to the next.
         shot.shader.execute();
         const std::vector<float> again = shot.out.readAll<float>();
-        rows_.push_back(
-            {{"name", scene + ": " + setting.name()},
-             {"group", "pictures"},
-             {"scene", scene},
-             {"method", setting.method},
-             {"setting", setting.setting},
-             {"what", std::to_string(s.width) + "x" + std::to_string(s.height)},
-             {"error_max", finite(sum.result().max)},
-             {"error_rms", finite(sum.result().rms)},
-             {"error_p90", finite(errors[errors.size() * 9 / 10])},
-             {"repeats", again == shot.light},
-             {"truth", "the picture by PoCL on a CPU, with one lane, at drawn pixels; absolute"}});
+        addRow(scene, setting, "pictures", sizeOf(s),
+               {{"error_max", finite(sum.result().max)},
+                {"error_rms", finite(sum.result().rms)},
+                {"error_p90", finite(errors[errors.size() * 9 / 10])},
+                {"repeats", again == shot.light},
+                {"truth", "the picture by PoCL on a CPU, with one lane, at drawn pixels; absolute"}});
+    }
+    static std::string sizeOf(const LitScene& s) {
+        return std::to_string(s.width) + "x" + std::to_string(s.height);
+    }
+    void addRow(const std::string& scene, const Setting& setting, const char* group, const std::string& what,
+                const Json& found) {
+        rows_.push_back({{"name", scene + ": " + setting.name()},
+                         {"group", group},
+                         {"scene", scene},
+                         {"method", setting.method},
+                         {"setting", setting.setting},
+                         {"what", what}});
+        rows_.back().update(found);
     }
     static Json finite(double v) { return std::isfinite(v) ? Json(v) : Json(); }
 
@@ -417,8 +424,8 @@ class Methods {
     }
 
     // Times and sizes of a contender; `plain`: of Lambert.
-    static Json rowOf(const Contender& c, const std::string& scene, const char* group, const LitScene& s,
-                      double plain) {
+    void addTimes(const Contender& c, const std::string& scene, const char* group, const LitScene& s,
+                  double plain) {
         const PelShaderStats stats = c.shot.shader.stats();
         const auto skin = double(s.places.size()), frame = double(s.width) * s.height;
         // Position, normal and result, and what tables need beside them; ids; the shadow map.
@@ -427,13 +434,7 @@ class Methods {
         Json passes = Json::array();
         for (const auto& [pass, times] : c.passes)
             passes.push_back({{"name", pass}, {"ms", median(times)}, {"mad_ms", medianDeviation(times)}});
-        Json row = {{"name", scene + ": " + c.setting.name()},
-                    {"group", group},
-                    {"scene", scene},
-                    {"method", c.setting.method},
-                    {"setting", c.setting.setting},
-                    {"what", std::to_string(s.width) + "x" + std::to_string(s.height)},
-                    {"items", skin},
+        Json row = {{"items", skin},
                     {"unit", "pixels of skin"},
                     {"samples", c.device.size()},
                     {"median_ms", median(c.device)},
@@ -452,20 +453,27 @@ class Methods {
         }
         if (c.setting.budget > 0) {
             const PelScattering took = c.shot.shader.material(1).scattering;
-            row.update({{"group", "budgets"},
-                        {"budget_ms", 1e-6 * c.setting.budget * skin},
+            group = "budgets";
+            row.update({{"budget_ms", 1e-6 * c.setting.budget * skin},
                         {"took", took == PEL_SCATTERING_SCREEN ? "auto" : io::scatterings[took]},
                         {"took_half_rate", stats.takenHalfRate != 0},
                         {"took_target_error", stats.takenTargetError},
                         {"expected_ms", stats.expectedMilliseconds},
                         {"expected_error", stats.expectedError}});
         }
-        return row;
+        addRow(scene, c.setting, group, sizeOf(s), row);
     }
-    static double timeOfPlain(const std::vector<Contender>& contenders) {
+    // Of all, in the order of their names, with what `more` has of them.
+    void addTimes(std::vector<Contender>& contenders, const std::string& scene, const char* group,
+                  const LitScene& s, const std::map<std::string, Json>& more = {}) {
+        double plain = NAN;
         for (const Contender& c : contenders)
-            if (c.setting.method == "Lambert") return median(c.device);
-        return NAN;
+            if (c.setting.method == "Lambert") plain = median(c.device);
+        std::ranges::sort(contenders, {}, [](const Contender& c) { return c.setting.name(); });
+        for (const Contender& c : contenders) {
+            addTimes(c, scene, group, s, plain);
+            if (!more.empty()) rows_.back().update(more.at(c.setting.name()));
+        }
     }
 
     void measureScene(const FrozenScene& scene) {
@@ -523,12 +531,7 @@ class Methods {
         for (const ShownPart& part : shownParts)
             if (name == part.scene) addPicture(part, "walk", readPart(request_.data + "/bench", part, s));
         run(contenders, name, "methods", request_.quick ? 3 : 5);
-        const double plain = timeOfPlain(contenders);
-        std::ranges::sort(contenders, {}, [](const Contender& c) { return c.setting.name(); });
-        for (const Contender& c : contenders) {
-            rows_.push_back(rowOf(c, name, "methods", s, plain));
-            rows_.back().update(errors[c.setting.name()]);
-        }
+        addTimes(contenders, name, "methods", s, errors);
     }
 
     // The shown methods at the usual radius, of a frame in which `share` percent of the skin are left.
@@ -545,19 +548,16 @@ class Methods {
             while (skin.size() > s.places.size() * size_t(share) / 100)
                 s.gbuffer.material[skin.back()] = 0, skin.pop_back();
             const std::string name = nameOf(share);
-            if (wanted(name))
-                attempt(name, "shares", [&] { measureShown(s, name, "shares", request_.quick ? 3 : 7); });
+            if (!wanted(name)) continue;
+            attempt(name, "shares", [&] {
+                std::vector<Contender> contenders;
+                for (const Setting& setting : settings())
+                    if (setting.shown && (wanted(name, setting) || setting.method == "Lambert"))
+                        contenders.push_back({setting, shoot(device_, s, profile_, 1, setting.request)});
+                run(contenders, name, "shares", request_.quick ? 3 : 7);
+                addTimes(contenders, name, "shares", s);
+            });
         }
-    }
-    void measureShown(const LitScene& s, const std::string& name, const char* group, int rounds) {
-        std::vector<Contender> contenders;
-        for (const Setting& setting : settings())
-            if (setting.shown && (wanted(name, setting) || setting.method == "Lambert"))
-                contenders.push_back({setting, shoot(device_, s, profile_, 1, setting.request)});
-        run(contenders, name, group, rounds);
-        const double plain = timeOfPlain(contenders);
-        std::ranges::sort(contenders, {}, [](const Contender& c) { return c.setting.name(); });
-        for (const Contender& c : contenders) rows_.push_back(rowOf(c, name, group, s, plain));
     }
 
     // How much more, or less, a method changes from frame to frame than light does.
@@ -610,16 +610,11 @@ class Methods {
             }
             before = now;
         }
-        rows_.push_back({{"name", clip.name + (": " + setting.name())},
-                         {"group", "clips"},
-                         {"scene", clip.name},
-                         {"method", setting.method},
-                         {"setting", setting.setting},
-                         {"what", clip.title},
-                         {"frames", frames.size()},
-                         {"error_rms", errors.result().rms},
-                         {"error_max", largest},
-                         {"error_mean", sum / count}});
+        addRow(clip.name, setting, "clips", clip.title,
+               {{"frames", frames.size()},
+                {"error_rms", errors.result().rms},
+                {"error_max", largest},
+                {"error_mean", sum / count}});
     }
 
     // A part of a picture, as the bytes of a PNG file in base 64. `light`: RGB at `pixels`.

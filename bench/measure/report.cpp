@@ -1,9 +1,5 @@
 #include "report.h"
 
-#include <array>
-#include <functional>
-#include <map>
-
 #include "io/shortest.h"
 #include "timing.h"
 

@@ -1,8 +1,6 @@
 // Reports of `pellucid bench`, and the comparison of two.
 #pragma once
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 namespace pellucid::bench {
 

@@ -1,5 +1,4 @@
 // Look-up tables against adaptive quadrature in double precision, at texels drawn once.
-#include <tuple>
 
 #include "measure.h"
 #include "reference/lut.h"

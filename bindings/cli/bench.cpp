@@ -2,7 +2,6 @@
 // a report and a page; bench compare: reports against the first of them.
 #include <atomic>
 #include <csignal>
-#include <iostream>
 
 #include "command.h"
 #include "io/atomic_file.h"

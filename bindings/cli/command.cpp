@@ -1,12 +1,8 @@
 #include "command.h"
 
 #include <atomic>
-#include <cctype>
 #include <charconv>
 #include <csignal>
-#include <functional>
-#include <iostream>
-#include <sstream>
 
 #include "io/atomic_file.h"
 #include "io/input_file.h"

@@ -1,7 +1,6 @@
 // What every subcommand of `pellucid` shares: the device, the report, progress, exit codes.
 #pragma once
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <pellucid/pellucid.hpp>
@@ -150,6 +149,15 @@ CLI::Option* option(CLI::App& app, const char* names, Value& value, const std::s
     return added;
 }
 void jsonOption(CLI::App& app, bool& json);
+
+// A subcommand that calls `run` with what its options, which the caller adds, have filled in.
+template <class Arguments, class Function>
+auto subcommand(CLI::App& app, const char* name, const char* what, Function run) {
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App* const command = app.add_subcommand(name, what);
+    command->callback([arguments, run] { run(*arguments); });
+    return std::pair<CLI::App&, Arguments&>(*command, *arguments);
+}
 
 // Before any work, throw UsageError unless the file, of one of these extensions, can be written; or `file` in
 // the folder of -o, which is made if need be.

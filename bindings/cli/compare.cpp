@@ -1,12 +1,9 @@
 // pellucid compare: how far two pictures are apart. Needs no device.
-#include <cstdio>
-#include <iostream>
 
 #include "command.h"
 #include "io/atomic_file.h"
 #include "io/image/flip.h"
 #include "io/image/image_compare.h"
-#include "io/image/image_file.h"
 #include "io/image/picture.h"
 #include "io/image/tone_map.h"
 #include "io/scene/scene_file.h"
@@ -248,31 +245,29 @@ void run(const Arguments& a) {
 }  // namespace
 
 void addCompare(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("compare", "How far two pictures are apart: RMSE, PSNR, P99, CIEDE2000, FLIP");
-    auto a = std::make_shared<Arguments>();
-    option(*command, "a", a->a, "EXR, NPY, or an 8-bit picture, which is decoded from sRGB", required);
-    option(*command, "b", a->b, "reference to compare A with", required);
-    option(*command, "--second-half", a->secondHalf,
+    auto [command, a] = subcommand<Arguments>(
+        app, "compare", "How far two pictures are apart: RMSE, PSNR, P99, CIEDE2000, FLIP", run);
+    option(command, "a", a.a, "EXR, NPY, or an 8-bit picture, which is decoded from sRGB", required);
+    option(command, "b", a.b, "reference to compare A with", required);
+    option(command, "--second-half", a.secondHalf,
            "if B is noisy: an independent estimate with the same noise, which is then left out of the RMSE "
            "(default: the layer Second of B, beside First)");
-    option(*command, "--layer-a", a->channelsA, "layer of A: its .R, .G and .B instead of R, G, B",
+    option(command, "--layer-a", a.channelsA, "layer of A: its .R, .G and .B instead of R, G, B",
            Word{"NAME"});
-    option(*command, "--layer-b", a->channelsB, "layer of B, such as Surface", Word{"NAME"});
-    option(*command, "--scale-a", a->scaleA, "multiplies A", shown);
-    option(*command, "--scale-b", a->scaleB, "multiplies B, such as by an albedo", shown);
-    option(*command, "--gbuffer", a->gbuffer,
+    option(command, "--layer-b", a.channelsB, "layer of B, such as Surface", Word{"NAME"});
+    option(command, "--scale-a", a.scaleA, "multiplies A", shown);
+    option(command, "--scale-b", a.scaleB, "multiplies B, such as by an albedo", shown);
+    option(command, "--gbuffer", a.gbuffer,
            "multi-layer EXR: only pixels of a material count; errors are given for each sub-set of them");
-    option(*command, "--scene", a->scene, "its scene file (TOML)");
-    option(*command, "--light", a->light, "number of the light that sub-sets go by", shown);
-    option(*command, "--unit-mm", a->unit, "millimetres per unit of positions (default: the scene's unit_mm)",
+    option(command, "--scene", a.scene, "its scene file (TOML)");
+    option(command, "--light", a.light, "number of the light that sub-sets go by", shown);
+    option(command, "--unit-mm", a.unit, "millimetres per unit of positions (default: the scene's unit_mm)",
            isPositive());
-    option(*command, "--picture", a->picture, "PNG to write: both pictures, and their difference in colours");
-    option(*command, "--exposure", a->exposure, "multiplies both pictures in it", shown);
-    option(*command, "--max-rmse", a->maxRmse,
+    option(command, "--picture", a.picture, "PNG to write: both pictures, and their difference in colours");
+    option(command, "--exposure", a.exposure, "multiplies both pictures in it", shown);
+    option(command, "--max-rmse", a.maxRmse,
            "exit with 1 if the RMSE over all channels is larger, or a value is NaN or Inf", isNotNegative());
-    jsonOption(*command, a->json);
-    command->callback([a] { run(*a); });
+    jsonOption(command, a.json);
 }
 
 }  // namespace pellucid::cli

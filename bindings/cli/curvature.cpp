@@ -92,37 +92,34 @@ void run(const Arguments& a) {
 }  // namespace
 
 void addCurvature(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("curvature", "Curvature at each vertex of a mesh");
-    auto a = std::make_shared<Arguments>();
-    option(*command, "mesh", a->mesh, "OFF, OBJ, PLY or STL file", required);
-    option(*command, "-o,--output", a->output,
+    auto [command, a] = subcommand<Arguments>(app, "curvature", "Curvature at each vertex of a mesh", run);
+    option(command, "mesh", a.mesh, "OFF, OBJ, PLY or STL file", required);
+    option(command, "-o,--output", a.output,
            "file to write: .npy (one float32 per vertex) or .ply (with colours)", required);
-    option(*command, "--estimator", a->estimator, "how curvature is estimated", isOneOf(io::estimators),
-           shown);
-    option(*command, "--quantity", a->quantity, "what is made of the principal curvatures",
+    option(command, "--estimator", a.estimator, "how curvature is estimated", isOneOf(io::estimators), shown);
+    option(command, "--quantity", a.quantity, "what is made of the principal curvatures",
            isOneOf(io::quantities), shown);
-    option(*command, "--weld", a->weld, "vertices at one place are one: none, exact, or within a length",
+    option(command, "--weld", a.weld, "vertices at one place are one: none, exact, or within a length",
            Word{"none|exact|LENGTH"}, shown);
-    option(*command, "--orient", a->orient, "turns triangles that face another way than their neighbours");
-    option(*command, "--smooth-radius", a->params.smoothingRadius,
+    option(command, "--orient", a.orient, "turns triangles that face another way than their neighbours");
+    option(command, "--smooth-radius", a.params.smoothingRadius,
            "smooths to a radius in the mesh's unit of length, whatever its density", isNotNegative());
-    option(*command, "--smooth-crease", a->creaseDegrees,
+    option(command, "--smooth-crease", a.creaseDegrees,
            "with --smooth-radius: degrees between normals that stop it", inRange(0.0, 180.0));
-    option(*command, "--smooth-weights", a->smoothingWeights,
+    option(command, "--smooth-weights", a.smoothingWeights,
            "with --smooth-radius: how neighbours are weighed", isOneOf(io::smoothingWeights), shown);
-    option(*command, "--picture", a->picture,
+    option(command, "--picture", a.picture,
            "PNG to write as well: the mesh coloured by the values, with a colour bar");
-    option(*command, "--range", a->range,
+    option(command, "--range", a.range,
            "LOW HIGH: what the colours of --picture and of a .ply stand for, so that several compare; "
            "default: from the values, the sharpest places left out",
            Count{2});
-    option(*command, "--up", a->up,
+    option(command, "--up", a.up,
            "of the picture: the mesh's up axis, z (it looks to -y) or y (it looks to +z)",
            isOneOf({"y", "z"}), shown);
-    option(*command, "--smooth", a->params.smoothingPasses, "smoothing passes", shown, inRange(0, 1000));
-    option(*command, "--scale", a->params.scale, "multiplies the result", shown);
-    addRunOptions(*command, a->run);
-    command->callback([a] { run(*a); });
+    option(command, "--smooth", a.params.smoothingPasses, "smoothing passes", shown, inRange(0, 1000));
+    option(command, "--scale", a.params.scale, "multiplies the result", shown);
+    addRunOptions(command, a.run);
 }
 
 }  // namespace pellucid::cli

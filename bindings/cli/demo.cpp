@@ -241,27 +241,25 @@ void run(Arguments a) {
 }  // namespace
 
 void addDemo(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "demo", "The whole chain on a mesh: curvature, tables, G-buffer, shading, pictures");
-    auto a = std::make_shared<Arguments>();
-    option(*command, "mesh", a->mesh,
+    auto [command, a] = subcommand<Arguments>(
+        app, "demo", "The whole chain on a mesh: curvature, tables, G-buffer, shading, pictures", run);
+    option(command, "mesh", a.mesh,
            "OFF, OBJ, PLY or STL file (default: a head that comes with pellucid, or $PELLUCID_DEMO_MESH)");
-    option(*command, "-o,--output", a->output, "folder for the pictures", shown);
-    option(*command, "--orient", a->orient,
+    option(command, "-o,--output", a.output, "folder for the pictures", shown);
+    option(command, "--orient", a.orient,
            "of a mesh: turns triangles that face another way than their neighbours");
-    option(*command, "--size", a->size, "pixels, WxH", Word{"SIZE"}, shown);
-    option(*command, "--height", a->height, "mm that the mesh is scaled to, along its up axis", isPositive(),
+    option(command, "--size", a.size, "pixels, WxH", Word{"SIZE"}, shown);
+    option(command, "--height", a.height, "mm that the mesh is scaled to, along its up axis", isPositive(),
            shown);
-    option(*command, "--up", a->up,
+    option(command, "--up", a.up,
            "the mesh's up axis: z (it looks to -y), y (it looks to +z), or auto: y for OBJ files",
            isOneOf({"auto", "y", "z"}), shown);
-    option(*command, "--subdivide", a->subdivide,
+    option(command, "--subdivide", a.subdivide,
            "levels of subdivision (default: 2 for the heads that come with pellucid, 1 for other meshes that "
            "allow it)",
            inRange(0, 4));
-    option(*command, "--smooth", a->smoothing, "smoothing passes of the curvature", inRange(0, 1000), shown);
-    addRunOptions(*command, a->run);
-    command->callback([a] { run(*a); });
+    option(command, "--smooth", a.smoothing, "smoothing passes of the curvature", inRange(0, 1000), shown);
+    addRunOptions(command, a.run);
 }
 
 }  // namespace pellucid::cli

@@ -5,7 +5,6 @@
 #include "demo/dress_gbuffer.h"
 #include "sample/occlusion.h"
 #include "sample/shadow_map.h"
-#include "sample/sky.h"
 
 namespace pellucid::cli {
 namespace {

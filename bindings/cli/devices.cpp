@@ -1,5 +1,4 @@
 // pellucid devices [--json]: what OpenCL offers here.
-#include <cstdio>
 
 #include "command.h"
 

@@ -4,8 +4,6 @@
 #include "io/lut/lut_preset.h"
 #include "io/lut/profile_file.h"
 
-#include <cstdio>
-
 #include "command.h"
 #include "io/atomic_file.h"
 #include "io/image/image_file.h"

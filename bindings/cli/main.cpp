@@ -1,5 +1,4 @@
 // The `pellucid` command. Exit codes: 0 done, 2 wrong use, 3 bad input file, 4 no device or device failure.
-#include <iostream>
 
 #include "command.h"
 #include "io/input_file.h"

@@ -569,48 +569,48 @@ void run(const Arguments& a) {
 }  // namespace
 
 void addReference(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("reference",
-                                           "What a picture should be: the surface integral over the mesh, or "
-                                           "a random walk in its volume, with ray-traced shadows");
-    auto a = std::make_shared<Arguments>();
-    option(*command, "mesh", a->mesh, "OFF, OBJ, PLY or STL file, in the unit of the scene", required);
-    option(*command, "--scene", a->scene,
+    auto [command, a] =
+        subcommand<Arguments>(app, "reference",
+                              "What a picture should be: the surface integral over the mesh, or "
+                              "a random walk in its volume, with ray-traced shadows",
+                              run);
+    option(command, "mesh", a.mesh, "OFF, OBJ, PLY or STL file, in the unit of the scene", required);
+    option(command, "--scene", a.scene,
            "scene file (TOML), as for shade: lights, materials, which channel is what", required);
-    option(*command, "--gbuffer", a->gbuffer,
+    option(command, "--gbuffer", a.gbuffer,
            "multi-layer EXR whose visible positions are evaluated; without it, the mesh's vertices are");
-    option(*command, "-o,--output", a->output,
+    option(command, "-o,--output", a.output,
            "EXR to write: radiance R, G, B, and the layers Surface (without albedo) and Irradiance; or NPY: "
            "Surface per vertex, (n, 3); of a walk both halves, (2, n, 3)",
            required);
-    option(*command, "--profile", a->profile,
+    option(command, "--profile", a.profile,
            "material of the library or profile file (default: that of the material's curvature table, else "
            "skin)",
            Word{profileWord});
-    option(*command, "--diffusion-radius", a->diffusionRadius,
+    option(command, "--diffusion-radius", a.diffusionRadius,
            "scales the profile to this radius, mm; 0: its own", isNotNegative(), shown);
-    option(*command, "--unit-mm", a->unit, "millimetres per unit of positions (default: the scene's unit_mm)",
+    option(command, "--unit-mm", a.unit, "millimetres per unit of positions (default: the scene's unit_mm)",
            isPositive());
-    option(*command, "--cut", a->cut,
+    option(command, "--cut", a.cut,
            "mm per channel where the profile ends, as in renderers that cut it off; 0: nowhere", Count{3});
-    option(*command, "--subdivide", a->subdivide,
+    option(command, "--subdivide", a.subdivide,
            "levels of subdivision, done first: Catmull-Clark of OBJ files, Loop of others", inRange(0, 6),
            shown);
-    option(*command, "--part", a->parts,
+    option(command, "--part", a.parts,
            "group of an OBJ file that scatters, all others just cast shadows; or, several times, ID=GROUP: "
            "the body of the material with that id",
            Word{"NAME"}, oneEach);
-    option(*command, "--finest", a->finest,
+    option(command, "--finest", a.finest,
            "length to which triangles are split at the edges of shadows (default: a quarter of the narrowest "
            "channel's width)",
            isNotNegative());
-    option(*command, "--coarsest", a->coarsest,
+    option(command, "--coarsest", a.coarsest,
            "length above which they are split anywhere (default: the widest channel's width)",
            isNotNegative());
-    option(*command, "--tolerance", a->tolerance, "bound of the error of far light, part of the brightest",
+    option(command, "--tolerance", a.tolerance, "bound of the error of far light, part of the brightest",
            inRange(1e-7, 1.0), shown);
-    addWalkOptions(*command, a->walk);
-    addRunOptions(*command, a->run);
-    command->callback([a] { run(*a); });
+    addWalkOptions(command, a.walk);
+    addRunOptions(command, a.run);
 }
 
 }  // namespace pellucid::cli

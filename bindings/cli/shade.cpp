@@ -1,6 +1,5 @@
 // pellucid shade: a host's G-buffer and a scene file in, radiance out.
 #include <condition_variable>
-#include <cstdio>
 #include <mutex>
 #include <thread>
 
@@ -329,30 +328,28 @@ void run(Arguments a) {
 }  // namespace
 
 void addShade(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("shade", "Shade a G-buffer");
-    auto a = std::make_shared<Arguments>();
-    option(*command, "gbuffer", a->gbuffer, "multi-layer EXR; or a scene file that names one", required);
-    option(*command, "--scene", a->scene, "scene file (TOML): lights, materials, which channel is what");
-    option(*command, "-o,--output", a->output,
+    auto [command, a] = subcommand<Arguments>(app, "shade", "Shade a G-buffer", run);
+    option(command, "gbuffer", a.gbuffer, "multi-layer EXR; or a scene file that names one", required);
+    option(command, "--scene", a.scene, "scene file (TOML): lights, materials, which channel is what");
+    option(command, "-o,--output", a.output,
            "file to write: .exr for radiance R, G, B; .png, .jpg, .bmp or .tga for a picture to look at",
            required);
-    option(*command, "--picture", a->picture, "picture to write beside an .exr");
-    addToneOptions(*command, a->tone);
-    option(*command, "--show", a->show, "what the picture shows, side by side (default: final)", separated,
+    option(command, "--picture", a.picture, "picture to write beside an .exr");
+    addToneOptions(command, a.tone);
+    option(command, "--show", a.show, "what the picture shows, side by side (default: final)", separated,
            isOneOf(showableParts()));
-    option(*command, "--outputs", a->parts,
+    option(command, "--outputs", a.parts,
            "parts of the picture to write beside it, as OUT_diffuse.exr and so on", separated,
            isOneOf({"diffuse", "deep_scatter", "specular", "thickness", "all"}));
-    option(*command, "--stats", a->stats, "count tiles and pixels per feature, and time each pass");
+    option(command, "--stats", a.stats, "count tiles and pixels per feature, and time each pass");
     option(
-        *command, "--scratch-mib", a->scratchMib,
+        command, "--scratch-mib", a.scratchMib,
         "most MiB for blurred normals and filtered shadows; larger frames are shaded in bands. 0: no limit",
         inRange(0, 1 << 30), shown);
-    option(*command, "--time-budget", a->timeBudget,
+    option(command, "--time-budget", a.timeBudget,
            "milliseconds of the device that \"auto\" may take beyond plain lighting (default: the scene's)",
            isPositive());
-    addRunOptions(*command, a->run);
-    command->callback([a] { run(*a); });
+    addRunOptions(command, a.run);
 }
 
 }  // namespace pellucid::cli

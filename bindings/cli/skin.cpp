@@ -1,11 +1,11 @@
 // pellucid profile skin, and profile pigments: skin by what it is made of. Needs no device.
-#include <cstdio>
 
 #include "command.h"
 #include "fields/field_ranges.h"
 #include "io/atomic_file.h"
 #include "io/image/image_file.h"
 #include "io/image/picture.h"
+#include "io/shortest.h"
 
 namespace pellucid::cli {
 namespace {
@@ -36,11 +36,7 @@ void addFields(CLI::App& command, SkinArguments& a, bool pigments) {
 
 std::string fileText(const SkinArguments& a) {
     std::string text = "name = \"skin\"\nkind = \"skin\"\nsource = \"pellucid profile skin\"\n";
-    const auto add = [&](const char* key, float value) {
-        char line[64];
-        std::snprintf(line, sizeof line, "%s = %.9g\n", key, double(value));
-        text += line;
-    };
+    const auto add = [&](const char* key, float value) { text += io::printed("%s = %.9g\n", key, value); };
 #define ADD(type, name, value, min, max, special, unit, key, ...) add(key, a.skin.name);
     PEL_EACH_SKIN_FIELD(ADD)
 #undef ADD
@@ -72,11 +68,9 @@ void plotSpectrum(const SkinArguments& a, const PelSkinInfo& info) {
     for (int y = top; y <= height - bottom; ++y) picture.paint(left, y, grey);
     for (int nm = 400; nm <= 700; nm += 100)
         picture.write(across(float(nm)) - 18, height - bottom + 10, std::to_string(nm), grey, 2);
-    for (int i = 0; i <= 4; ++i) {
-        char text[16];
-        std::snprintf(text, sizeof text, "%.3g", double(highest) * i / 4);
-        picture.write(14, up(highest * float(i) / 4) - 8, text, grey, 2);
-    }
+    for (int i = 0; i <= 4; ++i)
+        picture.write(14, up(highest * float(i) / 4) - 8, io::printed("%.3g", double(highest) * i / 4), grey,
+                      2);
     for (size_t i = 0; i + 1 < values.size(); ++i) {
         const int y = up(values[i]), next = up(values[i + 1]);
         for (int p = std::min(y, next); p <= std::max(y, next); ++p)
@@ -89,9 +83,7 @@ void plotSpectrum(const SkinArguments& a, const PelSkinInfo& info) {
     for (int y = top; y < top + 160; ++y)
         for (int x = width - right + 20; x < width - 20; ++x) picture.paint(x, y, color);
     const auto line = [&](int row, const char* format, double value) {
-        char text[64];
-        std::snprintf(text, sizeof text, format, value);
-        picture.write(width - right + 20, top + 180 + 24 * row, text, white, 2);
+        picture.write(width - right + 20, top + 180 + 24 * row, io::printed(format, value), white, 2);
     };
     line(0, "melanin %.3g", a.skin.melanin);
     line(1, "blood %.3g", a.skin.blood);
@@ -168,22 +160,20 @@ void pigments(const SkinArguments& a) {
 }  // namespace
 
 void addSkin(CLI::App& profile) {
-    auto a = std::make_shared<SkinArguments>(), b = std::make_shared<SkinArguments>();
-    CLI::App* command =
-        profile.add_subcommand("skin", "Skin by what it is made of: colour, lengths, spectrum");
-    addFields(*command, *a, true);
-    option(*command, "--plot", a->plot, "spectrum and colour as a picture (.png)");
-    option(*command, "-o,--output", a->output, "profile file (.toml) to write");
-    option(*command, "--json", a->json, "one JSON object on stdout");
-    command->callback([a] { skin(*a); });
-    CLI::App* maps = profile.add_subcommand("pigments", "Maps of melanin and blood from an albedo map");
-    option(*maps, "albedo", b->input, "picture: linear if .exr, else sRGB", required);
-    option(*maps, "--channels", b->channels, "of the albedo", Count{3}, Word{"NAME"}, shown);
-    addFields(*maps, *b, false);
-    option(*maps, "-o,--output", b->output,
+    auto [command, a] = subcommand<SkinArguments>(
+        profile, "skin", "Skin by what it is made of: colour, lengths, spectrum", skin);
+    addFields(command, a, true);
+    option(command, "--plot", a.plot, "spectrum and colour as a picture (.png)");
+    option(command, "-o,--output", a.output, "profile file (.toml) to write");
+    option(command, "--json", a.json, "one JSON object on stdout");
+    auto [maps, b] = subcommand<SkinArguments>(profile, "pigments",
+                                               "Maps of melanin and blood from an albedo map", pigments);
+    option(maps, "albedo", b.input, "picture: linear if .exr, else sRGB", required);
+    option(maps, "--channels", b.channels, "of the albedo", Count{3}, Word{"NAME"}, shown);
+    addFields(maps, b, false);
+    option(maps, "-o,--output", b.output,
            ".exr to write: melanin, blood, and the difference that remains (CIEDE2000)", required);
-    option(*maps, "--json", b->json, "one JSON object on stdout");
-    maps->callback([b] { pigments(*b); });
+    option(maps, "--json", b.json, "one JSON object on stdout");
 }
 
 }  // namespace pellucid::cli

@@ -61,15 +61,14 @@ void tune(const Arguments& a) {
 }  // namespace
 
 void addTune(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "tune", "Measure which sizes of work-groups are fastest on a device, and keep them in a file");
-    auto a = std::make_shared<Arguments>();
-    option(*command, "--show", a->show, "only say which sizes are in force, and why");
-    option(*command, "-o,--output", a->output,
+    auto [command, a] = subcommand<Arguments>(
+        app, "tune", "Measure which sizes of work-groups are fastest on a device, and keep them in a file",
+        tune);
+    option(command, "--show", a.show, "only say which sizes are in force, and why");
+    option(command, "-o,--output", a.output,
            "file, for PELLUCID_TUNING; without it, this user's for the device, its driver and this version");
-    option(*command, "--quick", a->quick, "fewer sizes and rounds, smaller tables and frames");
-    addRunOptions(*command, a->run);
-    command->callback([a] { tune(*a); });
+    option(command, "--quick", a.quick, "fewer sizes and rounds, smaller tables and frames");
+    addRunOptions(command, a.run);
 }
 
 }  // namespace pellucid::cli

@@ -45,19 +45,18 @@ void run(const Arguments& a) {
 }  // namespace
 
 void addWarmUp(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "warm-up", "Build OpenCL programs before their first use, for the driver's cache and as binaries");
-    command->alias("prefill");  // its first name
-    auto a = std::make_shared<Arguments>();
-    option(*command, "scene", a->scenes, "scene files (TOML) that `pellucid shade` will be given");
-    option(*command, "--luts", a->luts, "look-up tables of sums of Gaussians");
-    option(*command, "--table-luts", a->tableLuts, "look-up tables of tabulated profiles");
-    option(*command, "--curvature", a->curvature, "curvature of meshes");
-    option(*command, "--threads", a->threads,
+    auto [command, a] = subcommand<Arguments>(
+        app, "warm-up",
+        "Build OpenCL programs before their first use, for the driver's cache and as binaries", run);
+    command.alias("prefill");  // its first name
+    option(command, "scene", a.scenes, "scene files (TOML) that `pellucid shade` will be given");
+    option(command, "--luts", a.luts, "look-up tables of sums of Gaussians");
+    option(command, "--table-luts", a.tableLuts, "look-up tables of tabulated profiles");
+    option(command, "--curvature", a.curvature, "curvature of meshes");
+    option(command, "--threads", a.threads,
            "number that build at the same time; 0: one per core. PoCL builds one by one", shown);
-    addRunOptions(*command, a->run);
-    command->callback([a] { run(*a); });
-    command->footer("Without scenes and flags: everything that does not depend on a scene.");
+    addRunOptions(command, a.run);
+    command.footer("Without scenes and flags: everything that does not depend on a scene.");
 }
 
 }  // namespace pellucid::cli

@@ -29,97 +29,64 @@ static_assert(factor * inverseOf(factor) == 1);
 
 thread_local std::string called;  // nameInCall()
 
-class HandleTable {
-  public:
-    uint64_t add(Ref<Object> object) {
-        std::lock_guard lock(mutex_);
-        if (next_ > numbers) fail(PEL_ERROR_OUT_OF_MEMORY, "there are no handles left");
-        const uint64_t handle = mark << (numberBits + 1) | (next_ * factor & numbers) << 1 | 1;
-        entries_.emplace(handle, Entry{std::move(object)});
-        ++next_;
-        return handle;
-    }
-
-    Ref<Object> lookUp(const void* handle, Kind kind) {
-        std::lock_guard lock(mutex_);
-        const Entry& entry = find(handle, kind)->second;
-        if (called.empty()) called = entry.name;
-        return entry.object;
-    }
-
-    void retain(const void* handle, Kind kind) {
-        std::lock_guard lock(mutex_);
-        ++find(handle, kind)->second.holders;
-    }
-
-    void name(const void* handle, const char* name) {
-        std::lock_guard lock(mutex_);
-        const auto entry = entries_.find(reinterpret_cast<uintptr_t>(handle));
-        if (entry == entries_.end()) invalidArgument("this is no object that could be named: ", handle);
-        entry->second.name = name ? name : "";
-    }
-
-    void release(const void* handle, Kind kind) {
-        Ref<Object> last;  // released after the lock is free: a device waits, others hold objects
-        std::lock_guard lock(mutex_);
-        const auto entry = find(handle, kind);
-        if (--entry->second.holders > 0) return;
-        last = std::move(entry->second.object);
-        entries_.erase(entry);
-    }
-
-    uint64_t live() const {
-        std::lock_guard lock(mutex_);
-        return entries_.size();
-    }
-
-  private:
-    struct Entry {
-        Ref<Object> object;
-        uint64_t holders = 1;  // the callers' count
-        std::string name{};
-    };
-    using Entries = std::unordered_map<uint64_t, Entry>;
-
-    Entries::iterator find(const void* pointer, Kind kind) {
-        if (!pointer) invalidArgument("a ", kindName(kind), " is needed here, not NULL");
-        const uint64_t handle = reinterpret_cast<uintptr_t>(pointer);
-        const auto entry = entries_.find(handle);
-        if (entry == entries_.end()) {
-            const bool wasThere = (handle & 1) && handle >> (numberBits + 1) == mark &&
-                                  ((handle >> 1 & numbers) * inverseOf(factor) & numbers) < next_;
-            if (wasThere) invalidArgument("this ", kindName(kind), " was released already: ", pointer);
-            invalidArgument("this is not a ", kindName(kind), ": ", pointer,
-                            " was never returned by the library");
-        }
-        const Kind found = entry->second.object->objectKind();
-        if (found != kind) invalidArgument("a ", kindName(kind), " is needed here, not a ", kindName(found));
-        return entry;
-    }
-
-    mutable std::mutex mutex_;
-    Entries entries_;
-    uint64_t next_ = 0;  // number of the next handle; none is given out twice
+struct Entry {
+    Ref<Object> object;
+    uint64_t holders = 1;  // the callers' count
+    std::string name{};
 };
+using Entries = std::unordered_map<uint64_t, Entry>;
 
+struct HandleTable {
+    std::mutex mutex;  // of the rest
+    Entries entries;
+    uint64_t next = 0;  // number of the next handle; none is given out twice
+};
 // Never destroyed: other static objects may release handles at the end of the process.
-HandleTable& table() {
+HandleTable& handles() {
     static HandleTable& t = *new HandleTable;
     return t;
+}
+
+// The table's mutex is locked.
+Entries::iterator find(const void* pointer, Kind kind) {
+    if (!pointer) invalidArgument("a ", kindName(kind), " is needed here, not NULL");
+    const uint64_t handle = reinterpret_cast<uintptr_t>(pointer);
+    const auto entry = handles().entries.find(handle);
+    if (entry == handles().entries.end()) {
+        const bool wasThere = (handle & 1) && handle >> (numberBits + 1) == mark &&
+                              ((handle >> 1 & numbers) * inverseOf(factor) & numbers) < handles().next;
+        if (wasThere) invalidArgument("this ", kindName(kind), " was released already: ", pointer);
+        invalidArgument("this is not a ", kindName(kind), ": ", pointer,
+                        " was never returned by the library");
+    }
+    const Kind found = entry->second.object->objectKind();
+    if (found != kind) invalidArgument("a ", kindName(kind), " is needed here, not a ", kindName(found));
+    return entry;
 }
 
 }  // namespace
 
 void* addHandle(Ref<Object> object) {
-    return reinterpret_cast<void*>(uintptr_t(table().add(std::move(object))));
+    std::lock_guard lock(handles().mutex);
+    if (handles().next > numbers) fail(PEL_ERROR_OUT_OF_MEMORY, "there are no handles left");
+    const uint64_t handle = mark << (numberBits + 1) | (handles().next * factor & numbers) << 1 | 1;
+    handles().entries.emplace(handle, Entry{std::move(object)});
+    ++handles().next;
+    return reinterpret_cast<void*>(uintptr_t(handle));
 }
 
 Ref<Object> lookUpHandle(const void* handle, Kind kind) {
-    return table().lookUp(handle, kind);
+    std::lock_guard lock(handles().mutex);
+    const Entry& entry = find(handle, kind)->second;
+    if (called.empty()) called = entry.name;
+    return entry.object;
 }
 
 void nameHandle(const void* handle, const char* name) {
-    table().name(handle, name);
+    std::lock_guard lock(handles().mutex);
+    const auto entry = handles().entries.find(reinterpret_cast<uintptr_t>(handle));
+    if (entry == handles().entries.end()) invalidArgument("this is no object that could be named: ", handle);
+    entry->second.name = name ? name : "";
 }
 
 const char* nameInCall() {
@@ -131,15 +98,22 @@ void beginCall() {
 }
 
 void retainHandle(const void* handle, Kind kind) {
-    table().retain(handle, kind);
+    std::lock_guard lock(handles().mutex);
+    ++find(handle, kind)->second.holders;
 }
 
 void releaseHandle(const void* handle, Kind kind) {
-    table().release(handle, kind);
+    Ref<Object> last;  // released after the lock is free: a device waits, others hold objects
+    std::lock_guard lock(handles().mutex);
+    const auto entry = find(handle, kind);
+    if (--entry->second.holders > 0) return;
+    last = std::move(entry->second.object);
+    handles().entries.erase(entry);
 }
 
 uint64_t liveHandles() {
-    return table().live();
+    std::lock_guard lock(handles().mutex);
+    return handles().entries.size();
 }
 
 // With PELLUCID_CHECK_LEFT set, a process that leaves handles unreleased reports them and ends with 1.
@@ -155,8 +129,6 @@ namespace {
     std::_Exit(1);
 }
 
-std::atomic<uint64_t> objects{0};
-
 }  // namespace
 
 const char* kindName(Kind kind) {
@@ -164,18 +136,6 @@ const char* kindName(Kind kind) {
                                             "PelLiveMesh", "PelLut",           "PelShader", "PelProfile",
                                             "PelScatter",  "PelTextureScatter"};
     return names[size_t(kind)];
-}
-
-Object::Object(Kind kind) : kind_(kind) {
-    objects.fetch_add(1, std::memory_order_relaxed);
-}
-
-Object::~Object() {
-    objects.fetch_sub(1, std::memory_order_relaxed);
-}
-
-uint64_t Object::alive() {
-    return objects.load(std::memory_order_relaxed);
 }
 
 }  // namespace pel

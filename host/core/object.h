@@ -33,13 +33,14 @@ class Object {
     }
     Kind objectKind() const { return kind_; }
     // How many exist in the process, including those that only other objects hold.
-    static uint64_t alive();
+    static uint64_t alive() { return alive_.load(std::memory_order_relaxed); }
 
   protected:
-    explicit Object(Kind kind);
-    virtual ~Object();
+    explicit Object(Kind kind) : kind_(kind) { alive_.fetch_add(1, std::memory_order_relaxed); }
+    virtual ~Object() { alive_.fetch_sub(1, std::memory_order_relaxed); }
 
   private:
+    static inline std::atomic<uint64_t> alive_{0};
     std::atomic<uint32_t> count_{1};
     const Kind kind_;
 };

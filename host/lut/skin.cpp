@@ -4,11 +4,11 @@
 
 #include "core/check_range.h"
 #include "core/struct_size.h"
-#include "core/threads.h"
 #include "fields/color_difference.h"
 #include "fields/skin_spectra.h"
 #include "lut/skin_transport.h"
 #include "shared/skin_maps.h"
+#include "system/threads.h"
 
 namespace pel {
 namespace {

@@ -1,8 +1,8 @@
 #include "mesh/mesh_adjacency.h"
 
 #include "cl/error.h"
-#include "core/threads.h"
 #include "shared/mesh.h"
+#include "system/threads.h"
 
 namespace pel {
 // With fewer, a thread costs more than it saves.

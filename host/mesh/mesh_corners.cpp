@@ -1,7 +1,7 @@
 #include "mesh/mesh_adjacency.h"
 
 #include "cl/error.h"
-#include "core/threads.h"
+#include "system/threads.h"
 
 namespace pel {
 

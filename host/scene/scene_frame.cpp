@@ -240,14 +240,12 @@ void SceneFrame::set(const SceneFile& scene, LutStore& luts, const PelShaderOpti
     setLights(scene);
     shader_.set(scene.ambient);
     for (const SceneEye& e : scene.eyes) setEye(scene, e);
-    if (scene.ambientCube.empty())
-        shader_.clearAmbientCube();
-    else
-        shader_.setAmbientCube(cubeImage(scene.ambientCube));
-    if (scene.reflectionCube.empty())
-        shader_.clearReflectionCube();
-    else
-        shader_.setReflectionCube(cubeImage(scene.reflectionCube));
+    const auto setCube = [&](const std::string& file, auto set) {
+        const PelImageDesc cube = file.empty() ? pelImageDescDefaults() : cubeImage(file);
+        check(set(shader_.get(), file.empty() ? nullptr : &cube));
+    };
+    setCube(scene.ambientCube, pelShaderSetAmbientCube);
+    setCube(scene.reflectionCube, pelShaderSetReflectionCube);
     if (scene.environment != environment_.first ||
         !std::ranges::equal(scene.environmentAxes, environment_.second)) {
         environment_ = {scene.environment, std::to_array(scene.environmentAxes)};
@@ -449,23 +447,16 @@ PelImageDesc SceneFrame::upload(const Image& image, const std::vector<std::strin
                      uint32_t(image.height));
 }
 
-void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance) {
-    Image image;
-    image.width = width;
-    image.height = height;
-    image.addInterleaved(std::vector<std::string>{"R", "G", "B"}, radiance);
-    writeExr(path, image);
-}
-
-void writeThickness(const std::string& path, int width, int height, const std::vector<float>& lengths) {
-    Image image;
-    image.width = width;
-    image.height = height;
-    image.addInterleaved(std::vector<std::string>{"Thickness.V"}, lengths);
-    writeExr(path, image);
-}
-
 namespace {
+
+void writeChannels(const std::string& path, int width, int height, const ChannelGroup& names,
+                   const std::vector<float>& values) {
+    Image image;
+    image.width = width;
+    image.height = height;
+    image.addInterleaved(names, values);
+    writeExr(path, image);
+}
 
 // A black image with these channels, of the smallest size that the kernels treat like a frame.
 Image blank(const std::set<std::string>& channels, int height = 2) {
@@ -497,6 +488,14 @@ ShadowMaps blankMaps(const SceneFile& scene) {
 }
 
 }  // namespace
+
+void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance) {
+    writeChannels(path, width, height, {"R", "G", "B"}, radiance);
+}
+
+void writeThickness(const std::string& path, int width, int height, const std::vector<float>& lengths) {
+    writeChannels(path, width, height, {"Thickness.V"}, lengths);
+}
 
 SceneFrame prepareFrame(const Device& device, const SceneFile& scene, LutStore& luts,
                         const PelShaderOptions& options, const std::vector<PelImageSlot>& outputs) {

@@ -1,10 +1,8 @@
 // Shades a G-buffer as described by a scene file, for `pellucid shade`, the demo and the Python package.
 #pragma once
 #include <map>
-#include <optional>
 #include <set>
 
-#include "io/image/image_file.h"
 #include "io/scene/scene_file.h"
 #include "pellucid/pellucid.hpp"
 

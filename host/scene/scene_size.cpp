@@ -1,16 +1,16 @@
+#include <Imath/ImathBox.h>
+
 #include <algorithm>
-#include <cstdio>
 
 #include "io/lut/profile_file.h"
+#include "io/shortest.h"
 #include "scene/scene_frame.h"
 
 namespace pellucid::io {
 namespace {
 
 std::string shown(float value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", double(value));
-    return text;
+    return printed("%.4g", value);
 }
 
 // use(values of a slot, pixel) at each pixel that may have a material.
@@ -26,28 +26,16 @@ void eachPixel(const Image& gbuffer, const SceneFile& scene, const DeviceImages*
         if (!ids || ids->at()[i] > 0) use(values.at() + i * components, i);
 }
 
-// Bounds of points. A point with NaN or Inf is left out.
-struct Extent {
-    double low[3], high[3];
-    bool any = false;
-    void add(const double (&p)[3]) {
-        if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]))) return;
-        for (int c = 0; c < 3; ++c) {
-            low[c] = any ? std::min(low[c], p[c]) : p[c];
-            high[c] = any ? std::max(high[c], p[c]) : p[c];
-        }
-        any = true;
-    }
-    double size() const { return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
-};
-
-// The extent of the visible surface, from positions or from device depth.
-Extent extentOf(const Image& gbuffer, const SceneFile& scene, const DeviceImages* images) {
-    Extent extent;
+// The extent of the visible surface, from positions or from device depth. A point with NaN or Inf is left
+// out.
+Imath::Box3d extentOf(const Image& gbuffer, const SceneFile& scene, const DeviceImages* images) {
+    Imath::Box3d extent;
+    const auto add = [&](double x, double y, double z) {
+        if (std::isfinite(x) && std::isfinite(y) && std::isfinite(z)) extent.extendBy({x, y, z});
+    };
     if (!scene.channels[PEL_SLOT_POSITION].empty()) {
-        eachPixel(gbuffer, scene, images, PEL_SLOT_POSITION, [&](const float* p, size_t) {
-            extent.add({double(p[0]), double(p[1]), double(p[2])});
-        });
+        eachPixel(gbuffer, scene, images, PEL_SLOT_POSITION,
+                  [&](const float* p, size_t) { add(p[0], p[1], p[2]); });
         return extent;
     }
     const float* m = scene.camera.inverseViewProjection;
@@ -58,7 +46,7 @@ Extent extentOf(const Image& gbuffer, const SceneFile& scene, const DeviceImages
         double p[4] = {};
         for (int row = 0; row < 4; ++row)
             for (int c = 0; c < 4; ++c) p[row] += double(m[4 * row + c]) * clip[c];
-        extent.add({p[0] / p[3], p[1] / p[3], p[2] / p[3]});
+        add(p[0] / p[3], p[1] / p[3], p[2] / p[3]);
     });
     return extent;
 }
@@ -82,9 +70,9 @@ std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene, 
             return found;
         }
     }
-    const Extent extent = extentOf(gbuffer, scene, images);
-    if (!extent.any) return found;
-    const auto size = float(extent.size() * scene.options.millimetresPerUnit);
+    const Imath::Box3d extent = extentOf(gbuffer, scene, images);
+    if (extent.isEmpty()) return found;
+    const auto size = float(extent.size()[int(extent.majorAxis())] * scene.options.millimetresPerUnit);
     for (const SceneMaterial& m : scene.materials) {
         if (m.profile.empty()) continue;
         const float reach = findProfile(m.profile).profile.info().reach;

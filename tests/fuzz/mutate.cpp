@@ -1,8 +1,5 @@
 #include "fuzz/readers.h"
 
-#include <algorithm>
-#include <cctype>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 namespace fuzz {

@@ -1,7 +1,6 @@
 #include "fuzz/readers.h"
 
 #include "batch/batch_manifest.h"
-#include "io/input_file.h"
 #include "io/lut/profile_file.h"
 #include "io/scene/scene_file.h"
 #include "measure/report.h"

@@ -2,7 +2,6 @@
 #include "cli/cli_run.h"
 #include "gltf/tests/gltf_bytes.h"
 #include "io/image/color_map.h"
-#include "io/image/image_file.h"
 #include "io/lut/profile_file.h"
 #include "io/mesh/mesh_file.h"
 #include "io/scene/scene_file.h"

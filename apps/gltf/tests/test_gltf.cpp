@@ -3,7 +3,6 @@
 
 #include "gltf/gltf_import.h"
 #include "gltf/tests/gltf_bytes.h"
-#include "io/file_error.h"
 #include "io/lut/profile_file.h"
 
 using namespace pellucid::io;

@@ -5,7 +5,6 @@
 
 #include "files.h"
 #include "gltf/gltf_import.h"
-#include "io/input_file.h"
 #include "io/lut/profile_file.h"
 
 namespace pellucid::python {
@@ -50,9 +49,10 @@ class Gltf {
                 py::make_tuple(material.name, look.how, bytesOf(look.material.material), profile, picture));
         }
         for (const io::SceneLight& light : made_.scene.lights) lights.append(bytesOf(light.light));
+        const auto tuple = [](const io::Triple& v) { return py::make_tuple(v.x, v.y, v.z); };
         for (const io::GltfCamera& c : made_.gltf.cameras)
-            cameras.append(py::make_tuple(py::tuple(py::cast(c.position)), py::tuple(py::cast(c.forward)),
-                                          py::tuple(py::cast(c.up)), c.verticalFov, c.aspect));
+            cameras.append(
+                py::make_tuple(tuple(c.position), tuple(c.forward), tuple(c.up), c.verticalFov, c.aspect));
         using namespace py::literals;
         const py::dict of(
             "positions"_a = array(mesh.positions, {vertices, 3}),

@@ -7,7 +7,6 @@
 
 #include "demo/demo_head.h"
 #include "files.h"
-#include "io/image/image_file.h"
 #include "io/image/image_format.h"
 #include "io/image/tone_map.h"
 

@@ -59,9 +59,8 @@ class Shader(OfThisProcess):
             (height, width[, components]), see Image; None clears the slot.
         """
         s = to_enum(ImageSlot, slot, "slot")
-        self._keep(s, image, s.name.lower(), s == ImageSlot.RADIANCE or s.name.startswith("OUT_"),
-                   s == ImageSlot.MATERIAL, lambda native: self._handle.set_image(int(s), native))
-        return self
+        return self._keep(s, image, s.name.lower(), lambda native: self._handle.set_image(int(s), native),
+                          s == ImageSlot.RADIANCE or s.name.startswith("OUT_"), s == ImageSlot.MATERIAL)
 
     def set_light_image(self, light: int, slot: LightSlot | str, image: Any) -> Shader:
         """Sets or clears the "wide_shadow" (of the G-buffer's size) or "shadow_map" (of any size) of a light.
@@ -70,11 +69,11 @@ class Shader(OfThisProcess):
         faces below one another, (6 n, n); maps of moments have two components, (height, width, 2).
         """
         s = to_enum(LightSlot, slot, "slot")
-        self._keep((light, s), image, f"{s.name.lower()} of light {light}", False, False,
-                   lambda native: self._handle.set_light_image(light, int(s), native))
-        return self
+        return self._keep((light, s), image, f"{s.name.lower()} of light {light}",
+                          lambda native: self._handle.set_light_image(light, int(s), native))
 
-    def _keep(self, key: Any, image: Any, what: str, output: bool, ids: bool, use: Any) -> None:
+    def _keep(self, key: Any, image: Any, what: str, use: Any, output: bool = False,
+              ids: bool = False) -> Shader:
         image = to_image(self.device, image, what, output, ids)
         use(None if image is None else image._view.native)
         if image is None:
@@ -83,6 +82,7 @@ class Shader(OfThisProcess):
             if output and hasattr(image._view.span, "output"):
                 image._view.span.output = True
             self._images[key] = image
+        return self
 
     def set_material(self, id: int, material: Optional[Material], curvature_lut: Optional[Lut] = None,
                      shadow_lut: Optional[Lut] = None) -> Shader:
@@ -138,9 +138,8 @@ class Shader(OfThisProcess):
             (height, width, 3 or 4), row 0 at v = 0; repeated beyond [0, 1]. Read at each execution; None
             removes it.
         """
-        self._keep(("scattered_texture", id), texture, f"scattered texture of material {id}", False, False,
-                   lambda native: self._handle.set_scattered_texture(id, native))
-        return self
+        return self._keep(("scattered_texture", id), texture, f"scattered texture of material {id}",
+                          lambda native: self._handle.set_scattered_texture(id, native))
 
     def set_eye(self, id: int, eye: Optional[Eye], caustics: Optional[Lut] = None) -> Shader:
         """Makes material `id`, which must be set and is the sclera, an eye; None: no eye any longer.
@@ -169,9 +168,8 @@ class Shader(OfThisProcess):
             faces the eye. Read by the first execution after a commit; None removes it: fibres are drawn by
             Eye.iris_seed.
         """
-        self._keep(("iris_texture", id), texture, f"iris texture of material {id}", False, False,
-                   lambda native: self._handle.set_iris_texture(id, native))
-        return self
+        return self._keep(("iris_texture", id), texture, f"iris texture of material {id}",
+                          lambda native: self._handle.set_iris_texture(id, native))
 
     def set_lights(self, lights: Light | Sequence[Light]) -> Shader:
         """Replaces all lights, 0 to 64, or sets a single one; images of lights beyond the count are cleared.
@@ -201,16 +199,14 @@ class Shader(OfThisProcess):
             and -y, +y along x and z, -y along x and -z, +z along x and -y, -z along -x and -y. Read at each
             execution. None removes it.
         """
-        self._keep("ambient_cube", _below(faces, "ambient"), "ambient_cube", False, False,
-                   self._handle.set_ambient_cube)
-        return self
+        return self._keep("ambient_cube", _below(faces, "ambient"), "ambient_cube",
+                          self._handle.set_ambient_cube)
 
     def set_reflection_cube(self, faces: Any) -> Shader:
         """Sets the surroundings that eyes reflect: radiance / pi, six faces as for `set_ambient_cube`, as
         sharp as the film of tears should show them. Read at each execution. None removes it."""
-        self._keep("reflection_cube", _below(faces, "reflection"), "reflection_cube", False, False,
-                   self._handle.set_reflection_cube)
-        return self
+        return self._keep("reflection_cube", _below(faces, "reflection"), "reflection_cube",
+                          self._handle.set_reflection_cube)
 
     def set_environment(self, image: Any, axes: Any = None) -> Shader:
         """Sets the surroundings as light: ambient light, specular light, and what eyes reflect.
@@ -230,9 +226,8 @@ class Shader(OfThisProcess):
             An image of another shape; axes that are not unit vectors at right angles.
         """
         rows = None if axes is None else np.asarray(axes, np.float32).reshape(9).tolist()
-        self._keep("environment", _below(image, "environment"), "environment", False, False,
-                   lambda view: self._handle.set_environment(view, rows))
-        return self
+        return self._keep("environment", _below(image, "environment"), "environment",
+                          lambda view: self._handle.set_environment(view, rows))
 
     def set_camera(self, camera: Camera) -> Shader:
         """Sets the viewpoint, which specular and depth images need."""

@@ -1,7 +1,6 @@
 #include <malloc.h>
 #include <windows.h>
 #include <algorithm>
-#include <cstdlib>
 
 #include "cl/error.h"
 #include "cl/machine.h"

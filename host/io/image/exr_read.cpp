@@ -15,15 +15,12 @@
 #include <OpenEXR/ImfTileDescriptionAttribute.h>
 #include <OpenEXR/ImfVecAttribute.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cstring>
-#include <exception>
-#include <mutex>
-#include <thread>
 
 #include "io/image/exr_file.h"
 #include "io/image/image_format.h"
+#include "system/threads.h"
 
 namespace pellucid::io {
 namespace {
@@ -69,30 +66,21 @@ void sortChannels(std::vector<std::string>& names) {
     std::ranges::sort(names, {}, key);
 }
 
-void copyAttributes(Image& image, const Imf::Header& header) {
-    for (auto i = header.begin(); i != header.end(); ++i) {
-        const Imf::Attribute& a = i.attribute();
-        const auto take = [&](auto value) { image.attributes.emplace_back(i.name(), std::move(value)); };
-        const auto floats = [&](const float* values, size_t count) {
-            take(std::vector<float>(values, values + count));
-        };
-        if (const auto* s = dynamic_cast<const Imf::StringAttribute*>(&a))
-            take(s->value());
-        else if (const auto* n = dynamic_cast<const Imf::IntAttribute*>(&a))
-            take(n->value());
-        else if (const auto* f = dynamic_cast<const Imf::FloatAttribute*>(&a))
-            take(f->value());
-        else if (const auto* v2 = dynamic_cast<const Imf::V2fAttribute*>(&a))
-            floats(&v2->value().x, 2);
-        else if (const auto* v3 = dynamic_cast<const Imf::V3fAttribute*>(&a))
-            floats(&v3->value().x, 3);
-        else if (const auto* m3 = dynamic_cast<const Imf::M33fAttribute*>(&a))
-            floats(m3->value().x[0], 9);
-        else if (const auto* m4 = dynamic_cast<const Imf::M44fAttribute*>(&a))
-            floats(m4->value().x[0], 16);
-        else if (const auto* v = dynamic_cast<const Imf::FloatVectorAttribute*>(&a))
-            take(v->value());
+template <class T>
+void copyAs(Image& image, const char* name, const Imf::Attribute& attribute) {
+    const auto* typed = dynamic_cast<const Imf::TypedAttribute<T>*>(&attribute);
+    if (!typed) return;
+    if constexpr (std::is_constructible_v<Attribute, T>) {
+        image.attributes.emplace_back(name, typed->value());
+    } else {  // vectors and matrices as their floats
+        const auto* first = reinterpret_cast<const float*>(&typed->value());
+        image.attributes.emplace_back(name, std::vector<float>(first, first + sizeof(T) / sizeof *first));
     }
+}
+
+template <class... T>
+void copyAttributes(Image& image, const Imf::Header& header) {
+    for (auto i = header.begin(); i != header.end(); ++i) (copyAs<T>(image, i.name(), i.attribute()), ...);
 }
 
 PartPlan planPart(Image& image, const Imf::Header& header, int part, bool severalParts, uint64_t limit) {
@@ -204,27 +192,17 @@ struct Band {
 template <class Worker>
 void onProcessors(size_t count, const Worker& worker) {
     std::atomic<size_t> next{0};
-    std::mutex mutex;
-    std::exception_ptr failed;
-    const auto work = [&] {
+    pel::inParts(count, pel::partsOf(count, 1), [&](size_t, size_t, size_t) {
         try {
             worker([&]() -> std::optional<size_t> {
                 const size_t i = next++;
                 return i < count ? std::optional(i) : std::nullopt;
             });
         } catch (...) {
-            next = count;
-            const std::lock_guard lock(mutex);
-            failed = std::current_exception();
+            next = count;  // the others need not go on
+            throw;
         }
-    };
-    const size_t most = std::min<size_t>(std::max(std::thread::hardware_concurrency(), 1u), count);
-    {
-        std::vector<std::jthread> helpers;
-        while (helpers.size() + 1 < most) helpers.emplace_back(work);
-        work();
-    }
-    if (failed) std::rethrow_exception(failed);
+    });
 }
 
 }  // namespace
@@ -249,7 +227,8 @@ void decodeExr(Image& image, const std::string& bytes, const std::function<void(
                uint64_t limit, const PlaceChannels& placesOf) try {
     MemoryStream stream(image.source, bytes);
     Imf::MultiPartInputFile file(stream, 0);
-    copyAttributes(image, file.header(0));
+    copyAttributes<std::string, int, float, Imath::V2f, Imath::V3f, Imath::M33f, Imath::M44f,
+                   std::vector<float>>(image, file.header(0));
     std::vector<PartPlan> parts;
     for (int part = 0; part < file.parts(); ++part)
         parts.push_back(planPart(image, file.header(part), part, file.parts() > 1, limit));

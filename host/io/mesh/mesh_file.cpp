@@ -5,7 +5,6 @@
 #include <map>
 #include <pellucid/pellucid.hpp>
 
-#include "io/image/color_map.h"
 #include "io/input_file.h"
 #include "io/mesh/mesh_text.h"
 

@@ -1,3 +1,4 @@
+#include <Imath/ImathBox.h>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Subdivider/Uniform/LoopT.hh>
 #include <algorithm>
@@ -119,19 +120,14 @@ void loopSubdivide(MeshData& mesh, int levels) {
 }
 
 float scaleToHeight(MeshData& mesh, float height, int axis) {
-    float low[3], high[3];
-    for (size_t a = 0; a < 3; ++a) {
-        low[a] = high[a] = mesh.positions.at(a);
-        for (size_t i = a; i < mesh.positions.size(); i += 3) {
-            low[a] = std::min(low[a], mesh.positions[i]);
-            high[a] = std::max(high[a], mesh.positions[i]);
-        }
-    }
-    const float extent = high[axis] - low[axis];
+    Imath::Box3f box;
+    for (size_t i = 0; i < mesh.positions.size(); i += 3)
+        box.extendBy({mesh.positions[i], mesh.positions[i + 1], mesh.positions[i + 2]});
+    const float extent = box.size()[axis];
     if (!(extent > 0)) throw FileError(mesh.source, "is flat along the axis it should be scaled to");
     const float factor = height / extent;
     for (size_t i = 0; i < mesh.positions.size(); ++i)
-        mesh.positions[i] = (mesh.positions[i] - (low[i % 3] + high[i % 3]) / 2) * factor;
+        mesh.positions[i] = (mesh.positions[i] - box.center()[int(i % 3)]) * factor;
     return factor;
 }
 

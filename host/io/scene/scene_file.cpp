@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <set>
 
-#include "io/input_file.h"
 #include "io/scene/scene_keys.h"
 #include "io/toml_reader.h"
 

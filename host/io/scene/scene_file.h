@@ -3,7 +3,6 @@
 #pragma once
 #include <array>
 #include <optional>
-#include <string>
 
 #include "io/image/image_file.h"
 #include "io/lut/lut_preset.h"

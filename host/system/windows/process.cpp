@@ -8,10 +8,7 @@
 #include <cerrno>
 #include <clocale>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 
 namespace pel::system {
 namespace fs = std::filesystem;

@@ -1,6 +1,5 @@
 // The module for PELLUCID_CAPTURE (host/shading/capture.cpp): a frame's input as a scene folder.
 #include "io/atomic_file.h"
-#include "io/image/image_file.h"
 #include "io/lut/lut_file.h"
 #include "io/lut/profile_file.h"
 #include "io/scene/scene_keys.h"
