@@ -1,11 +1,30 @@
 #include "mesh.h"
 
-#include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
-#include <OpenMesh/Tools/Subdivider/Uniform/CatmullClarkT.hh>
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
+
+namespace {
+
+Float3& operator+=(Float3& a, const Float3& b) {
+    for (size_t i = 0; i < 3; ++i) a[i] += b[i];
+    return a;
+}
+
+Float3 scaled(const Float3& a, float s) {
+    return {a[0] * s, a[1] * s, a[2] * s};
+}
+
+struct Edge {
+    Float3 ends{}, faces{};  // sums
+    int count = 0;           // of faces; 1 on a border
+    uint32_t point = 0;      // the vertex that divides it
+};
+
+}  // namespace
 
 std::vector<uint32_t> Mesh::triangles() const {
     std::vector<uint32_t> indices;
@@ -50,31 +69,64 @@ Mesh readObj(const std::string& path) {
 }
 
 Mesh subdivided(const Mesh& mesh) {
-    using Polygons = OpenMesh::PolyMesh_ArrayKernelT<>;
-    Polygons polygons;
-    for (const Float3& p : mesh.positions) polygons.add_vertex({p[0], p[1], p[2]});
+    const size_t count = mesh.positions.size();
+    Mesh out{mesh.positions, mesh.ids, {}};
+    std::map<std::pair<uint32_t, uint32_t>, Edge> edges;
+    std::vector<Float3> faceSums(count), edgeSums(count), borderSums(count);
+    std::vector<int> faces(count), borders(count);
+    const auto edgeOf = [&](const std::vector<uint32_t>& polygon, size_t i) -> auto& {
+        const uint32_t a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+        return edges[{std::min(a, b), std::max(a, b)}];
+    };
+
+    std::vector<Float3> centers;
     for (const auto& polygon : mesh.polygons) {
-        std::vector<OpenMesh::VertexHandle> corners;
-        for (const uint32_t v : polygon) corners.emplace_back(int(v));
-        if (!polygons.add_face(corners).is_valid())
-            throw std::runtime_error("the mesh has an edge of more than two faces, or faces that are turned");
+        Float3 center{};
+        for (const uint32_t v : polygon) center += scaled(mesh.positions[v], 1.0f / float(polygon.size()));
+        centers.push_back(center);
+        for (size_t i = 0; i < polygon.size(); ++i) {
+            edgeOf(polygon, i).faces += center;
+            ++edgeOf(polygon, i).count;
+            faceSums[polygon[i]] += center;
+            ++faces[polygon[i]];
+        }
     }
-    OpenMesh::Subdivider::Uniform::CatmullClarkT<Polygons> subdivide;
-    subdivide.attach(polygons);
-    subdivide(1);
-    subdivide.detach();
-    Mesh out{{}, mesh.ids, {}};
-    for (const auto v : polygons.vertices()) {
-        const auto& p = polygons.point(v);
-        out.positions.push_back({p[0], p[1], p[2]});
+    for (auto& [ends, edge] : edges) {
+        edge.ends = mesh.positions[ends.first];
+        edge.ends += mesh.positions[ends.second];
+        const Float3 middle = scaled(edge.ends, 0.5f);
+        Float3 point = middle;
+        if (edge.count == 2) point = scaled(edge.faces, 0.25f), point += scaled(edge.ends, 0.25f);
+        edge.point = uint32_t(out.positions.size());
+        out.positions.push_back(point);
+        out.ids.push_back(mesh.ids[ends.first]);
+        for (const uint32_t v : {ends.first, ends.second}) {
+            edgeSums[v] += middle;
+            if (edge.count == 1) borderSums[v] += middle, ++borders[v];
+        }
     }
-    out.ids.resize(out.positions.size());
-    for (const auto face : polygons.faces()) {
-        std::vector<uint32_t>& quad = out.polygons.emplace_back();
-        for (const auto v : face.vertices()) quad.push_back(uint32_t(v.idx()));
-        // From the corner of before on, which has kept its number.
-        std::rotate(quad.begin(), std::min_element(quad.begin(), quad.end()), quad.end());
-        for (const uint32_t v : quad) out.ids[v] = mesh.ids[quad[0]];
+    for (size_t v = 0; v < count; ++v) {
+        const auto n = float(faces[v]);
+        Float3& p = out.positions[v];
+        if (borders[v] == 2) {
+            p = scaled(p, 0.5f);
+            p += scaled(borderSums[v], 0.25f);
+        } else if (n > 0 && borders[v] == 0) {
+            p = scaled(p, (n - 3) / n);
+            p += scaled(faceSums[v], 1 / (n * n));
+            p += scaled(edgeSums[v], 2 / (n * n));
+        }
+    }
+    for (size_t f = 0; f < mesh.polygons.size(); ++f) {
+        const auto& polygon = mesh.polygons[f];
+        const auto center = uint32_t(out.positions.size());
+        out.positions.push_back(centers[f]);
+        out.ids.push_back(mesh.ids[polygon[0]]);
+        for (size_t i = 0; i < polygon.size(); ++i) {
+            const size_t before = (i + polygon.size() - 1) % polygon.size();
+            out.polygons.push_back(
+                {polygon[i], edgeOf(polygon, i).point, center, edgeOf(polygon, before).point});
+        }
     }
     return out;
 }

@@ -64,7 +64,7 @@ def test_up(tmp_path):
 def test_deferred_gl_shades_skin_and_nothing_else(tmp_path):
     program = Path(os.environ.get("PELLUCID_COMMAND", "")).with_name("deferred_gl")
     if not program.exists():
-        pytest.skip("deferred_gl is not built: it needs the headers of EGL, OpenGL, OpenMesh and libpng")
+        pytest.skip("deferred_gl is not built: it needs the headers of EGL, OpenGL and libpng")
     head = EXAMPLES.parent / "data/heads/head_male.obj"
     for method in ("auto", "none"):
         made = subprocess.run([program, head, tmp_path / method, "--frames", "4", "--size", "320x320",
