@@ -1,52 +1,126 @@
 #include "profile_fit/profile_fit.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <numbers>
+#include <span>
 #include <sstream>
 
 namespace pellucid::io {
 namespace {
 
-using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+// Columns of `rows` numbers each, stored one after another.
+struct Columns {
+    size_t rows = 0, count = 0;
+    std::vector<double> values;
+    double* column(size_t i) { return values.data() + i * rows; }
+    const double* column(size_t i) const { return values.data() + i * rows; }
+};
 
-// The weights of the columns `free` that add up to 1 and have the least |A w - b|: the last one is 1 minus
+double dot(const double* a, const double* b, size_t n) {
+    double sum = 0;
+    for (size_t i = 0; i < n; ++i) sum += a[i] * b[i];
+    return sum;
+}
+
+// The x with the least |A x - b|, by Householder reflections. A column that depends on others gets 0. `a` and
+// `b` are overwritten.
+std::vector<double> leastSquares(Columns& a, std::vector<double>& b) {
+    const size_t n = std::min(a.count, a.rows);
+    std::vector<double> diagonal(a.count, 0.0);
+    std::vector<bool> used(a.count, false);
+    size_t row = 0;
+    std::vector<size_t> rowOf(a.count, 0);
+    for (size_t k = 0; k < n; ++k) {
+        double* column = a.column(k);
+        const double below = std::sqrt(dot(column + row, column + row, a.rows - row)),
+                     all = std::sqrt(dot(column, column, a.rows));
+        if (!(below > 1e-13 * all)) continue;
+        const double alpha = column[row] > 0 ? -below : below;
+        column[row] -= alpha;  // the reflection's vector, in place
+        const double scale = dot(column + row, column + row, a.rows - row) / 2;
+        const auto reflect = [&](double* v) {
+            const double s = dot(column + row, v + row, a.rows - row) / scale;
+            for (size_t i = row; i < a.rows; ++i) v[i] -= s * column[i];
+        };
+        for (size_t other = k + 1; other < a.count; ++other) reflect(a.column(other));
+        reflect(b.data());
+        diagonal[k] = alpha;
+        used[k] = true;
+        rowOf[k] = row++;
+        if (row == a.rows) break;
+    }
+    std::vector<double> x(a.count, 0.0);
+    for (size_t k = a.count; k-- > 0;) {
+        if (!used[k]) continue;
+        double value = b[rowOf[k]];
+        for (size_t other = k + 1; other < a.count; ++other) value -= a.column(other)[rowOf[k]] * x[other];
+        x[k] = value / diagonal[k];
+    }
+    return x;
+}
+
+// Least squares over the columns of `free` alone, with weights that add up to 1: the last weight is 1 minus
 // the others.
-VectorXd onFreeColumns(const MatrixXd& a, const VectorXd& b, const std::vector<Index>& free) {
-    const VectorXd base = a.col(free.back());
-    const Index others = Index(free.size()) - 1;
-    MatrixXd reduced = a(Eigen::all, free);
-    reduced.colwise() -= base;
-    VectorXd w(others + 1);
-    w.head(others) = reduced.leftCols(others).colPivHouseholderQr().solve(b - base);
-    w[others] = 1 - w.head(others).sum();
-    return w;
+std::vector<double> onFreeColumns(const Columns& a, std::span<const double> b,
+                                  const std::vector<size_t>& free) {
+    const size_t last = free.size() - 1;
+    Columns reduced{a.rows, last, std::vector<double>(a.rows * last)};
+    const double* base = a.column(free[last]);
+    for (size_t k = 0; k < last; ++k)
+        for (size_t i = 0; i < a.rows; ++i) reduced.column(k)[i] = a.column(free[k])[i] - base[i];
+    std::vector<double> target(b.begin(), b.end());
+    for (size_t i = 0; i < a.rows; ++i) target[i] -= base[i];
+    std::vector<double> x = leastSquares(reduced, target);
+    double rest = 1;
+    for (double value : x) rest -= value;
+    x.push_back(rest);
+    return x;
+}
+
+std::vector<double> residual(const Columns& a, std::span<const double> weights, std::span<const double> b) {
+    std::vector<double> r(b.begin(), b.end());
+    for (size_t k = 0; k < a.count; ++k)
+        if (weights[k] != 0)
+            for (size_t i = 0; i < a.rows; ++i) r[i] -= weights[k] * a.column(k)[i];
+    return r;
 }
 
 // The weights w >= 0 with sum 1 and the least |A w - b|: the active sets of Lawson and Hanson (Solving Least
 // Squares Problems, 1974, chapter 23), on the simplex.
-VectorXd simplexWeights(const MatrixXd& a, const VectorXd& b) {
-    Index best = 0;
-    (a.colwise() - b).colwise().squaredNorm().minCoeff(&best);
-    VectorXd w = VectorXd::Unit(a.cols(), best);
-    std::vector<Index> free{best};
-    const double largest = a.colwise().squaredNorm().maxCoeff();
-    for (Index round = 0; round < 4 * a.cols() + 8; ++round) {
+std::vector<double> simplexWeights(const Columns& a, std::span<const double> b) {
+    std::vector<double> w(a.count, 0.0);
+    size_t best = 0;
+    double least = -1;
+    for (size_t k = 0; k < a.count; ++k) {
+        double squares = 0;
+        for (size_t i = 0; i < a.rows; ++i) squares += (a.column(k)[i] - b[i]) * (a.column(k)[i] - b[i]);
+        if (least < 0 || squares < least) least = squares, best = k;
+    }
+    w[best] = 1;
+    std::vector<size_t> free{best};
+    double largest = 0;
+    for (size_t k = 0; k < a.count; ++k) largest = std::max(largest, dot(a.column(k), a.column(k), a.rows));
+    for (size_t round = 0; round < 4 * a.count + 8; ++round) {
         // At the optimum all free columns have the same slope, and no other has a steeper one.
-        VectorXd gain = a.transpose() * (b - a * w);
-        gain.array() -= gain(free).mean();
-        gain(free).setZero();
-        Index entering = 0;
-        if (!(gain.maxCoeff(&entering) > 1e-14 * largest)) break;
+        const std::vector<double> r = residual(a, w, b);
+        double level = 0, steepest = 1e-14 * largest;
+        for (size_t k : free) level += dot(a.column(k), r.data(), a.rows) / double(free.size());
+        size_t entering = a.count;
+        for (size_t k = 0; k < a.count; ++k) {
+            if (std::find(free.begin(), free.end(), k) != free.end()) continue;
+            const double gain = dot(a.column(k), r.data(), a.rows) - level;
+            if (gain > steepest) steepest = gain, entering = k;
+        }
+        if (entering == a.count) break;
         free.push_back(entering);
         for (;;) {
-            const VectorXd z = onFreeColumns(a, b, free), from = w(free);
+            const std::vector<double> z = onFreeColumns(a, b, free);
             double share = 1;
-            for (Index f = 0; f < z.size(); ++f)
-                if (z[f] <= 0) share = std::min(share, from[f] / (from[f] - z[f] + 1e-300));
-            w(free) = from + share * (z - from);
+            for (size_t f = 0; f < free.size(); ++f)
+                if (z[f] <= 0) share = std::min(share, w[free[f]] / (w[free[f]] - z[f] + 1e-300));
+            for (size_t f = 0; f < free.size(); ++f) w[free[f]] += share * (z[f] - w[free[f]]);
             if (share >= 1) break;
-            std::erase_if(free, [&](Index k) {
+            std::erase_if(free, [&](size_t k) {
                 if (w[k] > 1e-15) return false;
                 w[k] = 0;
                 return true;
@@ -60,48 +134,56 @@ VectorXd simplexWeights(const MatrixXd& a, const VectorXd& b) {
     return w;
 }
 
-constexpr Index sampleCount = 400;
+// The sum of squares of A w - b.
+double squaredResidual(const Columns& a, std::span<const double> weights, std::span<const double> b) {
+    const std::vector<double> r = residual(a, weights, b);
+    return dot(r.data(), r.data(), r.size());
+}
+
+constexpr size_t sampleCount = 400;
 constexpr int candidates = 96;  // variances tried for a new Gaussian
 
 // The line spread at logarithmic steps; root of the weight times a value, so that sums of squares are
 // integrals over s.
 struct Samples {
-    Eigen::ArrayXd at, root;
-    Eigen::MatrixX3d value;   // of each channel, times root, of norm 1
-    Eigen::RowVector3d norm;  // root of int P^2 ds
+    std::vector<double> at, root;
+    std::vector<double> value[3];  // of a channel, times root, of norm 1
+    double norm[3] = {};           // root of int P^2 ds
 };
-
-// A column for each channel.
-Eigen::MatrixX3d spreadAt(const Samples& s, const Profile& profile) {
-    const std::vector<double> P = profile.lineSpread({s.at.begin(), s.at.end()});
-    return Eigen::Map<const Eigen::Array3Xd>(P.data(), 3, sampleCount).transpose().colwise() * s.root;
-}
 
 Samples sampled(const Profile& profile) {
     Samples s;
-    const double radius = profile.info().radius, first = std::log(1e-3 * radius),
-                 last = std::log(15 * radius);
-    s.at = Eigen::ArrayXd::LinSpaced(sampleCount, first, last).exp();
-    s.root = (s.at * ((last - first) / (sampleCount - 1))).sqrt();
-    s.value = spreadAt(s, profile);
-    s.norm = s.value.colwise().norm();
-    s.value.array().rowwise() /= s.norm.array();
+    const double radius = profile.info().radius, first = 1e-3 * radius, last = 15 * radius;
+    const double step = std::log(last / first) / (sampleCount - 1);
+    for (size_t i = 0; i < sampleCount; ++i) {
+        s.at.push_back(first * std::exp(double(i) * step));
+        s.root.push_back(std::sqrt(s.at.back() * step));
+    }
+    const std::vector<double> P = profile.lineSpread(s.at);
+    for (int c = 0; c < 3; ++c) {
+        for (size_t i = 0; i < sampleCount; ++i) s.value[c].push_back(s.root[i] * P[3 * i + size_t(c)]);
+        double squares = 0;
+        for (double v : s.value[c]) squares += v * v;
+        s.norm[c] = std::sqrt(squares);
+        for (double& v : s.value[c]) v /= s.norm[c];
+    }
     return s;
 }
 
 struct Mixture {
     std::vector<double> logVariance;
-    VectorXd weights[3];
+    std::vector<double> weights[3];
     double squares = 0;  // sum over the channels of the squared relative error
 };
 
 // The Gaussians as columns, in the units of a channel's samples.
-MatrixXd columnsOf(const Samples& s, const std::vector<double>& logVariance, int channel) {
-    MatrixXd a(sampleCount, logVariance.size());
+Columns columnsOf(const Samples& s, const std::vector<double>& logVariance, int channel) {
+    Columns a{sampleCount, logVariance.size(), std::vector<double>(sampleCount * logVariance.size())};
     for (size_t g = 0; g < logVariance.size(); ++g) {
-        const double variance = std::exp(logVariance[g]),
-                     peak = 1 / std::sqrt(2 * std::numbers::pi * variance) / s.norm[channel];
-        a.col(Index(g)) = s.root * peak * (-s.at.square() / (2 * variance)).exp();
+        const double variance = std::exp(logVariance[g]);
+        const double peak = 1 / std::sqrt(2 * std::numbers::pi * variance) / s.norm[channel];
+        for (size_t i = 0; i < sampleCount; ++i)
+            a.column(g)[i] = s.root[i] * peak * std::exp(-s.at[i] * s.at[i] / (2 * variance));
     }
     return a;
 }
@@ -109,9 +191,9 @@ MatrixXd columnsOf(const Samples& s, const std::vector<double>& logVariance, int
 Mixture weighted(const Samples& s, std::vector<double> logVariance) {
     Mixture m{std::move(logVariance), {}, 0};
     for (int c = 0; c < 3; ++c) {
-        const MatrixXd a = columnsOf(s, m.logVariance, c);
-        m.weights[c] = simplexWeights(a, s.value.col(c));
-        m.squares += (a * m.weights[c] - s.value.col(c)).squaredNorm();
+        const Columns a = columnsOf(s, m.logVariance, c);
+        m.weights[c] = simplexWeights(a, s.value[c]);
+        m.squares += squaredResidual(a, m.weights[c], s.value[c]);
     }
     return m;
 }
@@ -119,34 +201,46 @@ Mixture weighted(const Samples& s, std::vector<double> logVariance) {
 // One step of Levenberg and Marquardt over all variances and those weights that are not 0; the sum of weights
 // is kept. Returns the new variances.
 std::vector<double> stepOf(const Samples& s, const Mixture& m, double damping) {
-    const auto n = Index(m.logVariance.size());
-    std::vector<Index> free[3];
-    Index firstVariance = 0;  // behind the weights' unknowns
+    const size_t n = m.logVariance.size();
+    std::vector<size_t> free[3];
+    size_t unknowns = n;
     for (int c = 0; c < 3; ++c) {
-        for (Index g = 0; g < n; ++g)
+        for (size_t g = 0; g < n; ++g)
             if (m.weights[c][g] > 0) free[c].push_back(g);
-        firstVariance += Index(free[c].size()) - 1;
+        unknowns += free[c].size() - 1;
     }
-    MatrixXd jacobian = MatrixXd::Zero(3 * sampleCount + n, firstVariance + n);
-    VectorXd target = VectorXd::Zero(jacobian.rows());
-    Index next = 0;
-    for (int c = 0; c < 3; ++c) {
-        const MatrixXd a = columnsOf(s, m.logVariance, c);
-        auto rows = jacobian.middleRows(c * sampleCount, sampleCount);
-        for (size_t f = 0; f + 1 < free[c].size(); ++f)
-            rows.col(next++) = a.col(free[c][f]) - a.col(free[c].back());
-        for (Index g = 0; g < n; ++g)
-            rows.col(firstVariance + g) = 0.5 * m.weights[c][g] * a.col(g).array() *
-                                          (s.at.square() / std::exp(m.logVariance[size_t(g)]) - 1);
-        target.segment(c * sampleCount, sampleCount) = s.value.col(c) - a * m.weights[c];
+    const size_t rows = 3 * sampleCount + n;
+    Columns jacobian{rows, unknowns, std::vector<double>(rows * unknowns)};
+    std::vector<double> target(rows, 0.0);
+    // The weights' columns first: those of the variances then hold only what weights cannot do
+    size_t next = 0;
+    const size_t firstVariance = unknowns - n;
+    for (size_t c = 0; c < 3; ++c) {
+        const Columns a = columnsOf(s, m.logVariance, int(c));
+        const size_t last = free[c].back();
+        for (size_t f = 0; f + 1 < free[c].size(); ++f, ++next)
+            for (size_t i = 0; i < sampleCount; ++i)
+                jacobian.column(next)[c * sampleCount + i] = a.column(free[c][f])[i] - a.column(last)[i];
+        for (size_t i = 0; i < sampleCount; ++i) {
+            double r = s.value[c][i];
+            for (size_t g = 0; g < n; ++g) {
+                const double part = m.weights[c][g] * a.column(g)[i],
+                             x = s.at[i] * s.at[i] / std::exp(m.logVariance[g]);
+                r -= part;
+                jacobian.column(firstVariance + g)[c * sampleCount + i] = part * 0.5 * (x - 1);
+            }
+            target[c * sampleCount + i] = r;
+        }
     }
-    for (Index g = 0; g < n; ++g) {
-        auto column = jacobian.col(firstVariance + g);
-        column[3 * sampleCount + g] = std::sqrt(damping * (column.squaredNorm() + 1e-12));
+    for (size_t g = 0; g < n; ++g) {
+        double squares = 0;
+        for (size_t i = 0; i < 3 * sampleCount; ++i)
+            squares += jacobian.column(firstVariance + g)[i] * jacobian.column(firstVariance + g)[i];
+        jacobian.column(firstVariance + g)[3 * sampleCount + g] = std::sqrt(damping * (squares + 1e-12));
     }
-    const VectorXd x = jacobian.colPivHouseholderQr().solve(target);
+    const std::vector<double> x = leastSquares(jacobian, target);
     std::vector<double> moved = m.logVariance;
-    for (Index g = 0; g < n; ++g) moved[size_t(g)] += std::clamp(x[firstVariance + g], -1.0, 1.0);
+    for (size_t g = 0; g < n; ++g) moved[g] += std::clamp(x[firstVariance + g], -1.0, 1.0);
     return moved;
 }
 
@@ -213,10 +307,15 @@ ProfileFit fitGaussians(const Profile& profile, int count) {
 
 std::array<double, 3> fitError(const Profile& profile, const Profile& fit) {
     const Samples samples = sampled(profile);
-    const Eigen::MatrixX3d other = spreadAt(samples, fit);
+    const std::vector<double> P = fit.lineSpread(samples.at);
     std::array<double, 3> error{};
-    for (int c = 0; c < 3; ++c)
-        error[size_t(c)] = (samples.value.col(c) - other.col(c) / samples.norm[c]).norm();
+    for (size_t c = 0; c < 3; ++c) {
+        for (size_t i = 0; i < sampleCount; ++i) {
+            const double difference = samples.value[c][i] - samples.root[i] * P[3 * i + c] / samples.norm[c];
+            error[c] += difference * difference;
+        }
+        error[c] = std::sqrt(error[c]);
+    }
     return error;
 }
 

@@ -24,9 +24,9 @@ def main() -> int:
         return run()
     if program().exists():
         os.execv(program(), ["pellucid", *sys.argv[1:]])  # does not come back
-    print("pellucid: this package was built without the program, which needs CLI11, nlohmann-json and "
-          "Eigen (Debian: libcli11-dev nlohmann-json3-dev "
-          f"libeigen3-dev, beside what pellucid.files needs); there are {' and '.join(_OWN)}",
+    print("pellucid: this package was built without the program, which needs CLI11 and nlohmann-json "
+          "(Debian: libcli11-dev "
+          f"nlohmann-json3-dev, beside what pellucid.files needs); there are {' and '.join(_OWN)}",
           file=sys.stderr)
     return 2
 
