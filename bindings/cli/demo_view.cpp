@@ -229,8 +229,8 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     add(PEL_SLOT_MATERIAL, "Material", "I", std::vector<float>(g.material.begin(), g.material.end()));
     if (!wetness.empty()) add(PEL_SLOT_WETNESS, "Wetness", "V", wetness);
     add(PEL_SLOT_RADIANCE, "Before", "RGB", before.data);
-    // Of few values, or the same over large parts: as half floats they take a twentieth of the space and of the
-    // time to read.
+    // Of few values, or the same over large parts: as half floats they take a twentieth of the space and of
+    // the time to read.
     for (io::Channel& channel : view.gbuffer.channels)
         if (channel.name == "KeyShadow.V" || channel.name == "AmbientOcclusion.V" ||
             channel.name.starts_with("Before.")) {

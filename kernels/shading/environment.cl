@@ -154,8 +154,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment
 }
 
 // The shares of both models (shared/environment.h), by half vectors that are spread as the distribution is.
-// `samples`, from `begin` to `end`: the cosine of half a turn, and the squared tangent of the half vector over
-// that of the roughness, of Beckmann's distribution and of GGX.
+// `samples`, from `begin` to `end`: the cosine of half a turn, and the squared tangent of the half vector
+// over that of the roughness, of Beckmann's distribution and of GGX.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment_shares(
     __global const float4* restrict samples, uint begin, uint end, uint first,
     __global float* restrict nodes) {

@@ -29,9 +29,9 @@ struct Known {
     const char *where, *part;
     double most[3];
 };
-// A thin body loses light through its far side, so that the lit side
-// of a leaf is darker than that of a half-space, most of all at its rim. Without a thickness nothing tells how
-// thick the body is below lit surface; the gain of curvature makes the rim brighter besides.
+// A thin body loses light through its far side, so that the lit side of a leaf is darker than that of a
+// half-space, most of all at its rim. Without a thickness nothing tells how thick the body is below lit
+// surface; the gain of curvature makes the rim brighter besides.
 constexpr Known knownWorse[] = {
     {"leaf, side", "thin", {163, 83, 0}},
     {"leaf, side", "rest", {323, 169, 0}},
