@@ -16,6 +16,7 @@ constexpr double pi = std::numbers::pi;
 // Of the lobes. With 32, small lamps show as patterns of dots in rough levels.
 constexpr cl_uint lobeSamples = 128;
 constexpr cl_uint shareSamples = 512;
+constexpr size_t mostSamples = PEL_ENVIRONMENT_LEVELS * lobeSamples + shareSamples;
 constexpr cl_uint irradianceMip = 2;  // 16 x 16 texels a face
 
 // Hammersley's second coordinate, which is evenly spread: the digits of k in base 2, reversed.
@@ -61,14 +62,14 @@ class Environment final : public Pass {
         resize(nodes_, device, (environmentFloatsOfAll() + 2 * PEL_SHARE_FLOATS) * sizeof(float));
         resize(irradiance_, device, environmentFloats(PEL_ENVIRONMENT_LEAST) * sizeof(float));
         if (nodes_->memory().get() != before.get()) made_ = 0, hasShares_ = false;
-        if (!samples_)
-            samples_ =
-                device->allocate((PEL_ENVIRONMENT_LEVELS * lobeSamples + shareSamples) * sizeof(cl_float4));
+        if (!samples_) samples_ = device->allocate(mostSamples * sizeof(cl_float4));
         plan.environmentNodes = nodes_->memory();
         if (!plan.state.reflectionCube) plan.reflectionNodes = nodes_->memory();
         if (!plan.state.ambientCube) plan.ambientNodes = irradiance_->memory();
     }
-    size_t bytes() const override { return nodes_ ? nodes_->bytes() + irradiance_->bytes() : 0; }
+    size_t bytes() const override {
+        return nodes_ ? nodes_->bytes() + irradiance_->bytes() + mostSamples * sizeof(cl_float4) : 0;
+    }
 
     size_t upload(Device& device, ShaderPlan&) override {
         if (starts_.back()) return 0;
