@@ -108,12 +108,12 @@ std::vector<DemoViewRequest> requests(const Arguments& a) {
     parseSize(a.size, key.width, key.height);
     key.name = "key";
     key.framing.azimuth = 25;
-    key.lights = {{"Key", 54, 22, {0.92f, 0.845f, 0.76f}, true, 0.15},
+    key.lights = {{"Key", 54, 22, {0.92f, 0.845f, 0.76f}, true, 0.05},
                   {"Rim", -132, 25, {0.22f, 0.25f, 0.30f}}};
     key.skyScale = 0.16f;
     back = key;
     back.name = "backlit";
-    back.lights = {{"Key", 174, 8, {2.8f, 2.64f, 2.43f}, false, 0.15},
+    back.lights = {{"Key", 174, 8, {2.8f, 2.64f, 2.43f}, false, 0.05},
                    {"Rim", -118, 20, {0.5f, 0.56f, 0.64f}}};
     back.skyScale = 0.2f;
     return {key, back};
