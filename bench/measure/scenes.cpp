@@ -153,6 +153,11 @@ void makeCrop(const std::string& path, const Stage& stage, const FrozenScene& sc
     write(path, {light.first, light.second});
 }
 
+// Where the mean of the 2 x 2 pixels with pixel `i` of a square begins.
+size_t meanOf(size_t i, size_t side) {
+    return 3 * (i / side / 2 * (side / 2) + i % side / 2);
+}
+
 void makePart(const ShownPart& part, const std::string& path, const Stage& stage, const FrozenScene& scene,
               double scale, const Say& say) {
     SceneRequest request = scene.request;
@@ -162,11 +167,11 @@ void makePart(const ShownPart& part, const std::string& path, const Stage& stage
     std::vector<size_t> covered;
     std::ranges::copy_if(all, std::back_inserter(covered), [&](size_t i) { return s.covered[i]; });
     const sample::WalkedLight light = walk(stage, s, covered, scale, partWalks, say);
-    const size_t side = size_t(std::sqrt(double(all.size())));
-    std::vector<float> means(3 * (side / 2) * (side / 2));
+    const size_t side = size_t(part.side(s));
+    std::vector<float> means(3 * all.size() / 4);
     for (size_t i = 0, next = 0; i < all.size(); ++i) {
         if (!s.covered[all[i]]) continue;
-        float* mean = &means[3 * (i / side / 2 * (side / 2) + i % side / 2)];
+        float* mean = &means[meanOf(i, side)];
         for (size_t c = 0; c < 3; ++c, ++next) mean[c] += (light.first[next] + light.second[next]) / 8;
     }
     write(path, {means});
@@ -250,21 +255,20 @@ Crop readCrop(const std::string& folder, const std::string& name, const LitScene
 }
 
 std::vector<size_t> ShownPart::pixels(const LitScene& s) const {
-    const int side = int(width * s.width) / 2 * 2, x0 = int(x * s.width) - side / 2,
-              y0 = int(y * s.height) - side / 2;
+    const int across = side(s), x0 = int(x * s.width) - across / 2, y0 = int(y * s.height) - across / 2;
     std::vector<size_t> all;
-    for (int k = 0; k < side * side; ++k)
-        all.push_back(size_t(y0 + k / side) * size_t(s.width) + size_t(x0 + k % side));
+    for (int k = 0; k < across * across; ++k)
+        all.push_back(size_t(y0 + k / across) * size_t(s.width) + size_t(x0 + k % across));
     return all;
 }
 
 std::vector<float> readPart(const std::string& folder, const ShownPart& part, const LitScene& scene) {
-    const size_t count = part.pixels(scene).size(), side = size_t(std::sqrt(double(count)));
+    const size_t side = size_t(part.side(scene)), count = side * side;
     const std::vector<float> means =
         readLayers(fileOf(folder, std::string("part-") + part.scene), 3 * count / 4, 1)[0];
     std::vector<float> light;
     for (size_t i = 0; i < count; ++i) {
-        const float* mean = &means[3 * (i / side / 2 * (side / 2) + i % side / 2)];
+        const float* mean = &means[meanOf(i, side)];
         light.insert(light.end(), mean, mean + 3);
     }
     return light;

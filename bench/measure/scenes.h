@@ -56,7 +56,8 @@ struct ShownPart {
     double x, y, width;  // middle and width, as parts of the picture
     float exposure;
 
-    std::vector<size_t> pixels(const lit_scenes::LitScene& scene) const;  // of a square, row by row
+    int side(const lit_scenes::LitScene& scene) const { return int(width * scene.width) / 2 * 2; }
+    std::vector<size_t> pixels(const lit_scenes::LitScene& scene) const;  // of the square, row by row
 };
 constexpr ShownPart shownParts[] = {{"side-4", 0.46, 0.56, 0.5, 1}, {"ear-4", 0.61, 0.52, 0.36, 2.5f}};
 // RGB of light there, the same for 2 x 2 pixels, in radiance with `sceneAlbedo`. Throws as readCrop().

@@ -1,7 +1,5 @@
 #include "demo.h"
 
-#include <Imath/half.h>
-
 #include "command.h"
 #include "demo/demo_hair.h"
 #include "demo/dress_gbuffer.h"
@@ -198,9 +196,9 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
         addShadow(view, mesh, lamp, direction, light);
         if (lamp.radius > 0) {
             light.wideShadow = lamp.name + "Shadow.V";
-            view.gbuffer.channels.push_back(
-                {light.wideShadow, io::ChannelType::Float,
-                 sample::softShadow(mesh, g, direction.toLight, lamp.radius, request.rays / 2).data});
+            view.gbuffer.channels.push_back(io::Channel::halves(
+                light.wideShadow,
+                sample::softShadow(mesh, g, direction.toLight, lamp.radius, request.rays / 2).data));
         }
         view.scene.lights.push_back(light);
         onHair.lamps.push_back({direction.toLight, {lamp.color[0], lamp.color[1], lamp.color[2]}});
@@ -212,9 +210,11 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     const sample::Image before = layHair(g, demo::drawStrands(head.strands, onHair, camera, g));
     view.scene.options.accumulate = 1;
     view.gbuffer.width = width, view.gbuffer.height = height;
+    // What has few values, or the same over large parts, takes a twentieth of the space as half floats, and
+    // of the time to read.
     const auto add = [&](PelImageSlot slot, const char* name, const char* components,
-                         std::span<const float> planes) {
-        io::addPlanes(view.scene, view.gbuffer, slot, name, components, planes);
+                         std::span<const float> planes, io::ChannelType type = io::ChannelType::Float) {
+        io::addPlanes(view.scene, view.gbuffer, slot, name, components, planes, type);
     };
     add(PEL_SLOT_POSITION, "Position", "XYZ", g.position.data);
     add(PEL_SLOT_NORMAL_GEOMETRIC, "NormalGeometric", "XYZ", g.geometricNormal.data);
@@ -225,18 +225,10 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     add(PEL_SLOT_ROUGHNESS, "Roughness", "V", g.roughness.data);
     add(PEL_SLOT_SPECULAR, "Specular", "V", g.specular.data);
     add(PEL_SLOT_AMBIENT_OCCLUSION, "AmbientOcclusion", "V",
-        sample::ambientOcclusion(mesh, g, request.rays).data);
+        sample::ambientOcclusion(mesh, g, request.rays).data, io::ChannelType::Half);
     add(PEL_SLOT_MATERIAL, "Material", "I", std::vector<float>(g.material.begin(), g.material.end()));
     if (!wetness.empty()) add(PEL_SLOT_WETNESS, "Wetness", "V", wetness);
-    add(PEL_SLOT_RADIANCE, "Before", "RGB", before.data);
-    // Of few values, or the same over large parts: as half floats they take a twentieth of the space and of
-    // the time to read.
-    for (io::Channel& channel : view.gbuffer.channels)
-        if (channel.name == "KeyShadow.V" || channel.name == "AmbientOcclusion.V" ||
-            channel.name.starts_with("Before.")) {
-            channel.type = io::ChannelType::Half;
-            for (float& v : channel.pixels) v = half(v);
-        }
+    add(PEL_SLOT_RADIANCE, "Before", "RGB", before.data, io::ChannelType::Half);
 
     copy(view.scene.camera.position, camera.eye);
     std::ranges::copy(camera.inverseViewProjection(aspect).toFloats(),

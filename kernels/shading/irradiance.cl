@@ -10,6 +10,18 @@
 #include "lib/shading/tiles.clh"
 #include "shading/scene.clh"
 
+// Three floats of each pixel's material, 0 where it is not wanted; `field`: of the first material.
+static inline Vec3w ofMaterials(__global const float* field, uintw id, maskw wanted) {
+    const uint stride = sizeof(PelShadeMaterial) / sizeof(float);
+#define PEL_RED_(k, s) (wanted s ? field[id s * stride] : 0.0f)
+#define PEL_GREEN_(k, s) (wanted s ? field[id s * stride + 1] : 0.0f)
+#define PEL_BLUE_(k, s) (wanted s ? field[id s * stride + 2] : 0.0f)
+    return vec3(PEL_LANES(PEL_RED_), PEL_LANES(PEL_GREEN_), PEL_LANES(PEL_BLUE_));
+#undef PEL_RED_
+#undef PEL_GREEN_
+#undef PEL_BLUE_
+}
+
 #if PEL_FORMAT_THICKNESS
 // What a slab of this thickness reflects, over what a half-space does: the rest leaves on the far side
 // (section 12 of the mathematics, "Slabs"). `path`: the mean free path. 1 where either is unknown.
@@ -37,13 +49,7 @@ static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMat
     }
 #if PEL_THIN
     // Of sheets the other side too, with the shadow of this one.
-#define PEL_RED_(k, s) (wanted s ? materials[id s].through[0] : 0.0f)
-#define PEL_GREEN_(k, s) (wanted s ? materials[id s].through[1] : 0.0f)
-#define PEL_BLUE_(k, s) (wanted s ? materials[id s].through[2] : 0.0f)
-    const Vec3w through = vec3(PEL_LANES(PEL_RED_), PEL_LANES(PEL_GREEN_), PEL_LANES(PEL_BLUE_));
-#undef PEL_RED_
-#undef PEL_GREEN_
-#undef PEL_BLUE_
+    const Vec3w through = ofMaterials(materials->through, id, wanted);
     if (HAS(PEL_BIT_AMBIENT)) {
         Vec3w behind = mul3(through, ambientAlong(scene, scale3(n, (floatw)(-1.0f))));
         if (PEL_FORMAT_AMBIENT_OCCLUSION)
@@ -65,14 +71,9 @@ static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMat
     }
 #if PEL_FORMAT_THICKNESS
     const floatw thickness = loadScalar(PEL_FORMAT_THICKNESS, SPAN(THICKNESS));
-#define PEL_RED_(k, s) (wanted s ? materials[id s].gain[0] : 0.0f)
-#define PEL_GREEN_(k, s) (wanted s ? materials[id s].gain[1] : 0.0f)
-#define PEL_BLUE_(k, s) (wanted s ? materials[id s].gain[2] : 0.0f)
-    e = mul3(e, vec3(keptBySlab(thickness, PEL_LANES(PEL_RED_)), keptBySlab(thickness, PEL_LANES(PEL_GREEN_)),
-                     keptBySlab(thickness, PEL_LANES(PEL_BLUE_))));
-#undef PEL_RED_
-#undef PEL_GREEN_
-#undef PEL_BLUE_
+    const Vec3w path = ofMaterials(materials->gain, id, wanted);
+    e = mul3(
+        e, vec3(keptBySlab(thickness, path.x), keptBySlab(thickness, path.y), keptBySlab(thickness, path.z)));
 #endif
     const floatw none = NAN;
     return select3(vec3(none, none, none), e, valid);

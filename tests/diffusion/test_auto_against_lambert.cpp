@@ -16,12 +16,13 @@ constexpr size_t pointsOfScene = 1000;
 constexpr uint32_t walksOfPoint = 24;  // in each channel and half
 
 struct Contender {
-    std::string name;
+    const char* name;
     ShadeRequest how;
+    bool knowing = false;  // PEL_SLOT_THICKNESS is given
 };
-const std::string knowing = "auto, thickness";  // PEL_SLOT_THICKNESS is given
-const Contender contenders[] = {
-    {"auto, traced", {.traced = true, .gain = 1}}, {"auto", {.gain = 1}}, {knowing, {.gain = 1}}};
+const Contender contenders[] = {{"auto, traced", {.traced = true, .gain = 1}},
+                                {"auto", {.gain = 1}},
+                                {"auto, thickness", {.gain = 1}, true}};
 
 // Where both are further from light than Lambert: root of the difference of the squared errors, 1e-4 of
 // white: red, green, blue; 0: it is not.
@@ -38,9 +39,10 @@ constexpr Known knownWorse[] = {
     {"leaf, side", "all", {161, 85, 0}},
 };
 
-double knownLimit(const std::string& method, const std::string& where, const std::string& part, int channel) {
+double knownLimit(const Contender& contender, const std::string& where, const std::string& part,
+                  int channel) {
     for (const Known& k : knownWorse)
-        if (method != knowing && where == k.where && part == k.part) return 1e-4 * 1.05 * k.most[channel];
+        if (!contender.knowing && where == k.where && part == k.part) return 1e-4 * 1.05 * k.most[channel];
     return tolerance::neverWorse;
 }
 
@@ -55,7 +57,7 @@ struct Compared {
     std::vector<float> lambert, first, second;  // RGB
 };
 
-void compare(const Compared& c, const std::vector<float>& picture, const std::string& method,
+void compare(const Compared& c, const std::vector<float>& picture, const Contender& contender,
              const std::string& where) {
     for (const auto& [name, part] : parts) {
         size_t count = 0;
@@ -74,12 +76,12 @@ void compare(const Compared& c, const std::vector<float>& picture, const std::st
         if (count < 20 || testsAreSmall()) continue;
         const auto rms = [&](double sum) { return 1e4 * std::sqrt(std::max(sum, 0.0) / double(count)); };
         std::printf("%-24s %-13s %-10s %6zu   1e-4: %5.0f %5.0f %5.0f   Lambert %5.0f %5.0f %5.0f\n",
-                    where.c_str(), method.c_str(), name, count, rms(own[0]), rms(own[1]), rms(own[2]),
+                    where.c_str(), contender.name, name, count, rms(own[0]), rms(own[1]), rms(own[2]),
                     rms(plain[0]), rms(plain[1]), rms(plain[2]));
         for (int k = 0; k < 3; ++k) {
-            const double limit = knownLimit(method, where, name, k), noise = std::sqrt(square[k]);
+            const double limit = knownLimit(contender, where, name, k), noise = std::sqrt(square[k]);
             EXPECT_LE(worse[k], double(count) * limit * limit + tolerance::walkErrors * noise)
-                << method << ", " << where << ", " << name << ", channel " << k << ": worse by "
+                << contender.name << ", " << where << ", " << name << ", channel " << k << ": worse by "
                 << rms(worse[k]) << ", noise " << rms(noise);
         }
     }
@@ -116,8 +118,8 @@ void compareBody(const Body& body, const std::string& name, const SceneRequest& 
     }
     for (const Contender& contender : contenders) {
         ShadeRequest how = contender.how;
-        if (contender.name == knowing) how.thickness = thickness;
-        compare(c, radiance(shade(device, s, skin, request.profileScale, how)), contender.name, name);
+        if (contender.knowing) how.thickness = thickness;
+        compare(c, radiance(shade(device, s, skin, request.profileScale, how)), contender, name);
     }
 }
 

@@ -1,5 +1,7 @@
 #include "io/image/image_file.h"
 
+#include <Imath/half.h>
+
 #include <algorithm>
 
 #include "io/atomic_file.h"
@@ -15,6 +17,11 @@ std::string listOf(const std::vector<std::string>& names) {
 }
 
 }  // namespace
+
+Channel Channel::halves(std::string name, std::vector<float> pixels) {
+    for (float& v : pixels) v = half(v);
+    return {std::move(name), ChannelType::Half, std::move(pixels)};
+}
 
 const Channel& Image::channel(const std::string& name) const {
     std::vector<std::string> all, fitting;

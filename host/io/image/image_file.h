@@ -15,6 +15,8 @@ struct Channel {
     std::string name;  // full: "ViewLayer.Normal.X", with the part's name before it in a multi-part file
     ChannelType type = ChannelType::Float;
     std::vector<float> pixels;  // width * height, row 0 on top
+
+    static Channel halves(std::string name, std::vector<float> pixels);  // the nearest half floats
 };
 
 using Attribute = std::variant<int, float, std::string, std::vector<float>>;

@@ -104,7 +104,8 @@ SceneFile parseScene(const std::string& path, const std::string& text);
 // Appends planes, one for each component, to the G-buffer as channels "NAME.X" and so on, and names them in
 // the scene for `slot`.
 void addPlanes(SceneFile& scene, Image& gbuffer, PelImageSlot slot, const std::string& name,
-               const std::string& components, std::span<const float> planes);
+               const std::string& components, std::span<const float> planes,
+               ChannelType type = ChannelType::Float);
 
 // The text of a scene file.
 std::string sceneText(const SceneFile& scene);

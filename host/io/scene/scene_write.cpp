@@ -6,14 +6,16 @@
 namespace pellucid::io {
 
 void addPlanes(SceneFile& scene, Image& gbuffer, PelImageSlot slot, const std::string& name,
-               const std::string& components, std::span<const float> planes) {
+               const std::string& components, std::span<const float> planes, ChannelType type) {
     scene.channels[slot].clear();
     const size_t pixels = gbuffer.pixelCount();
     for (size_t c = 0; c < components.size(); ++c) {
         scene.channels[slot].push_back(name + "." + components[c]);
         const auto from = planes.begin() + ptrdiff_t(c * pixels);
-        gbuffer.channels.push_back(
-            {scene.channels[slot].back(), ChannelType::Float, {from, from + ptrdiff_t(pixels)}});
+        Channel channel{scene.channels[slot].back(), type, {from, from + ptrdiff_t(pixels)}};
+        if (type == ChannelType::Half)
+            channel = Channel::halves(std::move(channel.name), std::move(channel.pixels));
+        gbuffer.channels.push_back(std::move(channel));
     }
 }
 
