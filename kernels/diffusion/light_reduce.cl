@@ -1,14 +1,17 @@
 // One level of a light's pyramid (shared/light_space.h) from the next finer one: blocks of 2 x 2.
 //
 // The flux of a block is stored in two clusters. The first begins at the brightest child. Children far from
-// it, or of another id, go to the second, which begins at the farthest of them. Input and output: the
-// pyramid; level 1 also clears the marks of light_seen. One work-item: PEL_WIDTH blocks of a row of a map's
-// level; one lane: a work-group is a block of the last of `count` levels. Variants: PEL_HIDDEN.
+// it, or of another id, go to the second, which begins at the farthest of them. The place of a cluster is the
+// mean of the children near that with which it begins: a mean over several surfaces would lie in the air
+// between them. Input and output: the pyramid; level 1 also clears the marks of light_seen. One work-item:
+// PEL_WIDTH blocks of a row of a map's level; one lane: a work-group is a block of the last of `count`
+// levels. Variants: PEL_HIDDEN.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/light_space.clh"
 #include "lib/diffusion/pyramid.clh"
 
-#define APART 1.5f  // widths of a block between two clusters
+#define APART 1.5f   // widths of a block between two clusters
+#define SPREAD 8.0f  // and from the first child of a cluster to one that its place is a mean of
 
 typedef struct Cluster {
     floatw flux, extent;
@@ -64,12 +67,12 @@ static inline Cluster chooseCluster(Cluster a, Cluster b, maskw second) {
     return s;
 }
 
-// Sums are relative to the seed, so that nothing cancels.
-static inline void addToCluster(Cluster* sum, Cluster seed, Cluster s, maskw on) {
+// Sums are relative to the seed, so that nothing cancels. What is not near counts at the seed's place.
+static inline void addToCluster(Cluster* sum, Cluster seed, Cluster s, maskw on, maskw near) {
     const floatw flux = selectw((floatw)(0.0f), s.flux, on);
     sum->flux += flux;
     sum->extent += selectw((floatw)(0.0f), s.extent, on);
-    sum->p = add3(sum->p, scale3(sub3(s.p, seed.p), flux));
+    sum->p = add3(sum->p, scale3(sub3(s.p, seed.p), selectw((floatw)(0.0f), flux, near)));
 }
 
 static inline void storeCluster(Cluster sum, Cluster seed, size_t at, uint stride, __global float* pyramid) {
@@ -157,8 +160,9 @@ static inline void reduceLight(__global const PelLightMap* map, uint to, uint x,
         second = chooseCluster(second, c, distance2 > farthest);
         farthest = fmax(farthest, distance2);
     }
-    const floatw width = APART * map->texel * (float)(1u << to) * matrixRow(map->toMap, 3, first.p);
-    const maskw two = farthest > width * width;
+    const floatw width = map->texel * (float)(1u << to) * matrixRow(map->toMap, 3, first.p),
+                 width2 = width * width, most = SPREAD * SPREAD * width2;
+    const maskw two = farthest > APART * APART * width2;
     Cluster a, b;
     a.flux = a.extent = b.flux = b.extent = 0.0f;
     a.p = b.p = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
@@ -167,8 +171,8 @@ static inline void reduceLight(__global const PelLightMap* map, uint to, uint x,
         const maskw there = c.flux > 0.0f;
         const floatw toFirst = apart2(c, first), toSecond = apart2(c, second);
         const maskw beyond = two & (toSecond < toFirst);
-        addToCluster(&a, first, c, there & notw(beyond) & sameId(c, first));
-        addToCluster(&b, second, c, there & beyond & sameId(c, second));
+        addToCluster(&a, first, c, there & notw(beyond) & sameId(c, first), toFirst < most);
+        addToCluster(&b, second, c, there & beyond & sameId(c, second), toSecond < most);
     }
     storeCluster(a, first, at, coarse->stride, pyramid);
     storeCluster(b, second, at + lightPlanes(1) * coarse->stride, coarse->stride, pyramid);

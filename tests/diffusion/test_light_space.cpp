@@ -179,7 +179,7 @@ TEST(LightSpace, TexelsBeyondReachDoNotCount) {
     constexpr uint32_t side = 48, middle = side / 2, row = middle + 1;  // of three pixels
     const LitBall ball = makeBall(Form::parallel, normalized(Vec3{0.7, 0.2, 0.5}), sized(768u, 192u));
     // The second: of the radius, by pixel.
-    for (const auto& [sigma, factor] : {std::pair{0.05f, 1.0f}, {0.4f, 1.0f}, {0.1f, 4.0f}}) {
+    for (const auto& [sigma, factor] : {std::pair{0.05f, 1.0f}, {0.12f, 1.0f}, {0.4f, 1.0f}, {0.1f, 4.0f}}) {
         const Profile profile = Profile::gaussians({{sigma * sigma, {1, 0.8f, 0.6f}}});
         std::vector<float> patches[2];  // alone, and beside others
         for (const bool others : {false, true}) {
@@ -440,6 +440,27 @@ TEST(LightSpace, AllTexelsUpToABorderCount) {
     EXPECT_GT(whole, 0.1f);
     for (const auto& [u, v] : {std::pair{0.0, 0.5}, {1.0, 0.5}, {0.5, 0.0}, {0.5, 1.0}})
         EXPECT_NEAR(at(u, v), whole / 2, tolerance::lightPlaces * whole) << u << ' ' << v;
+}
+
+// Texels that show three surfaces in turns, 2 mm before the sheet, and 2 and 6 mm behind it: nothing is lit in
+// the air between, where the mean of two of them lies.
+TEST(LightSpace, NothingIsLitBetweenSurfaces) {
+    constexpr double variance = 1;  // mm^2
+    LitBall lamp = lampFromBehind(24);
+    setRow(lamp.light.worldToShadow, 2, {0, 0, 0.05}, 0.5);
+    lamp.maps = {texelsOf(lamp.width, [&](double s, double t, int) {
+        const int column = int((s + 1) / 2 * lamp.width), row = int((t + 1) / 2 * lamp.width);
+        return 0.5 + 0.05 * (2 - 4 * ((column + 2 * row) % 3));
+    })};
+    const double exact = 2.0 / 3 * std::exp(-4 / (2 * variance));
+    for (const PelScattering method : {byLight, byAuto}) {
+        constexpr uint32_t side = 17;
+        Frame f = sheet(side, method);
+        f.profile = Profile::gaussians({{float(variance), {1, 1, 1}}});
+        f.lamps = {lamp};
+        const float light = f.shade().light[3 * (side / 2 * side + side / 2)];
+        EXPECT_NEAR(light, exact, 0.8 * exact) << "method " << int(method);
+    }
 }
 
 // A camera that sees all that is lit needs no map.
