@@ -95,9 +95,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
         const Slots at = pointsAt(&list, row, points);
         addPoint(&fit, locate(at, spread & (at.each != list.self.each), &chart, positions));
     }
-    // A copy, so that the sums of the loop stay in registers.
-    Fit solved = fit;
-    factorize(&solved, &chart);
+    Equations solved;
+    factorize(&fit, &chart, &solved);
     substitute(&solved);
     const maskw low = spread & solved.low;
     if (counts && anyw(low)) atomic_add(&counts->lowDegreeFits, countLanes(low, first, slots));

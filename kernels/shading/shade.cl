@@ -27,10 +27,12 @@ static inline Vec3w albedoAfter(Vec3w albedo, float power) {
                 pow(max0w(albedo.z), (floatw)(power)));
 }
 
-// Pixels of one material, `active`.
-static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMaterial* material, Pixels* p,
-                                  uint x, uint y, maskw active, Parts* parts, Vec3w* specularPart,
-                                  Counts* counts) {
+// Pixels of one material, `active`. Always inlined, as shadePixels.
+static inline __attribute__((always_inline)) Vec3w shadeMaterial(const Scene* scene,
+                                                                 __global const PelShadeMaterial* material,
+                                                                 Pixels* p, uint x, uint y, maskw active,
+                                                                 Parts* parts, Vec3w* specularPart,
+                                                                 Counts* counts) {
     __global const PelShadeFrame* frame = scene->frame;
     // Whether its diffuse light is the irradiance image: that of the lights and of the ambient light, already
     // scattered.
