@@ -255,9 +255,10 @@ class Renderer:
                 program["rest"].write(_flipped(rest))
             self._use(program, ("shaded", "depths", "details", "rest_depths"),
                       own + (self._details if rest is not None else []))
-            # First what faces the eye, which hides the rest; y is turned round.
+            # First what faces the eye, which hides the rest; y is turned round. A coarse mesh has a few
+            # triangles that are turned over; their holes are closed where the picture serves longer.
             self.context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-            for self.context.cull_face in ("front", "back") if inside else ("front",):
+            for self.context.cull_face in ("front", "back") if inside or again else ("front",):
                 self._levels[level][2 if rest is None else 3].render()
         made = np.empty((size[1], size[0], 3), np.uint8)
         frame.read_into(made, components=3, alignment=1)
