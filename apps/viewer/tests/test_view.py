@@ -41,7 +41,7 @@ def test_positions_lie_on_the_rays_of_their_pixels(session):
     assert g.position[g.material == 0].max(initial=0) == 0
 
 
-def test_lights_are_the_lamps_that_are_on_and_their_maps_are_half_as_large_while_something_moves(session):
+def test_lights_are_the_lamps_that_are_on_and_their_maps_are_a_third_as_large_while_something_moves(session):
     reset(session)
     look = session.look
     look.lamps[0].on, look.lamps[1].shadow, look.lamps[2].shadow = False, False, True
@@ -49,7 +49,7 @@ def test_lights_are_the_lamps_that_are_on_and_their_maps_are_half_as_large_while
         lamp.on, lamp.intensity, lamp.color = True, 0.5, (1.0, 0.8, 0.6)
     for small in (False, True):
         (plain, none), (light, map) = session.lights(look, small)
-        assert none is None and map.depth.shape == (look.shadow_size // (1 + small),) * 2
+        assert none is None and map.depth.shape == (look.shadow_size // (1 + 2 * small),) * 2
         assert light.shadow_filter_texels == 48
         for found in plain, light:
             assert found.color == pytest.approx((0.5, 0.4, 0.3))
@@ -71,6 +71,16 @@ def test_the_shadow_map_agrees_with_the_positions(session):
     # Nothing stands before the first surface but by a texel's slope, and where a texel looks past an edge;
     # most of a lit face is that surface.
     assert np.percentile(behind, 5) > -1.0 and np.percentile(np.abs(behind), 30) < 0.3  # mm
+
+
+def test_a_sheet_throws_a_shadow_by_either_side(session):
+    assert session.renderer._closed  # a head's back sides are left out
+    corners = np.array([[x, y, 0] for x in (-50, 50) for y in (-50, 50)], np.float32)
+    sheet = Session(session.device)
+    sheet.show(files.Mesh(corners, np.tile(np.float32([0, 0, 1]), (4, 1)),
+                          np.array([[0, 2, 1], [2, 3, 1]], np.uint32), low=(-50, -50, 0), high=(50, 50, 0)))
+    for side in 1, -1:
+        assert (sheet.renderer.shadow_map((0, 0, side), 32, level=1)[0] < 1).mean() > 0.3
 
 
 def test_every_setting_changes_the_picture(session):
@@ -191,6 +201,17 @@ def test_moving_pictures_look_like_those_at_rest(session):
         lit = whole.frame(*size, 3).pixels.astype(int)
         assert calls == expected
     assert np.abs(lit - there).mean() > 2 and np.abs(lit - whole.smooth(*size)).mean() < 0.8
+    # The third picture of a view is made without the mesh, and is the same, with details and without.
+    whole.prepare(*size)
+    for mode in "final", "difference":  # the background is black, and is not
+        whole.look.mode = mode
+        whole.frame(*size, 3), whole.frame(*size, 3)
+        reused = whole.frame(*size, 3).pixels.astype(int)
+        render, whole.renderer._reuse = whole.renderer._reuse, None
+        whole.renderer._view = ()
+        off = np.abs(whole.frame(*size, 3).pixels - reused)
+        whole.renderer._reuse = render
+        assert (off > 1).mean() < 1e-3
     whole.look.mode = "difference"
     assert (whole.frame(*size, 3).pixels[0, 0] == whole.frame(*size).pixels[0, 0]).all()  # not black
 
@@ -198,6 +219,7 @@ def test_moving_pictures_look_like_those_at_rest(session):
         whole.orbit.azimuth += 5
         return drawn(*a, **k)
 
+    whole.renderer._view = ()
     expected = whole.frame(*size, 3).pixels
     whole._shaded, whole.renderer.gbuffer = None, moved
     whole._gbuffers.clear()

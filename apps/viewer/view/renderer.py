@@ -57,6 +57,17 @@ def _flipped(view_projection: ArrayLike, right: float = 0.0, down: float = 0.0) 
     return (turned @ np.asarray(view_projection, np.float64)).T.astype("f4").tobytes()
 
 
+def _box(seen: NDArray[np.bool_], size: tuple[int, int]) -> tuple[int, ...]:
+    """Left, top, width and height of what is `seen` in a small picture, in one of `size`; with a margin."""
+    box = [0, 0, 0, 0]
+    for i, n in enumerate(size):
+        places, margin = np.flatnonzero(seen.any(i)) * n // seen.shape[1 - i], n // 20
+        if len(places):
+            box[i] = max(places[0].item() - margin, 0)
+            box[2 + i] = min(places[-1].item() + margin, n) - box[i]
+    return tuple(box)
+
+
 def _release(parts: list[Any]) -> None:
     for part in parts:
         part.release()
@@ -76,7 +87,11 @@ class Renderer:
         detailed = shaders.ENLARGE_FRAGMENT.replace("core\n", "core\n#define DETAILED\n")
         self._enlarge_programs = [self.context.program(shaders.ENLARGE_VERTEX, fragment)
                                   for fragment in (shaders.ENLARGE_FRAGMENT, detailed)]
-        self._screen: list[Any] = []  # of the last enlarged picture: the framebuffer, and its attachments
+        self._reuse_program = self.context.program(shaders.WHOLE_VERTEX, shaders.REUSE_FRAGMENT)
+        self._reuse = self.context.vertex_array(self._reuse_program, [])
+        # of the last enlarged picture: two framebuffers, the second with weights too, and their attachments
+        self._screen: list[Any] = []
+        self._view: tuple[Any, ...] = ()  # what its weights depend on, and whether they were kept
         self._details: list[Any] = []  # what the picture at rest shows beyond a small one, and its depth
         # by size: the framebuffer and its attachments, and the memory that they are read into
         self._targets: dict[tuple[int, int], tuple[list[Any], list[NDArray[np.float32]]]] = {}
@@ -118,9 +133,14 @@ class Renderer:
         low, high = used.min(0).astype(float), used.max(0).astype(float)
         self.centre, self.radius = (low + high) / 2, max(float(np.linalg.norm(high - low)) / 2, 1e-6)
         self._mm = millimetres_per_unit
+        # Whether no light reaches a back side, seen from six sides: half of the triangles need not be drawn.
+        pairs = ([self._depth_from(side, 128, (0, 1, 0), 1, cull)[0] for cull in (False, True)]
+                 for side in np.concatenate([np.eye(3), -np.eye(3)]))
+        self._closed = all((one != two).mean() < 1e-3 for one, two in pairs)
 
     def _set_pictures(self, paint: Paint) -> None:
         _release(self._pictures)
+        self._view = ()
         size = tuple(max((p.shape[i] for p in paint.albedo), default=1) for i in (1, 0))  # width, height
         layers = [np.asarray(Image.fromarray(p).resize(size)) for p in paint.albedo] or [
             np.full((1, 1, 3), 255, np.uint8)]
@@ -200,32 +220,56 @@ class Renderer:
         """
         self.context.__enter__()
         farthest = away.argmax()  # background, if there is any
-        clear = pixels.reshape(-1, 3)[farthest] / 255 if away.flat[farthest] == FAR else (0, 0, 0)
+        clear = (*(pixels.reshape(-1, 3)[farthest] / 255 if away.flat[farthest] == FAR else (0, 0, 0)), 0.0)
         if not self._screen or self._screen[0].size != size:
             _release(self._screen)
             parts = [self.context.renderbuffer(size, 3), self.context.depth_renderbuffer(size)]
-            self._screen = [self.context.framebuffer(*parts), *parts]
-        frame, program = self._screen[0], self._enlarge_programs[rest is not None]
+            kept = [self.context.texture(size, 4, dtype="f2") for _ in range(2)]
+            both = self.context.framebuffer([parts[0], *kept], parts[1])
+            self._screen = [self.context.framebuffer(*parts), both, *kept, *parts]
+            self._view = ()
+        view = (np.asarray(view_projection).tobytes(), None if rest is None else np.asarray(rest).tobytes(),
+                level, inside)
+        # The second picture of a view keeps its weights for those after it. A new G-buffer has a new `away`.
+        again = view[0] == small.tobytes() and self._view[:4] == view and self._view[4] is away
+        reused = again and self._view[5]
+        self._view = (*view, away, again)
+        frame = self._screen[again and not reused]
         frame.use()
-        frame.clear(*clear, 1.0)
+        frame.clear(*clear)
         own = [self._texture(pixels), self._texture(away)]
-        program["clip"].write(_flipped(view_projection))
-        program["small"].write(_flipped(small))
-        program["angle"].value = _pixel(small, len(away))
-        if rest is not None:
-            program["rest"].write(_flipped(rest))
-        for unit_, (name, texture) in enumerate(zip(("shaded", "depths", "details", "rest_depths"),
-                                                    own + (self._details if rest is not None else []))):
-            texture.use(unit_)
-            program[name].value = unit_
-        # First what faces the eye, which hides the rest; y is turned round.
-        self.context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-        for self.context.cull_face in ("front", "back") if inside else ("front",):
-            self._levels[level][2 if rest is None else 3].render()
+        program = self._reuse_program if reused else self._enlarge_programs[rest is not None]
+        program["scale"].value = tuple(np.divide(away.shape[::-1], size)) if again else (0, 0)
+        if reused:
+            self._use(program, ("shaded", "weights", "more"), own[:1] + self._screen[2:4])
+            self.context.enable_only(moderngl.NOTHING)
+            frame.scissor = _box(away < FAR, size)
+            frame.use()
+            self._reuse.render(vertices=3)
+            frame.scissor = None
+        else:
+            program["clip"].write(_flipped(view_projection))
+            program["small"].write(_flipped(small))
+            program["angle"].value = _pixel(small, len(away))
+            if rest is not None:
+                program["rest"].write(_flipped(rest))
+            self._use(program, ("shaded", "depths", "details", "rest_depths"),
+                      own + (self._details if rest is not None else []))
+            # First what faces the eye, which hides the rest; y is turned round. A coarse mesh has a few
+            # triangles that are turned over; their holes are closed where the picture serves longer.
+            self.context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+            for self.context.cull_face in ("front", "back") if inside or again else ("front",):
+                self._levels[level][2 if rest is None else 3].render()
         made = np.empty((size[1], size[0], 3), np.uint8)
         frame.read_into(made, components=3, alignment=1)
         _release(own)
         return made
+
+    @staticmethod
+    def _use(program: Any, names: tuple[str, ...], textures: list[Any]) -> None:
+        for unit_, (name, texture) in enumerate(zip(names, textures)):
+            texture.use(unit_)
+            program[name].value = unit_
 
     def keep_details(self, pixels: NDArray[np.uint8], g: GBuffer, view_projection: NDArray[np.float64],
                      rough: NDArray[np.uint8], eyes: list[int]) -> None:
@@ -239,6 +283,7 @@ class Renderer:
         steep = np.maximum(np.abs(across), np.abs(down)) > 12 * _pixel(view_projection, len(z)) * middle
         kept[2:-2, 2:-2] = np.where(steep, 0, middle)
         _release(self._details)
+        self._view = ()
         more = np.concatenate([more, 255 * whole], 2).astype(np.uint8)
         self._details = [self._texture(more), self._texture(kept)]
         self._details[0].filter = moderngl.LINEAR, moderngl.LINEAR
@@ -253,9 +298,13 @@ class Renderer:
     def shadow_map(self, to_light: ArrayLike, size: int, up: ArrayLike = (0.0, 1.0, 0.0),
                    level: int = 0) -> tuple[NDArray[np.float32], Any]:
         """Depth from a distant light, (size, size), of the whole mesh, and the Light that describes it."""
-        assert self.mesh is not None
+        depth, matrix = self._depth_from(unit(to_light), size, up, level, level > 0 and self._closed)
+        return depth, light_from_view_projection(matrix, first_row="bottom")
+
+    def _depth_from(self, direction: NDArray[np.float64], size: int, up: ArrayLike, level: int,
+                    cull: bool) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
         self.context.__enter__()
-        direction, r = unit(to_light), 1.02 * self.radius
+        r = 1.02 * self.radius
         matrix = parallel(r, 0.0, 2 * r) @ look_at(self.centre + direction * r, self.centre, up)
         if size not in self._shadow_targets:
             texture = self.context.texture((size, size), 1, dtype="f4")
@@ -264,9 +313,10 @@ class Renderer:
         frame = self._shadow_targets[size]
         frame.use()
         frame.clear(1.0, 1.0, 1.0, 1.0)
-        self.context.enable_only(moderngl.DEPTH_TEST)
+        self.context.enable_only(moderngl.DEPTH_TEST | (moderngl.CULL_FACE if cull else moderngl.NOTHING))
+        self.context.cull_face = "back"
         self._shadow_program["clip"].write(matrix.T.astype("f4").tobytes())
         self._levels[level][1].render()
         depth = np.empty((size, size), np.float32)
         frame.read_into(depth, components=1, dtype="f4")
-        return depth, light_from_view_projection(matrix, first_row="bottom")
+        return depth, matrix

@@ -160,6 +160,7 @@ class Session:
         self._rest: Any = None  # the last picture at rest, and its projection
         self._detailed: Any = None  # look and projection of the picture whose details the renderer keeps
         self._shaded: Optional[Shaded] = None
+        self._away: Any = None  # the G-buffer of moving pictures, its depth, and whether back sides are seen
         self._scattered: Any = None  # the state that `scattering_at` was asked for, and its tiles
 
     def load(self, path: Any, subdivide: Optional[int] = None, up: str = "auto") -> files.Mesh:
@@ -354,7 +355,7 @@ class Session:
         for lamp in look.lamps:
             if not lamp.on or lamp.intensity <= 0:
                 continue
-            map = self.shadow_map(lamp, look.shadow_size // (2 if small else 1),
+            map = self.shadow_map(lamp, look.shadow_size // (3 if small else 1),
                                   small) if lamp.shadow else None
             light = map.light.copy() if map else Light(to_light=self.to_light(lamp))
             light.color = np.multiply(lamp.color, lamp.intensity)
@@ -405,7 +406,8 @@ class Session:
 
         small : int
             While something moves: one of so many pixels of a row or column is shaded, the others are made
-            from it and from the last picture at rest; meshes are coarser, and shadow maps have half the size.
+            from it and from the last picture at rest; meshes are coarser, and shadow maps have a third of the
+            size.
         sample : int
             0 for a picture by itself. After it 1, 2, .. `samples` - 1: the mean with one more that is
             shifted by a part of a pixel, so that edges become smooth.
@@ -461,8 +463,11 @@ class Session:
                 for name, look in zip(("main", "other"), looks)]
         seconds, self._shaded = time.perf_counter() - started, None
         if small > 1:
-            away = np.einsum("ijk,ijk->ij", g.position - eye, g.normal_geometric) > 0.2 * self.orbit.distance
-            self._shaded = Shaded(key, made, depth(g, matrix), matrix, bool(away.mean() > 0.001))
+            if self._away is None or self._away[0] is not g:
+                facing = np.einsum("ijk,ijk->ij", g.position - eye, g.normal_geometric)
+                inside = (facing > 0.2 * self.orbit.distance).mean() > 0.001
+                self._away = (g, depth(g, matrix), bool(inside))
+            self._shaded = Shaded(key, made, self._away[1], matrix, self._away[2])
         return [pixels for pixels, _ in made], made[0][1], seconds
 
     def prepare(self, width: int, height: int) -> None:

@@ -114,17 +114,32 @@ void main() {
 # Joint bilateral upsampling [Kopf et al. 2007]: of the four nearest shaded pixels those count that lie on the
 # plane of this one. What the picture at rest shows beyond such a picture is added where it saw this place. Of
 # eyes all is taken from it: what they refract moves beneath their surface.
+_MIXED = """
+// The sum of the small pixel `low`, the one to its right, the one below, and the one below that.
+vec3 mixed(sampler2D shaded, vec2 low, vec4 w) {
+    ivec2 last = textureSize(shaded, 0) - 1;
+    ivec2 a = clamp(ivec2(low), ivec2(0), last), d = clamp(ivec2(low) + 1, ivec2(0), last);
+    return w.x * texelFetch(shaded, a, 0).rgb + w.y * texelFetch(shaded, ivec2(d.x, a.y), 0).rgb +
+           w.z * texelFetch(shaded, ivec2(a.x, d.y), 0).rgb + w.w * texelFetch(shaded, d, 0).rgb;
+}
+"""
+
 ENLARGE_FRAGMENT = """
 #version 330 core
 uniform sampler2D shaded, depths;       // small; depth from the eye
 uniform sampler2D details, rest_depths; // 128 + half of what is added, in bytes
 uniform float angle;                    // height of a small pixel at depth 1
+uniform vec2 scale;                     // small pixels per pixel of the same view; 0: of another view
 in vec4 place, before;
 layout(location = 0) out vec4 color;
+layout(location = 1) out vec4 weights;  // these two for REUSE_FRAGMENT
+layout(location = 2) out vec4 more;     // what is added; 1 + the part of the light that is left out
+""" + _MIXED + """
 void main() {
     float depth = place.w, size = depth * angle;
     ivec2 last = textureSize(depths, 0) - 1;
-    vec2 at = (0.5 + 0.5 * place.xy / depth) * vec2(last + 1) - 0.5, low = floor(at), f = at - low;
+    vec2 at = scale.x > 0.0 ? gl_FragCoord.xy * scale : (0.5 + 0.5 * place.xy / depth) * vec2(last + 1);
+    vec2 low = floor(at - 0.5), f = at - 0.5 - low;
     ivec2 a = clamp(ivec2(low), ivec2(0), last), d = clamp(ivec2(low) + 1, ivec2(0), last);
     ivec2 b = ivec2(d.x, a.y), c = ivec2(a.x, d.y);
     vec4 there = vec4(texelFetch(depths, a, 0).x, texelFetch(depths, b, 0).x, texelFetch(depths, c, 0).x,
@@ -133,16 +148,36 @@ void main() {
     vec4 x = vec4(-f.x, 1.0 - f.x, -f.x, 1.0 - f.x), y = vec4(-f.yy, 1.0 - f.yy);
     vec4 off = (there - depth - x * slope.x - y * slope.y) / (size + 0.5 * (abs(slope.x) + abs(slope.y)));
     off *= off;
-    vec4 w = ((1.0 - abs(x)) * (1.0 - abs(y)) + 0.005) / (0.02 + off * off);
-    vec3 light = w.x * texelFetch(shaded, a, 0).rgb + w.y * texelFetch(shaded, b, 0).rgb +
-                 w.z * texelFetch(shaded, c, 0).rgb + w.w * texelFetch(shaded, d, 0).rgb;
-    light /= w.x + w.y + w.z + w.w;
+    weights = ((1.0 - abs(x)) * (1.0 - abs(y)) + 0.005) / (0.02 + off * off);
+    weights /= weights.x + weights.y + weights.z + weights.w;
+    more = vec4(0.0, 0.0, 0.0, 1.0);
 #ifdef DETAILED
     vec2 then = 0.5 + 0.5 * before.xy / before.w;
     float hidden = abs(texture(rest_depths, then).x - before.w) / size;
     vec4 found = texture(details, then);
-    light += clamp(2.0 - hidden, 0.0, 1.0) * (2.0 * found.rgb - 256.0 / 255.0 - found.a * light);
+    more += clamp(2.0 - hidden, 0.0, 1.0) * vec4(2.0 * found.rgb - 256.0 / 255.0, found.a);
 #endif
-    color = vec4(light, 1.0);
+    color = vec4(mixed(shaded, low, weights) * (2.0 - more.a) + more.rgb, 1.0);
+}
+"""
+
+WHOLE_VERTEX = """
+#version 330 core
+void main() { gl_Position = vec4(4.0 * (gl_VertexID & 1) - 1.0, 2.0 * (gl_VertexID & 2) - 1.0, 0.0, 1.0); }
+"""
+
+# The same from what ENLARGE_FRAGMENT wrote beside its picture of this view: other light, no mesh.
+REUSE_FRAGMENT = """
+#version 330 core
+uniform sampler2D shaded, weights, more;
+uniform vec2 scale;
+layout(location = 0) out vec4 color;
+""" + _MIXED + """
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    vec4 m = texelFetch(more, at, 0);
+    if (m.a < 1.0) discard;  // background
+    vec3 light = mixed(shaded, floor(gl_FragCoord.xy * scale - 0.5), texelFetch(weights, at, 0));
+    color = vec4(light * (2.0 - m.a) + m.rgb, 1.0);
 }
 """

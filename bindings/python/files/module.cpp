@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <new>
 
-#include "demo/demo_head.h"
+#include "demo/demo_hair.h"
 #include "files.h"
 #include "io/image/image_format.h"
 #include "io/image/tone_map.h"
@@ -48,6 +48,21 @@ py::dict loadMesh(const std::string& path, int levels) {
     }
     return toDict(mesh);
 }
+
+#ifdef PELLUCID_SAMPLE
+// The demo's hair: strands, their points from root to tip, and x, y, z of each with the root's radius. mm.
+py::array headStrands(const std::string& path, int levels) {
+    const demo::DemoHead head = demo::loadDemoHead(path, levels);
+    const io::MeshData& mesh = head.mesh;
+    const sample::Scene skin({mesh.positions, mesh.normals, {}, {}, mesh.triangles, head.materials});
+    const std::vector<demo::Strand> strands = demo::strandsOf(skin, head);
+    std::vector<float> values;
+    for (const demo::Strand& strand : strands)
+        for (const sample::Vec3 p : strand.points)
+            values.insert(values.end(), {float(p.x), float(p.y), float(p.z), float(strand.radius)});
+    return rows(values, 4).reshape(std::vector<py::ssize_t>{std::ssize(strands), -1, 4});
+}
+#endif
 
 // One of the project's heads, or None for a mesh without its parts. A vertex's albedo has look and zones.
 py::object loadHead(const std::string& path, int levels) {
@@ -163,6 +178,9 @@ PYBIND11_MODULE(_files, module) {
     py::register_exception<io::FileError>(module, "FileError", PyExc_OSError);
     module.def("load_mesh", &loadMesh);
     module.def("load_head", &loadHead);
+#ifdef PELLUCID_SAMPLE
+    module.def("head_strands", &headStrands);
+#endif
     module.def("read_image", &readImage);
     module.def("write_exr", &writeExr);
     module.def("write_bytes", &writeBytes);

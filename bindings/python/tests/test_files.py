@@ -20,6 +20,14 @@ def test_a_head_comes_with_the_package():
     assert len(finer.triangles) > 3 * len(mesh.triangles)
 
 
+@pytest.mark.skipif(not hasattr(files._files, "head_strands"), reason="this build has no Embree")
+def test_a_head_has_strands():
+    strands = files._files.head_strands(str(files.standard_head()), 1)
+    assert len(strands) > 10000 and strands.shape[2] == 4 and (strands[..., 3] > 0).all()
+    size = np.linalg.norm(strands[:, -1, :3] - strands[:, 0, :3], axis=1)  # mm
+    assert 1 < np.percentile(size, 1) and size.max() < 25
+
+
 def test_a_mesh_of_ones_own(tmp_path):
     path = tmp_path / "tetrahedron.off"
     path.write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
