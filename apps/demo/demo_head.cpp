@@ -41,24 +41,21 @@ double lipLineOf(const Bounds& upperTeeth) {
     return upperTeeth.low.y - 1.5;
 }
 
-// The middle of what faces down and lies highest near `p`: a nostril's roof.
-Vec3 roofOf(const io::MeshData& mesh, Vec3 p, double eyeDistance) {
-    std::vector<Vec3> downwards;
+// A dark zone in the nostril near `p`, which is shallow in the mesh and goes on up into the dark after this.
+sample::SkinZone deepNostril(io::MeshData& mesh, Vec3 p, double eyeDistance) {
+    // The roof: what faces down and lies highest.
+    std::vector<Vec3> roof;
     double highest = -INFINITY;
     for (uint32_t v = 0; v < mesh.vertexCount(); ++v) {
         const Vec3 at = positionOf(mesh, v);
         if (mesh.normals[3 * v + 1] > -0.7f || length(at - p) > 0.13 * eyeDistance) continue;
-        downwards.push_back(at);
+        roof.push_back(at);
         highest = std::max(highest, at.y);
     }
-    std::erase_if(downwards, [&](Vec3 at) { return at.y < highest - 0.03 * eyeDistance; });
-    Vec3 sum;
-    for (const Vec3 at : downwards) sum = sum + at;
-    return downwards.empty() ? p : sum * (1.0 / double(downwards.size()));
-}
-
-// The mesh's nostrils are shallow; these go on up into the dark.
-void deepenNostril(io::MeshData& mesh, sample::SkinZone& zone) {
+    std::erase_if(roof, [&](Vec3 at) { return at.y < highest - 0.03 * eyeDistance; });
+    sample::SkinZone zone{
+        roof.empty() ? p : Vec3{}, Vec3{0.09, 0.08, 0.12} * eyeDistance, {0.1, 0.06, 0.055}, 0.6, 0.1};
+    for (const Vec3 at : roof) zone.centre = zone.centre + at * (1.0 / double(roof.size()));
     const Vec3 way{0, 0.8 * zone.radii.y, -0.3 * zone.radii.z};
     for (uint32_t v = 0; v < mesh.vertexCount(); ++v) {
         const double weight = zone.weight(positionOf(mesh, v));
@@ -66,6 +63,7 @@ void deepenNostril(io::MeshData& mesh, sample::SkinZone& zone) {
         mesh.positions[3 * v + 2] += float(weight * way.z);
     }
     zone.centre = zone.centre + way * 0.2;
+    return zone;
 }
 
 // Blood shows where skin is thin: lips, lids, cheeks, nose, ears. Forehead, nose and chin are oily; lips are
@@ -98,9 +96,7 @@ std::vector<sample::SkinZone> zonesOf(io::PartedMesh& head, const Bounds (&eyes)
                          1,
                          0.5});
         add(side * 0.37 * e, lipLine, {0.16, 0.12, 0.5}, {0.93, 0.84, 0.82}, 1);  // the mouth's corner
-        const Vec3 nostril = roofOf(head.mesh, {side * 0.165 * e, noseTip - 0.1 * e, nose.z - 0.23 * e}, e);
-        zones.push_back({nostril, Vec3{0.09, 0.08, 0.12} * e, {0.1, 0.06, 0.055}, 0.6, 0.1});
-        deepenNostril(head.mesh, zones.back());
+        zones.push_back(deepNostril(head.mesh, {side * 0.165 * e, noseTip - 0.1 * e, nose.z - 0.23 * e}, e));
         add(side * 0.2 * e, noseTip, {0.16, 0.2, 0.4}, {1.01, 0.88, 0.88}, 1);  // the nose's wing
     }
     add(0, noseTip, {0.26, 0.26, 0.5}, {1.02, 0.85, 0.85}, 1);

@@ -464,8 +464,8 @@ TEST(Sample, SoftShadowIsTheHiddenPartOfADisk) {
     EXPECT_LT(sample::ambientOcclusion(open, g, 8, &hair).at(0, 20, 20), 0.985);
     for (const float all : sample::softShadow(scene, g, {0, 0, -1}, radius, 8).data)
         EXPECT_EQ(all, 1) << "nothing of it is above the horizon";
-    for (const float all : sample::softShadow(open, g, {0, 0, 1}, radius, 8, &far).data)
-        EXPECT_EQ(all, 1) << "a hair that is too far away";
+    EXPECT_EQ(std::ranges::min(sample::softShadow(open, g, {0, 0, 1}, radius, 8, &far).data), 1)
+        << "a hair that is too far away";
     EXPECT_THROW(sample::softShadow(scene, g, {0, 0, 1}, radius, 0), std::invalid_argument);
 }
 
