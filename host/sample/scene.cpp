@@ -12,7 +12,6 @@ struct Scene::Device {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
 
-    Device();
     ~Device() {
         if (scene) rtcReleaseScene(scene);
         if (device) rtcReleaseDevice(device);
@@ -37,17 +36,15 @@ Mesh copyOf(const MeshView& view) {
 
 }  // namespace
 
-// One thread builds the tree, so that it is always the same: it decides which triangle of an edge is hit.
-Scene::Device::Device() : device(rtcNewDevice("threads=1")) {
+void Scene::Device::build(RTCGeometryType type, RTCFormat point, std::span<const float> points,
+                          RTCFormat primitive, std::span<const uint32_t> indices) {
+    // One thread builds the tree, so that it is always the same: it decides which triangle of an edge is hit.
+    device = rtcNewDevice("threads=1");
     if (!device) fail(nullptr, "starting");
     scene = rtcNewScene(device);
     if (!scene) fail(device, "making a scene");
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-}
-
-void Scene::Device::build(RTCGeometryType type, RTCFormat point, std::span<const float> points,
-                          RTCFormat primitive, std::span<const uint32_t> indices) {
     const size_t floats = point == RTC_FORMAT_FLOAT3 ? 3 : 4,
                  perPrimitive = primitive == RTC_FORMAT_UINT3 ? 3 : 1;
     if (!indices.empty()) {
