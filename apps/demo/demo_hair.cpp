@@ -8,11 +8,12 @@ namespace {
 
 using sample::Vec3;
 
-// Numbers from 0 to 1 that fill their range evenly and look random: multiples of irrational numbers.
-double scattered(int i, int sequence) {
-    constexpr double steps[] = {0.7548776662, 0.5698402910, 0.6180339887};
-    const double x = (i + 0.5) * steps[sequence];
-    return x - std::floor(x);
+// A number from 0 to 1 that looks random: a property of a strand, or of a clump of lashes.
+double chance(int i, uint32_t property) {
+    uint32_t x = uint32_t(i) * 2654435769u + property * 2246822519u;
+    x = (x ^ (x >> 16)) * 0x7feb352du;
+    x = (x ^ (x >> 15)) * 0x846ca68bu;
+    return (x ^ (x >> 16)) * 0x1p-32;
 }
 
 class Hair {
@@ -20,17 +21,20 @@ class Hair {
     explicit Hair(const sample::Scene& skin) : skin_(skin) {}
     std::vector<Strand> strands;
 
-    // `side`: 1 for the left eye, which is at positive x. Lashes stand in clumps of two or three, whose tips
-    // meet.
+    // `side`: 1 for the left eye, which is at positive x. Lashes stand in clumps of two to four, whose tips
+    // meet; gaps between clumps differ, and the outer third is denser.
     void addLashes(const sample::EyeLook& eye, double side) {
-        constexpr int upper = 34, lower = 22;
-        for (int clump = 0; clump < upper + lower; ++clump) {
-            const bool above = clump < upper;
-            const int count = above ? 2 + clump % 2 : 2, of = above ? upper : lower;
-            const double middle = ((above ? clump : clump - upper) + 0.3 + 0.4 * scattered(clump, 0)) / of;
-            const double along = 1.28 * middle - 0.5, apart = 0.42 / of;
-            for (int i = 0; i < count; ++i)
-                addLash(eye, side, along, along + (i - 0.5 * (count - 1)) * apart, above ? 1 : -1, clump, i);
+        int lash = 0;
+        for (const double up : {1.0, -1.0}) {
+            double along = -0.52;
+            for (int clump = lash; along < 0.78; clump = lash) {
+                const int count = 2 + int(3 * chance(clump, 0));
+                const double apart = (up > 0 ? 0.0105 : 0.017) * (along > 0.25 ? 0.8 : 1);
+                const double middle = along + 0.5 * apart * (count - 1), gap = chance(clump, 1);
+                for (int i = 0; i < count; ++i, ++lash)
+                    addLash(eye, side, middle, along + apart * (i + 0.6 * chance(lash, 2)), up, clump, lash);
+                along += apart * (count + 3 * gap * gap);
+            }
         }
     }
 
@@ -39,7 +43,7 @@ class Hair {
         constexpr int count = 240;
         const double e = eyeDistance;
         for (int i = 0; i < count; ++i) {
-            const double s = scattered(i, 0), across = 2 * scattered(i, 1) - 1, t = scattered(i, 2);
+            const double s = chance(i, 0), across = 2 * chance(i, 1) - 1, t = chance(i, 2);
             const double width = (0.055 - 0.04 * s * s) * std::min(1.0, 0.5 + 5 * s);
             const double angle = 1.15 * std::exp(-5 * s) + 0.25 - 0.55 * s - 0.35 * across;
             const double length = (0.13 - 0.05 * s) * (0.75 + 0.5 * t);
@@ -52,7 +56,7 @@ class Hair {
                 if (!hit || hit->material != DEMO_SKIN) break;
                 points.push_back(hit->position + hit->normal * (0.7 * std::sin(2.6 * u)));
             }
-            addStrand(points, 0.05);
+            if (points.size() > segments) addStrand(points, 0.05);
         }
     }
 
@@ -70,15 +74,15 @@ class Hair {
             const Vec3 a = corner(mesh.positions, mesh.triangles[3 * t]),
                        b = corner(mesh.positions, mesh.triangles[3 * t + 1]),
                        c = corner(mesh.positions, mesh.triangles[3 * t + 2]);
-            if (scalp.height((a + b + c) * (1 / 3.0)) <= -0.1) continue;
+            if (scalp.above((a + b + c) * (1 / 3.0)) <= -0.1) continue;
             for (sum += 0.5 * length(cross(b - a, c - a)) * perArea; i < sum; ++i) {
-                double v = scattered(i, 0), w = scattered(i, 1);
+                double v = chance(i, 0), w = chance(i, 1);
                 if (v + w > 1) v = 1 - v, w = 1 - w;
                 const Vec3 root = a + (b - a) * v + (c - a) * w;
                 const double inside = scalp.cover(root);
-                if (inside <= scattered(i, 2)) continue;
+                if (inside * inside <= chance(i, 2)) continue;
                 const Vec3 n = normalize(corner(mesh.normals, mesh.triangles[3 * t]));
-                addShort(root, n, crown, 0.5 + 0.5 * inside, i);
+                addShort(root, n, crown, 0.25 + 0.75 * inside, i);
             }
         }
     }
@@ -89,7 +93,7 @@ class Hair {
         return {values[3 * size_t(v)], values[3 * size_t(v) + 1], values[3 * size_t(v) + 2]};
     }
     void addShort(Vec3 root, Vec3 n, Vec3 crown, double size, int i) {
-        const double a = scattered(i, 1) - 0.5, b = scattered(i, 2), length = 11 * size * (0.7 + 0.6 * b);
+        const double a = chance(i, 1) - 0.5, b = chance(i, 2), length = 11 * size * (0.7 + 0.6 * b);
         const Vec3 combed = sample::perpendicular(n, root - crown), aside = cross(n, combed);
         const Vec3 way = normalize(combed + aside * (0.7 * a));
         std::vector<Vec3> points;
@@ -98,7 +102,7 @@ class Hair {
             points.push_back(root +
                              (way * u + n * (u * (0.5 - 0.33 * u)) + aside * (0.25 * a * u * u)) * length);
         }
-        addStrand(points, 0.075, n);
+        addStrand(points, 0.045 + 0.03 * size, n);
     }
     struct FrontHit {
         Vec3 position, normal;
@@ -128,29 +132,33 @@ class Hair {
         return {};
     }
     // `clumped`, `along`: of the clump and the root, from -1 at the inner corner, where none grow, to 1 at
-    // the outer one.
+    // the outer one. `clump`, `own`: numbers of the clump and the lash.
     void addLash(const sample::EyeLook& eye, double side, double clumped, double along, double up, int clump,
-                 int i) {
+                 int own) {
         const auto edge = lidEdge(eye, eye.centre.x + side * along * eye.radius, up);
         if (!edge) return;
-        const double a = scattered(clump, 1), b = scattered(clump, 2), own = scattered(3 * clump + i, 0);
         const double outer = std::clamp(along + 0.2, 0.0, 0.8);
-        const double length = eye.radius * (up > 0 ? 0.46 + 0.3 * outer : 0.22 + 0.12 * outer) *
-                              (0.72 + 0.36 * a) * (0.8 + 0.3 * own);
-        const double fan = side * (0.55 * clumped + 0.3 * (b - 0.5));
-        const double rise = (up > 0 ? 0.55 : 0.35) + 0.25 * a;
-        const double together = 0.8 * side * (clumped - along) * eye.radius;
-        std::vector<Vec3> points;
-        for (int k = 0; k <= segments; ++k) {
-            const double u = double(k) / segments;
-            // Forward first, then up.
-            points.push_back(*edge + Vec3{together * u, up * 0.25, 0} +
-                             Vec3{fan * u, up * (rise * u * u - 0.15 * u), 1.05 * u - 0.35 * u * u} * length);
+        const double grown = chance(own, 3) < 0.15 ? 0.55 : 0.8 + 0.25 * chance(own, 4);  // some are young
+        const double length = eye.radius * (up > 0 ? 0.52 + 0.32 * outer : 0.24 + 0.13 * outer) * grown *
+                              (0.75 + 0.35 * chance(clump, 5));
+        const double fan =
+            side * (0.6 * clumped + 0.35 * (chance(clump, 6) - 0.5)) + 0.16 * (chance(own, 7) - 0.5);
+        const double together = (0.4 + 0.6 * chance(clump, 8)) * side * (clumped - along) * eye.radius;
+        // Forward and a little down first, then up.
+        const double first = up > 0 ? -0.25 : 0.1, curl = (up > 0 ? 1.35 : 0.7) +
+                                                          0.5 * (chance(clump, 9) - 0.5) +
+                                                          0.3 * (chance(own, 10) - 0.5);
+        constexpr int pieces = 7;
+        std::vector<Vec3> points{*edge + Vec3{0, up * 0.25, 0}};
+        for (int k = 0; k < pieces; ++k) {
+            const double angle = first + curl * (k + 0.5) / pieces;
+            points.push_back(points.back() + Vec3{together, 0, 0} * (1.0 / pieces) +
+                             Vec3{fan, up * std::sin(angle), std::cos(angle)} * (length / pieces));
         }
-        addStrand(points, up > 0 ? 0.1 : 0.075);
+        addStrand(points, up > 0 ? 0.075 : 0.055);
     }
     void addStrand(std::vector<Vec3> points, double radius, Vec3 normal = {0, 0, 1}) {
-        if (points.size() == segments + 1) strands.push_back({std::move(points), radius, normal});
+        strands.push_back({std::move(points), radius, normal});
     }
 
     const sample::Scene& skin_;

@@ -10,6 +10,9 @@ namespace pellucid::demo {
 // For a head that looks to +z with y up, as the project's own do; none without two eyes.
 std::vector<Strand> strandsOf(const sample::Scene& skin, const DemoHead& head);
 
+// The same for shadow rays.
+sample::Curves curvesOf(const std::vector<Strand>& strands);
+
 // What lights strands.
 struct StrandLight {
     struct Lamp {

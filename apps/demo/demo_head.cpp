@@ -41,10 +41,35 @@ double lipLineOf(const Bounds& upperTeeth) {
     return upperTeeth.low.y - 1.5;
 }
 
+// A dark zone in the nostril near `p`, which is shallow in the mesh and goes on up into the dark after this.
+sample::SkinZone deepNostril(io::MeshData& mesh, Vec3 p, double eyeDistance) {
+    // The roof: what faces down and lies highest.
+    std::vector<Vec3> roof;
+    double highest = -INFINITY;
+    for (uint32_t v = 0; v < mesh.vertexCount(); ++v) {
+        const Vec3 at = positionOf(mesh, v);
+        if (mesh.normals[3 * v + 1] > -0.7f || length(at - p) > 0.13 * eyeDistance) continue;
+        roof.push_back(at);
+        highest = std::max(highest, at.y);
+    }
+    std::erase_if(roof, [&](Vec3 at) { return at.y < highest - 0.03 * eyeDistance; });
+    sample::SkinZone zone{
+        roof.empty() ? p : Vec3{}, Vec3{0.09, 0.08, 0.12} * eyeDistance, {0.1, 0.06, 0.055}, 0.6, 0.1};
+    for (const Vec3 at : roof) zone.centre = zone.centre + at * (1.0 / double(roof.size()));
+    const Vec3 way{0, 0.8 * zone.radii.y, -0.3 * zone.radii.z};
+    for (uint32_t v = 0; v < mesh.vertexCount(); ++v) {
+        const double weight = zone.weight(positionOf(mesh, v));
+        mesh.positions[3 * v + 1] += float(weight * way.y);
+        mesh.positions[3 * v + 2] += float(weight * way.z);
+    }
+    zone.centre = zone.centre + way * 0.2;
+    return zone;
+}
+
 // Blood shows where skin is thin: lips, lids, cheeks, nose, ears. Forehead, nose and chin are oily; lips are
 // moist and have no pores. Places and sizes follow the distance between the eyes, the lips and the outline;
 // the strength is chosen by eye.
-std::vector<sample::SkinZone> zonesOf(const io::PartedMesh& head, const Bounds (&eyes)[2], double lipLine,
+std::vector<sample::SkinZone> zonesOf(io::PartedMesh& head, const Bounds (&eyes)[2], double lipLine,
                                       const Bounds& skin) {
     const Vec3 left = eyes[0].centre(), right = eyes[1].centre();
     const double e = std::abs(left.x - right.x);
@@ -56,8 +81,8 @@ std::vector<sample::SkinZone> zonesOf(const io::PartedMesh& head, const Bounds (
         centre.z -= 0.3 * radii.z * e;
         zones.push_back({centre, radii * e, color, edge, specular, roughness, relief});
     };
-    add(0, lipLine - 0.005 * e, {0.39, 0.165, 0.9}, {0.86, 0.56, 0.58}, 0.25, 3, 0.5, 0.3);
-    zones.back().furrows = 0.08;
+    add(0, lipLine - 0.005 * e, {0.39, 0.165, 0.9}, {0.86, 0.56, 0.58}, 0.25, 4, 0.42, 0.3);
+    zones.back().furrows = 0.09;
     const Vec3 nose = foremost(head.mesh, 0, noseTip, 0.08 * e);
     for (const double side : {-1.0, 1.0}) {
         add(side * 0.5 * e, left.y, {0.33, 0.2, 0.4}, {0.97, 0.84, 0.83}, 1);
@@ -71,12 +96,7 @@ std::vector<sample::SkinZone> zonesOf(const io::PartedMesh& head, const Bounds (
                          1,
                          0.5});
         add(side * 0.37 * e, lipLine, {0.16, 0.12, 0.5}, {0.93, 0.84, 0.82}, 1);  // the mouth's corner
-        // Nostril: what little light comes out again has passed through its walls, and is red.
-        zones.push_back({{side * 0.165 * e, noseTip - 0.1 * e, nose.z - 0.23 * e},
-                         Vec3{0.09, 0.09, 0.13} * e,
-                         {0.34, 0.17, 0.15},
-                         0.6,
-                         0.3});
+        zones.push_back(deepNostril(head.mesh, {side * 0.165 * e, noseTip - 0.1 * e, nose.z - 0.23 * e}, e));
         add(side * 0.2 * e, noseTip, {0.16, 0.2, 0.4}, {1.01, 0.88, 0.88}, 1);  // the nose's wing
     }
     add(0, noseTip, {0.26, 0.26, 0.5}, {1.02, 0.85, 0.85}, 1);
@@ -126,9 +146,9 @@ void closeMouth(io::PartedMesh& head, double lipLine, double eyeDistance) {
     }
 }
 
-// Where the lids meet beside the nose: the place of the ball nearest to the nose where a small disk fits
-// between them, seen from the front.
-Vec3 innerCorner(const io::PartedMesh& head, const sample::EyeLook& eye, double toNose) {
+// Where the lids meet on the side `side` of x: the place of the ball nearest to that side where a small disk
+// fits between them, seen from the front.
+Vec3 cornerOf(const io::PartedMesh& head, const sample::EyeLook& eye, double side) {
     const auto skin = uint32_t(head.part("skin"));
     std::vector<Vec3> lids, ball;
     for (size_t c = 0; c < head.mesh.triangles.size(); ++c) {
@@ -138,18 +158,14 @@ Vec3 innerCorner(const io::PartedMesh& head, const sample::EyeLook& eye, double 
     }
     Vec3 corner;
     for (const Vec3 at : ball)
-        if (toNose * at.x > toNose * corner.x && std::ranges::none_of(lids, [&](Vec3 p) {
+        if (side * at.x > side * corner.x && std::ranges::none_of(lids, [&](Vec3 p) {
                 return std::hypot(p.x - at.x, p.y - at.y) < 0.065 * eye.radius;
             }))
             corner = at;
     return eye.centre + corner;
 }
 
-// The caruncle, a pink and moist hillock that fills the corner between ball and lids.
-void addCaruncle(io::PartedMesh& head, const sample::EyeLook& eye, std::vector<sample::SkinZone>& zones) {
-    const double toNose = eye.centre.x > 0 ? -1 : 1;
-    const Vec3 radii = Vec3{0.21, 0.13, 0.1} * eye.radius;
-    const Vec3 centre = innerCorner(head, eye, toNose) + Vec3{0.4 * radii.x * toNose, 0, -0.5 * radii.z};
+void addEllipsoid(io::PartedMesh& head, uint32_t part, Vec3 centre, Vec3 radii) {
     const sample::Mesh ball = sample::makeSphere(1, 16, 24);
     for (const uint32_t v : ball.triangles) head.mesh.triangles.push_back(head.mesh.vertexCount() + v);
     for (size_t v = 0; v < ball.positions.size(); v += 3) {
@@ -160,10 +176,21 @@ void addCaruncle(io::PartedMesh& head, const sample::EyeLook& eye, std::vector<s
         add(head.mesh.positions, centre + Vec3{n.x * radii.x, n.y * radii.y, n.z * radii.z});
         add(head.mesh.normals, normalize(Vec3{n.x / radii.x, n.y / radii.y, n.z / radii.z}));
     }
-    head.partOf.resize(head.mesh.triangles.size() / 3, uint32_t(head.parts.size()));
-    head.parts.push_back("caruncle");
+    head.partOf.resize(head.mesh.triangles.size() / 3, part);
     if (!head.cornerUvs.empty()) head.cornerUvs.resize(2 * head.mesh.triangles.size());
-    zones.push_back({centre, radii * 1.3, {1.08, 0.74, 0.72}, 0.4, 2.5, 0.5, 0.5});
+}
+
+// Fills what is open between ball and lids: beside the nose with the caruncle, a pink and moist hillock, at
+// the outer corner with more of the ball, which is rounder than an eye's white.
+void fillCorners(io::PartedMesh& head, const sample::EyeLook& eye, uint32_t ball,
+                 std::vector<sample::SkinZone>& zones) {
+    const double toNose = eye.centre.x > 0 ? -1 : 1;
+    const Vec3 caruncle = Vec3{0.21, 0.13, 0.1} * eye.radius, white = Vec3{0.25, 0.25, 0.2} * eye.radius;
+    const Vec3 inner = cornerOf(head, eye, toNose) + Vec3{0.4 * caruncle.x * toNose, 0, -0.5 * caruncle.z},
+               outer = cornerOf(head, eye, -toNose) + Vec3{-0.03 * eye.radius * toNose, 0, -1.3 * white.z};
+    addEllipsoid(head, ball, outer, white);
+    addEllipsoid(head, uint32_t(head.part("skin")), inner, caruncle);
+    zones.push_back({inner, caruncle * 1.3, {1.08, 0.74, 0.72}, 0.4, 2.5, 0.5, 0.5});
 }
 
 // An adult's eye, as large as the ball.
@@ -184,29 +211,36 @@ io::SceneEye modelOf(const sample::EyeLook& look, uint32_t material) {
 
 }  // namespace
 
-double Scalp::height(Vec3 p) const {
+double Scalp::above(Vec3 p) const {
     // The hairline's height over the eyes, by the angle from the front in degrees: forehead, temple,
     // sideburn, ear, nape.
-    constexpr double line[][2] = {{0, 1.28},  {22, 1.32},  {38, 1.38},  {47, 1.27},  {54, 0.92},  {58, 0.62},
-                                  {64, 0.44}, {69, 0.2},   {73, -0.05}, {77, -0.16}, {82, -0.18}, {86, 0.0},
+    constexpr double line[][2] = {{0, 1.28},  {22, 1.32},  {38, 1.38},  {45, 1.27},  {50, 0.95},  {54, 0.7},
+                                  {57, 0.45}, {59, 0.1},   {62, -0.18}, {67, -0.24}, {80, -0.24}, {86, -0.1},
                                   {108, 0.0}, {120, -0.5}, {140, -0.9}, {181, -0.95}};
+    constexpr double degree = 0.02;  // on the skin, over the distance between the eyes
     const Vec3 middle = skin.centre();
     const Vec3 toEar = p - Vec3{std::copysign(skin.high.x, p.x), betweenEyes.y - 0.28 * eyeDistance,
                                 middle.z - 0.1 * eyeDistance};
-    const Vec3 ear = Vec3{0.27, 0.46, 0.46} * eyeDistance;  // radii
+    const Vec3 ear = Vec3{0.27, 0.44, toEar.z > 0 ? 0.2 : 0.44} * eyeDistance;  // radii
     if (std::hypot(toEar.x / ear.x, toEar.y / ear.y, toEar.z / ear.z) < 1) return -1;
-    const double angle = std::atan2(std::abs(p.x), p.z - middle.z) * 180 / std::numbers::pi;
-    size_t i = 1;
-    while (line[i][0] < angle) ++i;
-    const double t = (angle - line[i - 1][0]) / (line[i][0] - line[i - 1][0]);
-    const double at = line[i - 1][1] + (line[i][1] - line[i - 1][1]) * t * t * (3 - 2 * t);
-    const double ragged = 0.03 * (std::sin(0.32 * p.y + 0.2 * p.z) + std::sin(0.6 * p.z - 0.4 * p.y));
-    return (p.y - betweenEyes.y) / eyeDistance - at + ragged;
+    const double ragged = 0.04 * (std::sin(0.32 * p.y + 0.2 * p.z) + std::sin(0.6 * p.z - 0.4 * p.y));
+    const double x = degree * std::atan2(std::abs(p.x), p.z - middle.z) * 180 / std::numbers::pi,
+                 y = (p.y - betweenEyes.y) / eyeDistance + ragged;
+    double nearest = INFINITY;
+    bool over = false;
+    for (size_t i = 1; i < std::size(line); ++i) {
+        const double fromX = x - degree * line[i - 1][0], fromY = y - line[i - 1][1],
+                     toX = degree * (line[i][0] - line[i - 1][0]), toY = line[i][1] - line[i - 1][1];
+        const double t = std::clamp((fromX * toX + fromY * toY) / (toX * toX + toY * toY), 0.0, 1.0);
+        nearest = std::min(nearest, std::hypot(fromX - t * toX, fromY - t * toY));
+        if (fromX >= 0 && fromX < toX) over = fromY * toX > fromX * toY;
+    }
+    return over ? nearest : -nearest;
 }
 
 double Scalp::cover(Vec3 p) const {
-    constexpr double fade = 0.16;  // the hairline is thin and ragged
-    return std::clamp(height(p) / fade, 0.0, 1.0);
+    constexpr double fade = 0.2;  // the hairline is thin and ragged
+    return std::clamp(above(p) / fade, 0.0, 1.0);
 }
 
 bool hasHeadParts(const std::string& path) {
@@ -244,7 +278,7 @@ DemoHead loadDemoHead(const std::string& path, int levels) {
         eye.centre = {ball.centre().x, ball.centre().y, ball.low.z + eye.radius};
         out.eyes.push_back(eye);
         out.eyeModels.push_back(modelOf(eye, &ball == eyes ? DEMO_EYES : DEMO_RIGHT_EYE));
-        addCaruncle(head, eye, out.zones);
+        fillCorners(head, eye, uint32_t(head.part(&ball == eyes ? "eye_left" : "eye_right")), out.zones);
     }
     for (const uint32_t part : head.partOf) {
         const std::string& name = head.parts[part];

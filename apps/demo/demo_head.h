@@ -15,8 +15,7 @@ enum DemoMaterial : uint32_t {
     DEMO_TONGUE = 4,
     DEMO_CUT = 5,
     DEMO_RIGHT_EYE = 6,
-    DEMO_TEARS = 7,  // along the lower lids, in G-buffers alone, as the next
-    DEMO_LASHES = 8  // before an eye
+    DEMO_LASHES = 7  // before an eye, in G-buffers alone
 };
 
 // A hair: points from root to tip, mm, and the radius at the root, from which it tapers.
@@ -32,9 +31,9 @@ struct Scalp {
     double eyeDistance = 0;
     sample::Bounds skin;
 
-    // How far `p` is above the hairline, over the distance between the eyes; negative on face, neck and ears.
-    double height(sample::Vec3 p) const;
-    // The share of skin that hair shades there: 0 to 1.
+    // How far `p` is from the hairline, over the distance between the eyes; negative on face, neck and ears.
+    double above(sample::Vec3 p) const;
+    // How dense and long hair is there: 0 to 1.
     double cover(sample::Vec3 p) const;
 };
 

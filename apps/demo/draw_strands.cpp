@@ -20,7 +20,7 @@ std::array<double, 3> lightOf(const Strand& strand, const StrandLight& light, Ve
     const Vec3 along = normalize(strand.points.back() - strand.points.front());
     const sample::Rgb sky = light.sky.radiance(strand.normal);
     std::array<double, 3> sum;
-    for (size_t c = 0; c < 3; ++c) sum[c] = albedo[c] * sky[c];
+    for (size_t c = 0; c < 3; ++c) sum[c] = (albedo[c] + gloss) * sky[c];
     for (const StrandLight::Lamp& lamp : light.lamps) {
         const double facing = std::clamp(dot(strand.normal, lamp.toLight) + 0.25, 0.0, 1.0);
         if (facing == 0 || (light.occluders && light.occluders->occluded({middle, lamp.toLight}, INFINITY)))
@@ -33,7 +33,24 @@ std::array<double, 3> lightOf(const Strand& strand, const StrandLight& light, Ve
     return sum;
 }
 
+// Of a strand, at this part of its length.
+double radiusAt(const Strand& strand, double along) {
+    return strand.radius * (1 - (1 - thinnest) * along);
+}
+
 }  // namespace
+
+sample::Curves curvesOf(const std::vector<Strand>& strands) {
+    sample::Curves curves;
+    for (const Strand& strand : strands)
+        for (size_t k = 0; k < strand.points.size(); ++k) {
+            const Vec3 p = strand.points[k];
+            const double radius = radiusAt(strand, double(k) / double(strand.points.size() - 1));
+            if (k + 1 < strand.points.size()) curves.segments.push_back(uint32_t(curves.points.size() / 4));
+            curves.points.insert(curves.points.end(), {float(p.x), float(p.y), float(p.z), float(radius)});
+        }
+    return curves;
+}
 
 sample::Image drawStrands(const std::vector<Strand>& strands, const StrandLight& light,
                           const sample::Camera& camera, const sample::GBuffer& g) {
@@ -76,7 +93,7 @@ sample::Image drawStrands(const std::vector<Strand>& strands, const StrandLight&
                     const double depth = a.z + t * ab.z;
                     if (depth > g.viewDepth.at(0, x, y) + tolerance) continue;
                     const double along = (double(k) + t) / double(strand.points.size() - 1);
-                    const double half = strand.radius * (1 - (1 - thinnest) * along) * pixelsPerSlope / depth;
+                    const double half = radiusAt(strand, along) * pixelsPerSlope / depth;
                     const double off = std::abs(dx * ab.y - dy * ab.x) / std::sqrt(square);
                     const double part =
                         std::max(0.0, std::min(off + 0.5, half) - std::max(off - 0.5, -half)) *

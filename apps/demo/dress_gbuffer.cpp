@@ -8,7 +8,7 @@ namespace {
 using sample::GBuffer, sample::Vec3, sample::LinearColor;
 
 // From the line where an eye meets a lid, mm.
-constexpr double tears = 0.35, wetReach = 0.9, lidReach = 1.4;
+constexpr double wetReach = 0.9, lidReach = 1.4;
 constexpr int window = 11;  // pixels; of a head in 2160 lines they are 0.13 mm wide
 
 bool isEye(uint32_t id) {
@@ -29,18 +29,6 @@ template <class Use>
 void around(const GBuffer& g, int x, int y, Use&& use) {
     for (int v = std::max(y - window, 0); v <= std::min(y + window, g.height - 1); ++v)
         for (int u = std::max(x - window, 0); u <= std::min(x + window, g.width - 1); ++u) use(u, v);
-}
-
-// The line of tears stands half way to the lid; its normals turn up. `share`: 1 at the lid.
-void setTears(GBuffer& g, int x, int y, Vec3 way, Vec3 up, double share) {
-    const Vec3 n = normalize(sample::vectorAt(g.geometricNormal, x, y) + up * (1.4 * share));
-    const double normal[] = {n.x, n.y, n.z}, moved[] = {0.5 * way.x, 0.5 * way.y, 0.5 * way.z};
-    for (int c = 0; c < 3; ++c) {
-        g.position.at(c, x, y) += float(moved[c]);
-        for (sample::Image* of : {&g.geometricNormal, &g.shadingNormal, &g.blurredNormal})
-            of->at(c, x, y) = float(normal[c]);
-        g.albedo.at(c, x, y) = 0.42f - 0.05f * float(c);
-    }
 }
 
 // `way`: to the eye.
@@ -77,23 +65,37 @@ std::vector<float> dressEyes(GBuffer& g, Vec3 up) {
             });
             const double distance = apart(way), share = 1 - distance / lidReach;
             if (share <= 0) continue;
-            if (!eye) setMargin(g, x, y, way, up, std::min(1.0, 1.5 * share));
-            if (!eye) continue;
-            wet[i] = float(std::max(0.0, 1 - distance / wetReach));
-            if (distance > tears || dot(way, up) > -0.5 * distance) continue;
-            g.material[i] = DEMO_TEARS;
-            setTears(g, x, y, way, up, 1 - distance / tears);
+            if (eye)
+                wet[i] = float(std::max(0.0, 1 - distance / wetReach));
+            else
+                setMargin(g, x, y, way, up, std::min(1.0, 1.5 * share));
         }
     return wet;
 }
 
-void shadeScalp(GBuffer& g, const Scalp& scalp) {
+void darkenFolds(GBuffer& g, const sample::Image& occlusion) {
+    constexpr double open = 0.9, reach = 1.2;  // of the sky; mm, over which the edges of folds are soft
+    sample::Image dark(g.width, g.height, 1);
     for (int y = 0; y < g.height; ++y)
         for (int x = 0; x < g.width; ++x) {
-            if (g.material[size_t(y) * size_t(g.width) + size_t(x)] != DEMO_SKIN) continue;
-            const double cover = scalp.cover(sample::vectorAt(g.position, x, y));
-            multiply(g, x, y, {0.4, 0.4, 0.4}, cover);
-            g.specular.at(0, x, y) *= float(1 - 0.6 * cover);
+            const double seen = std::min(1.0, occlusion.at(0, x, y) / open);
+            dark.at(0, x, y) = float(1 - seen * seen * (3 - 2 * seen));
+        }
+    const auto spread = [&](int x, int y, int fromX, int fromY) {
+        if (fromX < 0 || fromY < 0 || fromX >= g.width || fromY >= g.height) return;
+        const Vec3 way = sample::vectorAt(g.position, x, y) - sample::vectorAt(g.position, fromX, fromY);
+        dark.at(0, x, y) = std::max(dark.at(0, x, y), dark.at(0, fromX, fromY) - float(length(way) / reach));
+    };
+    for (int y = 0; y < g.height; ++y)
+        for (int x = 0; x < g.width; ++x) spread(x, y, x - 1, y), spread(x, y, x, y - 1);
+    for (int y = g.height - 1; y >= 0; --y)
+        for (int x = g.width - 1; x >= 0; --x) spread(x, y, x + 1, y), spread(x, y, x, y + 1);
+    for (int y = 0; y < g.height; ++y)
+        for (int x = 0; x < g.width; ++x) {
+            const uint32_t id = g.material[size_t(y) * size_t(g.width) + size_t(x)];
+            if (isEye(id)) continue;
+            multiply(g, x, y, {0.05, 0.05, 0.06}, dark.at(0, x, y));
+            g.specular.at(0, x, y) *= 1 - dark.at(0, x, y);
         }
 }
 

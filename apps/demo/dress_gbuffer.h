@@ -5,12 +5,12 @@
 
 namespace pellucid::demo {
 
-// Where an eye meets its lids the film of tears is thicker, and stands against the lower lid in a line that
-// reflects light (DEMO_TEARS). The lids' edges are pink and moist, above also dark, where the lashes are
-// rooted. Returns the wetness of PEL_SLOT_WETNESS.
+// Where an eye meets its lids the film of tears is thicker. The lids' edges are pink and moist, above also
+// dark, where the lashes are rooted. Returns the wetness of PEL_SLOT_WETNESS.
 std::vector<float> dressEyes(sample::GBuffer& gbuffer, sample::Vec3 up);
 
-// Skin between hairs is dark.
-void shadeScalp(sample::GBuffer& gbuffer, const Scalp& scalp);
+// Little of the light that gets between lips and hairs or into a nostril comes out again. `occlusion`: as of
+// ambientOcclusion.
+void darkenFolds(sample::GBuffer& gbuffer, const sample::Image& occlusion);
 
 }  // namespace pellucid::demo

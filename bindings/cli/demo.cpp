@@ -15,22 +15,16 @@ class Stages {
     explicit Stages(const Run& run) : run_(run) {}
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
 
-    // Says on a terminal what is being done, until its line comes.
-    static void begin(const std::string& name) {
-        if (pel::system::errorsAreSeen())
-            std::fprintf(stderr, "\r\033[K%s ...", name.c_str()), std::fflush(stderr);
-    }
+    // Milliseconds. Says on a terminal what is being done, until its line comes.
     template <class Work>
     void measure(const std::string& name, Work&& work) {
-        begin(name);
-        const double device = run_.deviceMilliseconds(), wall = milliseconds(work);
-        add(name, wall, run_.deviceMilliseconds() - device);
-    }
-    // A stage that was measured elsewhere; `device` is 0 for work of the host. Milliseconds.
-    void add(const std::string& name, double wall, double device = 0) {
-        if (pel::system::errorsAreSeen()) std::fputs("\r\033[K", stderr);
-        if (list.empty()) std::fprintf(stderr, "%-38s %9s %10s\n", "stage", "wall ms", "device ms");
-        std::fprintf(stderr, "%-38s %9.1f", name.c_str(), wall);
+        const bool seen = pel::system::errorsAreSeen();
+        if (seen) std::fprintf(stderr, "\r\033[K%s ...", name.c_str()), std::fflush(stderr);
+        const double before = run_.deviceMilliseconds(), wall = milliseconds(work),
+                     device = run_.deviceMilliseconds() - before;
+        if (seen) std::fputs("\r\033[K", stderr);
+        if (list.empty()) std::fprintf(stderr, "%-41s %9s %10s\n", "stage", "wall ms", "device ms");
+        std::fprintf(stderr, "%-41s %9.1f", name.c_str(), wall);
         if (device > 0) std::fprintf(stderr, " %10.2f", device);
         std::fputs("\n", stderr);
         list.push_back({{"stage", name}, {"wall_ms", wall}, {"device_ms", device}});
@@ -108,13 +102,13 @@ std::vector<DemoViewRequest> requests(const Arguments& a) {
     parseSize(a.size, key.width, key.height);
     key.name = "key";
     key.framing.azimuth = 25;
-    key.lights = {{"Key", 54, 22, {0.92f, 0.845f, 0.76f}, true, 0.05},
-                  {"Rim", -132, 25, {0.22f, 0.25f, 0.30f}}};
+    key.lights = {{"Key", 54, 22, {0.92f, 0.845f, 0.76f}, true},
+                  {"Rim", -132, 25, {0.22f, 0.25f, 0.30f}, true, 0.1}};
     key.skyScale = 0.16f;
     back = key;
     back.name = "backlit";
-    back.lights = {{"Key", 174, 8, {2.8f, 2.64f, 2.43f}, false, 0.05},
-                   {"Rim", -118, 20, {0.5f, 0.56f, 0.64f}}};
+    back.lights = {{"Key", 179, 8, {2.8f, 2.64f, 2.43f}, false},
+                   {"Rim", -118, 20, {0.5f, 0.56f, 0.64f}, true, 0.1}};
     back.skyScale = 0.2f;
     return {key, back};
 }
@@ -136,31 +130,12 @@ std::array<io::SceneFile, 3> scenesOf(const DemoView& view) {
     return {withoutScattering(view.scene), byTables(view.scene), view.scene};
 }
 
-// The pictures of a view rendered at twice the size, or none of a view that is large already.
-std::vector<io::Picture> finePictures(Run& run, io::LutStore& luts, const sample::Scene& scene,
-                                      const DemoHead& head, DemoViewRequest request) {
-    constexpr uint64_t most = uint64_t(4096) * 2304;  // pixels; a G-buffer of them takes 1 GB
-    request.width *= 2, request.height *= 2, request.rays /= 2;
-    if (uint64_t(request.width) * request.height > most) return {};
-    Stages::begin(request.name + ": pictures with smooth edges");
-    const DemoView view = renderDemoView(scene, head, request);
-    std::vector<io::Picture> pictures;
-    for (const io::SceneFile& shown : scenesOf(view)) {
-        io::SceneFrame frame(run.device(), view.gbuffer, shown, luts, view.images);
-        frame.shade();
-        pictures.push_back(developed(view, frame.radiance()));
-    }
-    return pictures;
-}
-
 // One view: G-buffer, shadings, files.
-ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample::Scene& scene,
-                     const DemoHead& head, const DemoViewRequest& request, const Arguments& a) {
-    Stages::begin(request.name + ": G-buffer and shadow maps (sample host)");
-    DemoView view = renderDemoView(scene, head, request);
-    stages.add(view.name + ": G-buffer (sample host)", view.gbufferMilliseconds);
-    stages.add(view.name + ": shadow maps (sample host)", view.shadowMapMilliseconds);
-
+ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const DemoBody& body,
+                     const DemoSurface& surface, const DemoViewRequest& request, const std::string& folder) {
+    DemoView view;
+    stages.measure(request.name + ": light and shadow maps (sample host)",
+                   [&] { view = renderDemoView(body, surface, request); });
     const std::array<io::SceneFile, 3> scenes = scenesOf(view);
     stages.measure(view.name + ": kernels", [&] {
         for (const io::SceneFile& each : scenes) io::buildPrograms(run.device(), each, luts, view.images);
@@ -169,9 +144,6 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
     shaded.lambert = shadeAs(run, stages, luts, view, "Lambert", scenes[0]);
     shaded.tables = shadeAs(run, stages, luts, view, "by tables", scenes[1]);
     shaded.complete = shadeAs(run, stages, luts, view, "on the screen", scenes[2]);
-    stages.measure(view.name + ": pictures at twice the size",
-                   [&] { shaded.fine = finePictures(run, luts, scene, head, request); });
-    const std::string& folder = a.output;
     const auto path = [&](const std::string& suffix) { return folder + "/" + view.name + suffix; };
     io::writeExr(path("_gbuffer.exr"), view.gbuffer, io::ExrCompression::Rle);
     for (const auto& [file, image] : view.images)
@@ -179,9 +151,27 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
     io::writeScene(path(".toml"), view.scene);
     io::writeRadiance(path(".exr"), view.gbuffer.width, view.gbuffer.height, shaded.complete);
     shaded.view = std::move(view);
-    run.report["pictures"].push_back(writePicture(folder, shaded));
-    run.note("picture: " + run.report["pictures"].back().get<std::string>());
     return shaded;
+}
+
+// Adds pictures rendered at twice the size, but for views that are large already.
+void addFinePictures(Run& run, Stages& stages, io::LutStore& luts, const DemoBody& body,
+                     std::vector<DemoViewRequest> requests, std::vector<ShadedView>& views) {
+    constexpr uint64_t most = uint64_t(4096) * 2304;  // pixels; a G-buffer of them takes 1 GB
+    for (DemoViewRequest& r : requests) r.width *= 2, r.height *= 2, r.rays /= 2;
+    if (uint64_t(requests[0].width) * requests[0].height > most) return;
+    stages.measure("pictures at twice the size", [&] {
+        const DemoSurface surface = renderDemoSurface(body, requests[0]);
+        for (size_t i = 0; i < views.size(); ++i) {
+            DemoView view{requests[i].name, views[i].view.scene, views[i].view.images};
+            addPixels(view, body, surface, requests[i]);
+            for (const io::SceneFile& shown : scenesOf(view)) {
+                io::SceneFrame frame(run.device(), view.gbuffer, shown, luts, view.images);
+                frame.shade();
+                views[i].fine.push_back(developed(view, frame.radiance()));
+            }
+        }
+    });
 }
 
 void run(Arguments a) {
@@ -213,9 +203,19 @@ void run(Arguments a) {
     const sample::Scene scene(sample::MeshView{mesh.positions, mesh.normals, mesh.uvs, curvature.values,
                                                mesh.triangles, head.materials});
     head.strands = demo::strandsOf(scene, head);
+    const sample::Scene hair(demo::curvesOf(head.strands));
+    const DemoBody body{head, scene, hair};
+    DemoSurface surface;  // all views have one camera
+    stages.measure("G-buffer (sample host)", [&] { surface = renderDemoSurface(body, wanted[0]); });
     std::vector<ShadedView> views;
     for (const DemoViewRequest& request : wanted)
-        views.push_back(shadeView(run, stages, luts, scene, head, request, a));
+        views.push_back(shadeView(run, stages, luts, body, surface, request, a.output));
+    surface = {};
+    addFinePictures(run, stages, luts, body, wanted, views);
+    for (const ShadedView& view : views) {
+        run.report["pictures"].push_back(writePicture(a.output, view));
+        run.note("picture: " + run.report["pictures"].back().get<std::string>());
+    }
     std::vector<io::Tile> materials;
     for (const auto& m : demoMaterials) {
         const DemoView made = madeOf(views.front().view, m.profile, m.tint);

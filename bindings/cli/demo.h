@@ -11,10 +11,9 @@ using demo::DemoHead;
 
 struct DemoView {
     std::string name;
-    io::Image gbuffer;
     io::SceneFile scene;
     io::ShadowMaps images;  // by the names of their files in the scene: shadow maps, surroundings
-    double gbufferMilliseconds = 0, shadowMapMilliseconds = 0;
+    io::Image gbuffer;
 };
 
 // A lamp round the head.
@@ -23,7 +22,7 @@ struct DemoLight {
     double azimuth, elevation;  // degrees, as in sample::headDirection
     float color[3];             // irradiance / pi
     bool box = true;            // it is seen in reflections, as a soft box
-    double radius = 0;          // at a distance of 1; 0: its shadows are sharp
+    double radius = 0.05;       // at a distance of 1
 };
 
 struct DemoViewRequest {
@@ -38,8 +37,26 @@ struct DemoViewRequest {
 // A scene with only the two tables that the views use, curvature and shadow.
 io::SceneFile standardLuts();
 
-// Renders with the stand-in host.
-DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const DemoViewRequest& request);
+// What the stand-in host renders of the head whatever its light.
+struct DemoSurface {
+    sample::Camera camera;
+    sample::GBuffer gbuffer;
+    sample::Image occlusion;     // of ambient light
+    std::vector<float> wetness;  // of eyes, or empty
+};
+
+// The head made ready for rays.
+struct DemoBody {
+    const DemoHead& head;
+    const sample::Scene &mesh, &hair;
+};
+
+DemoSurface renderDemoSurface(const DemoBody& body, const DemoViewRequest& request);
+// `surface`: of the same size and framing.
+DemoView renderDemoView(const DemoBody& body, const DemoSurface& surface, const DemoViewRequest& request);
+// The G-buffer alone, whose channels the view's scene names.
+void addPixels(DemoView& view, const DemoBody& body, const DemoSurface& surface,
+               const DemoViewRequest& request);
 
 // The same scene shaded plainly, by Lambert, or by tables.
 io::SceneFile withoutScattering(io::SceneFile scene);

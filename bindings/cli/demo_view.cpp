@@ -27,9 +27,6 @@ PelMaterial glossy(float specular, float roughness) {
 
 PelMaterial skin() {
     PelMaterial m = pelMaterialDefaults();
-    // The library's own choice, without a profile too.
-    const PelProfileInfo info = Profile::named(profileName).info();
-    m.shadowFilterWidth = 3 * std::max({info.width[0], info.width[1], info.width[2]});
     // Two lobes, of the skin's relief and of the film of oil on it.
     m.specularModel = PEL_SPECULAR_GGX;
     m.specular = 0.4f;
@@ -52,9 +49,7 @@ sample::Camera framed(const sample::Scene& mesh, const DemoHead& head, const sam
 
 void addShadow(DemoView& view, const sample::Scene& mesh, const DemoLight& lamp,
                const sample::DirectionalLight& direction, io::SceneLight& light) {
-    sample::ShadowMap map;
-    view.shadowMapMilliseconds +=
-        milliseconds([&] { map = sample::renderShadowMap(mesh, direction, shadowMapSize); });
+    const sample::ShadowMap map = sample::renderShadowMap(mesh, direction, shadowMapSize);
     std::ranges::copy(map.worldToUvz.toFloats(), light.light.worldToShadow);
     light.light.shadowProjection = PEL_SHADOW_PARALLEL;
     light.light.shadowDepthRange = float(map.depthRange);
@@ -113,8 +108,6 @@ std::vector<io::SceneMaterial> materialsOf(const DemoHead& head) {
         materials[demo::DEMO_TEETH - 1].material = materials[demo::DEMO_TONGUE - 1].material =
             glossy(0.05f, 0.2f);
         materials[demo::DEMO_CUT - 1].material = materials[demo::DEMO_LASHES - 1].material = glossy(0, 1);
-        materials[demo::DEMO_TEARS - 1].material = glossy(0.6f, 0.25f);
-        materials[demo::DEMO_TEARS - 1].material.specularModel = PEL_SPECULAR_GGX;
     }
     // As "auto" would choose, which leaves soft shadows of lamps with a shadow map aside.
     for (io::SceneMaterial& m : materials)
@@ -125,23 +118,28 @@ std::vector<io::SceneMaterial> materialsOf(const DemoHead& head) {
 // Radiance behind the head: the same everywhere, so that files stay small and are read quickly.
 constexpr float backdrop[] = {0.018f, 0.02f, 0.023f};
 
-// Lays hair over the G-buffer: skin under it sends less light back, by albedo and specular, but scatters on.
-// Returns what the scene's radiance holds before shading, which is added: the light of hair, the backdrop.
-sample::Image layHair(sample::GBuffer& g, sample::Image hair) {
-    for (int y = 0; y < g.height; ++y)
-        for (int x = 0; x < g.width; ++x) {
-            const float left = 1 - hair.at(3, x, y);
-            uint32_t& id = g.material[size_t(y) * size_t(g.width) + size_t(x)];
-            // An eye's gloss knows neither albedo nor specular.
-            if (left < 0.5f && (id == demo::DEMO_EYES || id == demo::DEMO_RIGHT_EYE)) id = demo::DEMO_LASHES;
-            for (int c = 0; c < 3; ++c) {
-                g.albedo.at(c, x, y) *= left;
-                if (id == 0) hair.at(c, x, y) += left * backdrop[c];
-            }
-            g.specular.at(0, x, y) *= left;
+// Lays hair over planes of the G-buffer: skin under it sends less light back, by albedo and specular, but
+// scatters on. Returns what the scene's radiance holds before shading, which is added: the light of hair, the
+// backdrop.
+sample::Image layHair(sample::Image& albedo, sample::Image& specular, std::vector<float>& ids,
+                      sample::Image hair) {
+    for (size_t i = 0; i < ids.size(); ++i) {
+        const float left = 1 - hair.plane(3)[i];
+        // An eye's gloss knows neither albedo nor specular.
+        const bool eye = ids[i] == float(demo::DEMO_EYES) || ids[i] == float(demo::DEMO_RIGHT_EYE);
+        if (left < 0.5f && eye) ids[i] = demo::DEMO_LASHES;
+        for (int c = 0; c < 3; ++c) {
+            albedo.plane(c)[i] *= left;
+            if (ids[i] == 0) hair.plane(c)[i] += left * backdrop[c];
         }
+        specular.plane(0)[i] *= left;
+    }
     hair.data.resize(3 * hair.planeSize());
     return hair;
+}
+
+sample::DirectionalLight directionOf(const DemoHead& head, const DemoLight& lamp) {
+    return {sample::headDirection(head.pose, lamp.azimuth, lamp.elevation)};
 }
 
 }  // namespace
@@ -157,59 +155,48 @@ io::SceneFile standardLuts() {
     return scene;
 }
 
-DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const DemoViewRequest& request) {
-    DemoView view;
-    view.name = request.name;
+DemoSurface renderDemoSurface(const DemoBody& body, const DemoViewRequest& request) {
+    const DemoHead& head = body.head;
     const int width = int(request.width), height = int(request.height);
-    const double aspect = double(width) / height;
-    const sample::Camera camera = framed(mesh, head, request.framing, aspect);
-    view.scene.luts = standardLuts().luts;
-    view.scene.materials = materialsOf(head);
-
+    DemoSurface out;
+    out.camera = framed(body.mesh, head, request.framing, double(width) / height);
     sample::GBufferOptions look;
     look.looks = head.looks, look.zones = head.zones, look.eyes = head.eyes;
     look.detail.roughness = skinRoughness;
-    view.scene.eyes = head.eyeModels;
     if (!head.looks.empty()) {  // a young face: fine pores, hardly a fold; the zones are enough
         look.detail.blotchAmount = 0.02;
         look.detail.poreWavelength = 0.6;
         look.detail.poreSlope = 0.045;
         look.detail.foldSlope = 0.008;
     }
-    sample::GBuffer g;
-    view.gbufferMilliseconds =
-        milliseconds([&] { g = sample::renderGBuffer(mesh, camera, width, height, look); });
-    std::vector<float> wetness;
+    out.gbuffer = sample::renderGBuffer(body.mesh, out.camera, width, height, look);
+    out.occlusion = sample::ambientOcclusion(body.mesh, out.gbuffer, request.rays, &body.hair);
     if (!head.eyeModels.empty()) {
-        wetness = demo::dressEyes(g, head.pose.up);
-        demo::shadeScalp(g, head.scalp);
+        out.wetness = demo::dressEyes(out.gbuffer, head.pose.up);
+        demo::darkenFolds(out.gbuffer, out.occlusion);
     }
-    demo::StrandLight onHair;
-    onHair.occluders = &mesh;
-    for (const DemoLight& lamp : request.lights) {
-        const sample::DirectionalLight direction{
-            sample::headDirection(head.pose, lamp.azimuth, lamp.elevation)};
-        io::SceneLight light;
-        light.light.type = PEL_LIGHT_DIRECTIONAL;
-        copy(light.light.toLight, direction.toLight);
-        std::ranges::copy(lamp.color, light.light.color);
-        addShadow(view, mesh, lamp, direction, light);
-        if (lamp.radius > 0) {
-            light.wideShadow = lamp.name + "Shadow.V";
-            view.gbuffer.channels.push_back(io::Channel::halves(
-                light.wideShadow,
-                sample::softShadow(mesh, g, direction.toLight, lamp.radius, request.rays / 2).data));
-        }
-        view.scene.lights.push_back(light);
-        onHair.lamps.push_back({direction.toLight, {lamp.color[0], lamp.color[1], lamp.color[2]}});
-    }
+    return out;
+}
 
-    const sample::Sky sky = studio(head, request);
-    addSurroundings(view, head, sky);
-    onHair.sky = sky, onHair.sky.panels.clear();
-    const sample::Image before = layHair(g, demo::drawStrands(head.strands, onHair, camera, g));
-    view.scene.options.accumulate = 1;
-    view.gbuffer.width = width, view.gbuffer.height = height;
+void addPixels(DemoView& view, const DemoBody& body, const DemoSurface& surface,
+               const DemoViewRequest& request) {
+    const sample::GBuffer& g = surface.gbuffer;
+    demo::StrandLight onHair;
+    onHair.occluders = &body.mesh;
+    onHair.sky = studio(body.head, request), onHair.sky.panels.clear();
+    for (size_t i = 0; i < request.lights.size(); ++i) {
+        const DemoLight& lamp = request.lights[i];
+        const sample::Vec3 toLight = directionOf(body.head, lamp).toLight;
+        view.gbuffer.channels.push_back(io::Channel::halves(
+            view.scene.lights[i].wideShadow,
+            sample::softShadow(body.mesh, g, toLight, lamp.radius, request.rays / 2, &body.hair).data));
+        onHair.lamps.push_back({toLight, {lamp.color[0], lamp.color[1], lamp.color[2]}});
+    }
+    sample::Image albedo = g.albedo, specular = g.specular;
+    std::vector<float> ids(g.material.begin(), g.material.end());
+    const sample::Image before =
+        layHair(albedo, specular, ids, demo::drawStrands(body.head.strands, onHair, surface.camera, g));
+    view.gbuffer.width = g.width, view.gbuffer.height = g.height;
     // What has few values, or the same over large parts, takes a twentieth of the space as half floats, and
     // of the time to read.
     const auto add = [&](PelImageSlot slot, const char* name, const char* components,
@@ -221,18 +208,37 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     add(PEL_SLOT_NORMAL_SHADING, "NormalShading", "XYZ", g.shadingNormal.data);
     add(PEL_SLOT_NORMAL_BLURRED, "NormalBlurred", "XYZ", g.blurredNormal.data);
     add(PEL_SLOT_CURVATURE, "Curvature", "V", g.curvature.data);
-    add(PEL_SLOT_ALBEDO, "Albedo", "RGB", g.albedo.data);
+    add(PEL_SLOT_ALBEDO, "Albedo", "RGB", albedo.data);
     add(PEL_SLOT_ROUGHNESS, "Roughness", "V", g.roughness.data);
-    add(PEL_SLOT_SPECULAR, "Specular", "V", g.specular.data);
-    add(PEL_SLOT_AMBIENT_OCCLUSION, "AmbientOcclusion", "V",
-        sample::ambientOcclusion(mesh, g, request.rays).data, io::ChannelType::Half);
-    add(PEL_SLOT_MATERIAL, "Material", "I", std::vector<float>(g.material.begin(), g.material.end()));
-    if (!wetness.empty()) add(PEL_SLOT_WETNESS, "Wetness", "V", wetness);
+    add(PEL_SLOT_SPECULAR, "Specular", "V", specular.data);
+    add(PEL_SLOT_AMBIENT_OCCLUSION, "AmbientOcclusion", "V", surface.occlusion.data, io::ChannelType::Half);
+    add(PEL_SLOT_MATERIAL, "Material", "I", ids);
+    if (!surface.wetness.empty()) add(PEL_SLOT_WETNESS, "Wetness", "V", surface.wetness);
     add(PEL_SLOT_RADIANCE, "Before", "RGB", before.data, io::ChannelType::Half);
+}
 
-    copy(view.scene.camera.position, camera.eye);
-    std::ranges::copy(camera.inverseViewProjection(aspect).toFloats(),
+DemoView renderDemoView(const DemoBody& body, const DemoSurface& surface, const DemoViewRequest& request) {
+    DemoView view;
+    view.name = request.name;
+    view.scene.luts = standardLuts().luts;
+    view.scene.materials = materialsOf(body.head);
+    view.scene.eyes = body.head.eyeModels;
+    view.scene.options.accumulate = 1;
+    for (const DemoLight& lamp : request.lights) {
+        const sample::DirectionalLight direction = directionOf(body.head, lamp);
+        io::SceneLight light;
+        light.light.type = PEL_LIGHT_DIRECTIONAL;
+        copy(light.light.toLight, direction.toLight);
+        std::ranges::copy(lamp.color, light.light.color);
+        addShadow(view, body.mesh, lamp, direction, light);
+        light.wideShadow = lamp.name + "Shadow.V";
+        view.scene.lights.push_back(light);
+    }
+    addSurroundings(view, body.head, studio(body.head, request));
+    copy(view.scene.camera.position, surface.camera.eye);
+    std::ranges::copy(surface.camera.inverseViewProjection(double(request.width) / request.height).toFloats(),
                       view.scene.camera.inverseViewProjection);
+    addPixels(view, body, surface, request);
     return view;
 }
 
@@ -244,7 +250,6 @@ io::SceneFile byTables(io::SceneFile scene) {
 DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3]) {
     const bool skin = profile.starts_with("skin");
     view.scene.materials[0].profile = profile;
-    view.scene.materials[0].material.shadowFilterWidth = 0;  // the profile's own
     const auto pixelsOf = [&](PelImageSlot slot, size_t component) -> std::vector<float>& {
         return std::ranges::find(view.gbuffer.channels, view.scene.channels[slot][component],
                                  &io::Channel::name)
@@ -254,6 +259,9 @@ DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3
     if (!skin) {
         view.scene.eyes.clear();
         view.scene.channels[PEL_SLOT_WETNESS].clear();
+        // These hold the shadows of hair.
+        view.scene.channels[PEL_SLOT_AMBIENT_OCCLUSION].clear();
+        for (io::SceneLight& light : view.scene.lights) light.wideShadow.clear();
         for (float& id : ids)
             if (id == float(demo::DEMO_EYES) || id >= float(demo::DEMO_RIGHT_EYE)) id = demo::DEMO_SKIN;
         std::ranges::fill(pixelsOf(PEL_SLOT_SPECULAR, 0), 1.0f);

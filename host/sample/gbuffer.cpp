@@ -43,14 +43,16 @@ struct Detail {
     SkinDetail settings;
     WaveField pores, folds, blood, pigment, furrows;
 
-    // The slope of lines that run up and down and spread from `middle`: a field that is stretched along them.
+    // The slope of lines that run up and down and spread from `middle`: a field that is stretched along them,
+    // bent, and deeper in some places than in others.
     Vec3 furrowSlope(Vec3 p, Vec3 middle, const Footprint& pixel) const {
-        constexpr double stretch = 6, spread = 0.035;  // spread per mm
+        constexpr double stretch = 5, spread = 0.05;  // spread per mm
         const double y = p.y - middle.y, x = (p.x - middle.x) / (1 + spread * std::abs(y));
+        const double bent = 0.4 * std::sin(0.7 * y + 0.35 * x) + 0.3 * std::sin(0.5 * y - 0.8 * x);
+        const double depth = 1 + 0.8 * std::sin(0.9 * x + 0.5 * y + 1) * std::sin(0.55 * x - 0.8 * y);
         Vec3 slope;
-        furrows.slope({x + 0.5 * std::sin(0.8 * y + 0.35 * x), p.y / stretch, p.z / stretch}, &pixel, 1,
-                      &slope);
-        const Vec3 across{slope.x, 0, 0};
+        furrows.slope({x + bent, p.y / stretch, p.z / stretch}, &pixel, 1, &slope);
+        const Vec3 across{depth * slope.x, 0, 0};
         return across - pixel.normal * dot(across, pixel.normal);
     }
 };

@@ -8,6 +8,7 @@ namespace pellucid::sample {
 constexpr int pattern = 4;             // pixels along a side
 constexpr double normalOffset = 0.05;  // mm from the surface, for the vertex normals lean from the triangles'
 constexpr double facetOffset = 0.3;    // facets at a slant to the light throw no shadow on their neighbours
+constexpr double hairReach = 25;       // mm: further away, single hairs throw no shadow that shows
 constexpr double alikeNormal = 0.8;    // cosine
 constexpr double alikeHeight = 0.5;    // mm above or below the tangent plane
 
@@ -19,9 +20,11 @@ Vec3 across(Vec3 n) {
 
 // The share of rays that hit nothing, of those above their pixel's horizon, over similar pixels of a pattern;
 // 1 where there are none. Each ray starts `offset` from the surface in directionAt(normal, x, y), (x, y) in
-// the unit disk. All pixels of the pattern share a set of points: equal steps of the area, golden azimuths.
+// the unit disk. Hair counts up to hairReach. All pixels of the pattern share a set of points: equal steps of
+// the area, golden azimuths.
 template <class DirectionAt>
-Image unoccluded(const Scene& scene, const GBuffer& g, int rays, double offset, DirectionAt&& directionAt) {
+Image unoccluded(const Scene& scene, const Scene* hair, const GBuffer& g, int rays, double offset,
+                 DirectionAt&& directionAt) {
     if (rays < 1) throw std::invalid_argument("occlusion: at least one ray a pixel");
     Image own(g.width, g.height, 2), mean(g.width, g.height, 1, 1);  // own: clear ones, and those above
     const auto isBackground = [&](int x, int y) { return g.coverage.at(0, x, y) == 0; };
@@ -35,7 +38,9 @@ Image unoccluded(const Scene& scene, const GBuffer& g, int rays, double offset, 
                              angle = 2 * std::numbers::pi * std::fmod(step / std::numbers::phi, 1.0);
                 const Vec3 d = directionAt(n, radius * std::cos(angle), radius * std::sin(angle));
                 if (dot(n, d) <= 0) continue;
-                own.at(0, x, y) += !scene.occluded({p + n * offset, d}, INFINITY);
+                const Ray ray{p + n * offset, d};
+                own.at(0, x, y) +=
+                    !(hair && hair->occluded(ray, hairReach)) && !scene.occluded(ray, INFINITY);
                 own.at(1, x, y) += 1;
             }
 #pragma omp parallel for schedule(dynamic, 4)
@@ -59,15 +64,16 @@ Image unoccluded(const Scene& scene, const GBuffer& g, int rays, double offset, 
 
 }  // namespace
 
-Image ambientOcclusion(const Scene& scene, const GBuffer& g, int rays) {
-    return unoccluded(scene, g, rays, normalOffset, [](Vec3 n, double x, double y) {
+Image ambientOcclusion(const Scene& scene, const GBuffer& g, int rays, const Scene* hair) {
+    return unoccluded(scene, hair, g, rays, normalOffset, [](Vec3 n, double x, double y) {
         return across(n) * x + cross(n, across(n)) * y + n * std::sqrt(1 - x * x - y * y);
     });
 }
 
-Image softShadow(const Scene& scene, const GBuffer& g, Vec3 toLight, double radius, int rays) {
+Image softShadow(const Scene& scene, const GBuffer& g, Vec3 toLight, double radius, int rays,
+                 const Scene* hair) {
     const Vec3 right = across(toLight) * radius, up = cross(toLight, right);
-    return unoccluded(scene, g, rays, facetOffset,
+    return unoccluded(scene, hair, g, rays, facetOffset,
                       [&](Vec3, double x, double y) { return normalize(toLight + right * x + up * y); });
 }
 

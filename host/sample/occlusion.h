@@ -7,11 +7,12 @@ namespace pellucid::sample {
 // The share of diffuse light from all round that reaches each pixel past the mesh: the fraction of `rays`
 // cosine-distributed rays that hit nothing. One plane, 1 on the background. Pixels take the directions of a
 // 4 x 4 pattern, and the mean over as many similar neighbours; the result depends on no thread. Throws
-// std::invalid_argument for `rays` below 1.
-Image ambientOcclusion(const Scene& scene, const GBuffer& gbuffer, int rays = 8);
+// std::invalid_argument for `rays` below 1. `hair`: of curves, or none.
+Image ambientOcclusion(const Scene& scene, const GBuffer& gbuffer, int rays = 8, const Scene* hair = nullptr);
 
 // The same for light from a disk around `toLight` (unit), of this radius at a distance of 1: how much of the
 // part above the pixel's horizon is not hidden; 1 where there is none.
-Image softShadow(const Scene& scene, const GBuffer& gbuffer, Vec3 toLight, double radius, int rays);
+Image softShadow(const Scene& scene, const GBuffer& gbuffer, Vec3 toLight, double radius, int rays,
+                 const Scene* hair = nullptr);
 
 }  // namespace pellucid::sample

@@ -16,6 +16,8 @@ struct Scene::Device {
         if (scene) rtcReleaseScene(scene);
         if (device) rtcReleaseDevice(device);
     }
+    void build(RTCGeometryType type, RTCFormat point, std::span<const float> points, RTCFormat primitive,
+               std::span<const uint32_t> indices);
 };
 
 namespace {
@@ -34,32 +36,45 @@ Mesh copyOf(const MeshView& view) {
 
 }  // namespace
 
-Scene::Scene(const MeshView& view)
-    : mesh_(copyOf(view)), bounds_(boundsOf(mesh_.view())), device_(std::make_unique<Device>()) {
+void Scene::Device::build(RTCGeometryType type, RTCFormat point, std::span<const float> points,
+                          RTCFormat primitive, std::span<const uint32_t> indices) {
     // One thread builds the tree, so that it is always the same: it decides which triangle of an edge is hit.
-    RTCDevice device = device_->device = rtcNewDevice("threads=1");
+    device = rtcNewDevice("threads=1");
     if (!device) fail(nullptr, "starting");
-    RTCScene scene = device_->scene = rtcNewScene(device);
+    scene = rtcNewScene(device);
     if (!scene) fail(device, "making a scene");
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-    if (!mesh_.triangles.empty()) {
-        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
-                                                  mesh_.positions.size() / 3);
-        void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
-                                                mesh_.triangles.size() / 3);
-        if (positions && indices) {
-            std::copy(mesh_.positions.begin(), mesh_.positions.end(), static_cast<float*>(positions));
-            std::copy(mesh_.triangles.begin(), mesh_.triangles.end(), static_cast<uint32_t*>(indices));
+    const size_t floats = point == RTC_FORMAT_FLOAT3 ? 3 : 4,
+                 perPrimitive = primitive == RTC_FORMAT_UINT3 ? 3 : 1;
+    if (!indices.empty()) {
+        RTCGeometry geometry = rtcNewGeometry(device, type);
+        void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, point, 4 * floats,
+                                                 points.size() / floats);
+        void* corners = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, primitive,
+                                                4 * perPrimitive, indices.size() / perPrimitive);
+        if (vertices && corners) {
+            std::ranges::copy(points, static_cast<float*>(vertices));
+            std::ranges::copy(indices, static_cast<uint32_t*>(corners));
             rtcCommitGeometry(geometry);
             rtcAttachGeometry(scene, geometry);
         }
         rtcReleaseGeometry(geometry);
-        if (!positions || !indices) fail(device, "copying the mesh");
+        if (!vertices || !corners) fail(device, "copying the mesh");
     }
     rtcCommitScene(scene);
     if (rtcGetDeviceError(device) != RTC_ERROR_NONE) fail(device, "building the scene");
+}
+
+Scene::Scene(const MeshView& view)
+    : mesh_(copyOf(view)), bounds_(boundsOf(mesh_.view())), device_(std::make_unique<Device>()) {
+    device_->build(RTC_GEOMETRY_TYPE_TRIANGLE, RTC_FORMAT_FLOAT3, mesh_.positions, RTC_FORMAT_UINT3,
+                   mesh_.triangles);
+}
+
+Scene::Scene(const Curves& curves) : device_(std::make_unique<Device>()) {
+    device_->build(RTC_GEOMETRY_TYPE_FLAT_LINEAR_CURVE, RTC_FORMAT_FLOAT4, curves.points, RTC_FORMAT_UINT,
+                   curves.segments);
 }
 
 Scene::~Scene() = default;

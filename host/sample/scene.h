@@ -19,10 +19,18 @@ struct Hit {
     double weights[3] = {0, 0, 0};  // barycentric, of the triangle's corners in order; they sum to 1
 };
 
+// Hairs: x, y, z and the radius of each point, mm, and the points at which a segment to the next one starts.
+struct Curves {
+    std::vector<float> points;
+    std::vector<uint32_t> segments;
+};
+
 class Scene {
   public:
     // Copies the mesh. Throws std::invalid_argument as checkMesh does, std::runtime_error when Embree fails.
     explicit Scene(const MeshView& mesh);
+    // Of `occluded` alone: all other queries need a mesh.
+    explicit Scene(const Curves& curves);
     ~Scene();
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;

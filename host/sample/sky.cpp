@@ -19,10 +19,12 @@ Rgb Sky::radiance(Vec3 direction) const {
     for (const Panel& panel : panels) {
         const Vec3 middle = normalize(panel.direction), right = normalize(cross(up, middle));
         const double depth = dot(direction, middle);
+        constexpr double edge = 0.1;
         if (depth <= 0) continue;
-        // Its edges fade over two degrees, so that texels show no stairs.
+        // Its edges fade, as those of a soft box do; over more than two texels of the reflected cube, so that
+        // a wet eye shows no stairs.
         const auto within = [&](Vec3 axis, double half) {
-            return std::clamp((half - std::abs(dot(direction, axis)) / depth) / 0.035 + 0.5, 0.0, 1.0);
+            return std::clamp((half - std::abs(dot(direction, axis)) / depth) / edge + 0.5, 0.0, 1.0);
         };
         const double on = within(right, panel.halfWidth) * within(cross(middle, right), panel.halfHeight);
         for (int c = 0; c < 3; ++c) out[c] += on * panel.radiance[c];

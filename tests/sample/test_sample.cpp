@@ -435,22 +435,37 @@ TEST(Sample, AmbientOcclusionUnderASquareIsItsFormFactor) {
     EXPECT_THROW(sample::ambientOcclusion(scene, sample::GBuffer(), 0), std::invalid_argument);
 }
 
-// A roof over x < 0, 30 mm above a floor: its edge hides the part of the disk beyond a line.
+// A roof over x < 0, or a hair along y, above a floor: their edges hide the parts of the disk beyond lines.
 TEST(Sample, SoftShadowIsTheHiddenPartOfADisk) {
-    constexpr double height = 30, radius = 0.06;
-    sample::Mesh mesh = sample::makeRectangle(-2000, 2000, -2000, 2000, 0);
+    constexpr double height = 30, hairHeight = 20, hairRadius = 0.8, radius = 0.06;
+    const sample::Mesh floor = sample::makeRectangle(-2000, 2000, -2000, 2000, 0);
+    sample::Mesh mesh = floor;
     mesh.append(sample::makeRectangle(-2000, 0, -2000, 2000, height));
-    const sample::Scene scene(mesh.view());
+    const sample::Scene scene(mesh.view()), open(floor.view());
+    const auto hairAt = [&](float z) {
+        return sample::Curves{{0, -50, z, hairRadius, 0, 50, z, hairRadius}, {0}};
+    };
+    const sample::Scene hair(hairAt(hairHeight)), far(hairAt(height));
     const sample::Camera below{.eye = {0, 0, height / 2}, .target = {}, .up = {0, 1, 0}, .nearPlane = 1};
     const sample::GBuffer g = sample::renderGBuffer(scene, below, 40, 40, plain());
-    const sample::Image lit = sample::softShadow(scene, g, {0, 0, 1}, radius, 8);
+    const sample::Image lit = sample::softShadow(scene, g, {0, 0, 1}, radius, 8),
+                        beside = sample::softShadow(open, g, {0, 0, 1}, radius, 8, &hair);
+    const auto part = [](double u) {
+        u = std::clamp(u, -1.0, 1.0);
+        return 0.5 + (u * std::sqrt(1 - u * u) + std::asin(u)) / std::numbers::pi;
+    };
     for (int x = 0; x < 40; ++x) {
-        const double u = std::clamp(g.position.at(0, x, 20) / (height * radius), -1.0, 1.0);
-        const double expected = 0.5 + (u * std::sqrt(1 - u * u) + std::asin(u)) / std::numbers::pi;
-        EXPECT_NEAR(lit.at(0, x, 20), expected, 0.06) << x;  // 128 samples, four pixels
+        const double at = g.position.at(0, x, 20);
+        EXPECT_NEAR(lit.at(0, x, 20), part(at / (height * radius)), 0.06) << x;  // 128 samples, four pixels
+        const double hidden =
+            part((at + hairRadius) / (hairHeight * radius)) - part((at - hairRadius) / (hairHeight * radius));
+        EXPECT_NEAR(beside.at(0, x, 20), 1 - hidden, 0.06) << x;
     }
+    EXPECT_LT(sample::ambientOcclusion(open, g, 8, &hair).at(0, 20, 20), 0.985);
     for (const float all : sample::softShadow(scene, g, {0, 0, -1}, radius, 8).data)
         EXPECT_EQ(all, 1) << "nothing of it is above the horizon";
+    EXPECT_EQ(std::ranges::min(sample::softShadow(open, g, {0, 0, 1}, radius, 8, &far).data), 1)
+        << "a hair that is too far away";
     EXPECT_THROW(sample::softShadow(scene, g, {0, 0, 1}, radius, 0), std::invalid_argument);
 }
 
