@@ -109,9 +109,6 @@ std::vector<io::SceneMaterial> materialsOf(const DemoHead& head) {
             glossy(0.05f, 0.2f);
         materials[demo::DEMO_CUT - 1].material = materials[demo::DEMO_LASHES - 1].material = glossy(0, 1);
     }
-    // As "auto" would choose, which leaves soft shadows of lamps with a shadow map aside.
-    for (io::SceneMaterial& m : materials)
-        m.material.scattering = m.profile.empty() ? PEL_SCATTERING_NONE : PEL_SCATTERING_SCREEN;
     return materials;
 }
 
@@ -232,6 +229,7 @@ DemoView renderDemoView(const DemoBody& body, const DemoSurface& surface, const 
         std::ranges::copy(lamp.color, light.light.color);
         addShadow(view, body.mesh, lamp, direction, light);
         light.wideShadow = lamp.name + "Shadow.V";
+        light.light.plainShadow = 1;
         view.scene.lights.push_back(light);
     }
     addSurroundings(view, body.head, studio(body.head, request));

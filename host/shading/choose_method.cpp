@@ -23,7 +23,8 @@ bool shadowsAreSharp(const ShaderState& state) {
     const bool wanted = std::ranges::any_of(
         state.materials, [](const auto& m) { return !isAuto(m.second) && !readsIrradiance(m.second); });
     return std::ranges::all_of(state.lights, [&](const ShaderLight& light) {
-        return !light.images[PEL_LIGHT_WIDE_SHADOW] || (light.images[PEL_LIGHT_SHADOW_MAP] && !wanted);
+        return !light.images[PEL_LIGHT_WIDE_SHADOW] || light.params.plainShadow ||
+               (light.images[PEL_LIGHT_SHADOW_MAP] && !wanted);
     });
 }
 
@@ -62,8 +63,11 @@ std::string chooseMethods(ShaderState& state, uint32_t methods, uint64_t tooMany
                 "scatter on the screen, which is nearer to light");
         } else {
             say("material ", id,
-                " scatters by its tables, for the shadow image of a light is wide: with a shadow map in its "
-                "place, or irradiance, it would scatter on the screen, which is nearer to light");
+                " scatters by its tables, for the shadow image of a light is wide: with "
+                "PelLight.plainShadow, "
+                "a shadow map in its place, or irradiance, it would scatter on the screen, which is nearer "
+                "to "
+                "light");
         }
     }
     // What has nothing to scatter by takes the same light and the same shadows as what does.
@@ -72,7 +76,8 @@ std::string chooseMethods(ShaderState& state, uint32_t methods, uint64_t tooMany
             material.params.scattering = PEL_SCATTERING_NONE;
     if (scatters && !given)
         for (ShaderLight& light : state.lights)
-            if (light.images[PEL_LIGHT_SHADOW_MAP]) light.images[PEL_LIGHT_WIDE_SHADOW] = ImageView();
+            if (light.images[PEL_LIGHT_SHADOW_MAP] && !light.params.plainShadow)
+                light.images[PEL_LIGHT_WIDE_SHADOW] = ImageView();
     return all;
 }
 

@@ -251,6 +251,7 @@ struct Lamp {
     PelLight light = pelLightDefaults();
     std::vector<std::vector<float>> maps;  // of one image or of cascades
     uint32_t width = 0, height = 0;        // of each
+    std::vector<float> shadow = {};        // by pixel
 };
 
 struct Shown {
@@ -307,10 +308,14 @@ struct Frame {
         std::vector<PelLight> lights;
         for (const Lamp& lamp : lamps) lights.push_back(lamp.light);
         shown.shader.set(lights);
-        for (size_t i = 0; i < lamps.size(); ++i)
+        for (size_t i = 0; i < lamps.size(); ++i) {
             for (size_t k = 0; k < lamps[i].maps.size(); ++k)
                 shown.setMap(PelLightSlot(k ? PEL_LIGHT_CASCADE_1 + int(k) - 1 : int(PEL_LIGHT_SHADOW_MAP)),
                              lamps[i].maps[k], lamps[i].width, lamps[i].height, uint32_t(i));
+            if (!lamps[i].shadow.empty())
+                shown.setMap(PEL_LIGHT_WIDE_SHADOW, lamps[i].shadow, picture.width, picture.height,
+                             uint32_t(i));
+        }
         std::vector<float> light = shown.execute();
         return {std::move(light), shown.shader.stats(), shown.shader.warnings()};
     }

@@ -442,8 +442,8 @@ TEST(LightSpace, AllTexelsUpToABorderCount) {
         EXPECT_NEAR(at(u, v), whole / 2, tolerance::lightPlaces * whole) << u << ' ' << v;
 }
 
-// Texels that show three surfaces in turns, 2 mm before the sheet, and 2 and 6 mm behind it: nothing is lit in
-// the air between, where the mean of two of them lies.
+// Texels that show three surfaces in turns, 2 mm before the sheet, and 2 and 6 mm behind it: nothing is lit
+// in the air between, where the mean of two of them lies.
 TEST(LightSpace, NothingIsLitBetweenSurfaces) {
     constexpr double variance = 1;  // mm^2
     LitBall lamp = lampFromBehind(24);
@@ -497,6 +497,33 @@ TEST(LightSpace, WithoutAllMapsTheScreenDoes) {
     }
     lights.back() = makeBall(Form::parallel, toLight, 16);
     EXPECT_TRUE(said(frameOf(lights, 16, byLight).shade()));
+}
+
+// A light's shadow image counts for `auto` where it is plain, as irradiance with that shadow does. Others are
+// left aside beside a map, and scattered by tables without one.
+TEST(LightSpace, PlainShadowImagesAreScatteredBy) {
+    constexpr uint32_t side = 40;
+    Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{0.5, 0.2, 0.8}), 64)}, side, byAuto, 0.4f);
+    Frame exact = f;
+    f.giveIrradiance = false;
+    std::vector<float> shadow;
+    for (size_t i = 0; i < f.picture.pixels(); ++i) {
+        shadow.push_back(std::clamp(float(i % side) / side * 5 - 2, 0.0f, 1.0f));
+        for (size_t c = 0; c < 3; ++c) exact.picture.irradiance[3 * i + c] *= shadow[i];
+    }
+    for (const bool map : {true, false}) {
+        for (Frame* each : {&f, &exact})
+            if (!map) each->lamps[0].maps.clear();
+        f.lamps[0].light.plainShadow = 0, f.lamps[0].shadow.clear();
+        const std::vector<float> without = f.shade().light;
+        f.lamps[0].shadow = shadow;
+        const Shown wide = f.shade();
+        EXPECT_EQ(wide.light == without, map);
+        EXPECT_EQ(wide.stats.pixelsByChoice[PEL_SCATTERING_PREINTEGRATED] > 0, !map);
+        EXPECT_EQ(wide.warnings.find("PelLight.plainShadow") == std::string::npos, map) << wide.warnings;
+        f.lamps[0].light.plainShadow = 1;
+        EXPECT_LT(difference(f.picture, f.shade().light, exact.shade().light).most, 1e-4) << "map " << map;
+    }
 }
 
 TEST(LightSpace, ASingularMatrixIsAnError) {

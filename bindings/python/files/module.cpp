@@ -50,17 +50,20 @@ py::dict loadMesh(const std::string& path, int levels) {
 }
 
 #ifdef PELLUCID_SAMPLE
-// The demo's hair: strands, their points from root to tip, and x, y, z of each with the root's radius. mm.
-py::array headStrands(const std::string& path, int levels) {
+// The demo's hair: x, y, z of each point, from root to tip, with the radius at the root, mm; and how many
+// points each strand has.
+py::tuple headStrands(const std::string& path, int levels) {
     const demo::DemoHead head = demo::loadDemoHead(path, levels);
     const io::MeshData& mesh = head.mesh;
     const sample::Scene skin({mesh.positions, mesh.normals, {}, {}, mesh.triangles, head.materials});
-    const std::vector<demo::Strand> strands = demo::strandsOf(skin, head);
     std::vector<float> values;
-    for (const demo::Strand& strand : strands)
+    std::vector<int32_t> counts;
+    for (const demo::Strand& strand : demo::strandsOf(skin, head)) {
+        counts.push_back(int32_t(strand.points.size()));
         for (const sample::Vec3 p : strand.points)
             values.insert(values.end(), {float(p.x), float(p.y), float(p.z), float(strand.radius)});
-    return rows(values, 4).reshape(std::vector<py::ssize_t>{std::ssize(strands), -1, 4});
+    }
+    return py::make_tuple(rows(values, 4), array(counts, {std::ssize(counts)}));
 }
 #endif
 

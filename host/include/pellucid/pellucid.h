@@ -1003,6 +1003,10 @@ typedef struct PelLight {
     /* 0: the light's maps may change from frame to frame. Else a number that the caller changes when they do:
      * what is computed from maps alone is kept until then, and shared by the shaders of a device */
     uint32_t shadowMapVersion;
+    /* 1: PEL_LIGHT_WIDE_SHADOW is what is seen of the light, sharp or as soft as its own size makes it
+     * (traced, or a renderer's shadow mask), not filtered for tables; PEL_SCATTERING_AUTO then scatters on
+     * the screen by it, beside a shadow map too. 0: it is filtered, or not set */
+    uint32_t plainShadow;
 } PelLight;
 
 typedef enum PelSpecularModel {

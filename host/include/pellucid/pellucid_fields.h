@@ -79,7 +79,10 @@
 #define PEL_EACH_LIGHT_FIELD(X) \
     X(COLOR, color, 1, 0, PEL_HUGE, PEL_NONE, "", "color", PEL_NO_SLIDER, \
       "RGB. Directional: irradiance / π at normal incidence; others: that at distance 1, of a rectangle " \
-      "along its axis")
+      "along its axis") \
+    X(UINT, plainShadow, 0, 0, 1, PEL_NONE, "", "plain_shadow", PEL_NO_SLIDER, \
+      "1: `wide_shadow` is what is seen of the light, sharp or as soft as its size makes it, not " \
+      "filtered for tables; `auto` scatters on the screen by it")
 /* Of directional lights, of all others, of spots, spheres and rectangles; checked for those alone. */
 #define PEL_EACH_DIRECTIONAL_LIGHT_FIELD(X) \
     X(VECTOR, toLight, (0, 0, 1), -PEL_FINITE, PEL_FINITE, PEL_NONE, "", "to_light", PEL_NO_SLIDER, \
