@@ -111,9 +111,6 @@ void main() {
 }
 """
 
-# Joint bilateral upsampling [Kopf et al. 2007]: of the four nearest shaded pixels those count that lie on the
-# plane of this one. What the picture at rest shows beyond such a picture is added where it saw this place. Of
-# eyes all is taken from it: what they refract moves beneath their surface.
 _MIXED = """
 // The sum of the small pixel `low`, the one to its right, the one below, and the one below that.
 vec3 mixed(sampler2D shaded, vec2 low, vec4 w) {
@@ -124,6 +121,9 @@ vec3 mixed(sampler2D shaded, vec2 low, vec4 w) {
 }
 """
 
+# Joint bilateral upsampling [Kopf et al. 2007]: of the four nearest shaded pixels those count that lie on the
+# plane of this one. What the picture at rest shows beyond such a picture is added where it saw this place. Of
+# eyes all is taken from it: what they refract moves beneath their surface.
 ENLARGE_FRAGMENT = """
 #version 330 core
 uniform sampler2D shaded, depths;       // small; depth from the eye
