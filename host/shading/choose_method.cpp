@@ -63,11 +63,9 @@ std::string chooseMethods(ShaderState& state, uint32_t methods, uint64_t tooMany
                 "scatter on the screen, which is nearer to light");
         } else {
             say("material ", id,
-                " scatters by its tables, for the shadow image of a light is wide: with "
-                "PelLight.plainShadow, "
-                "a shadow map in its place, or irradiance, it would scatter on the screen, which is nearer "
-                "to "
-                "light");
+                " scatters by its tables, for the shadow image of a light is wide: with irradiance, a shadow "
+                "map in its place, or PelLight.plainShadow, it would scatter on the screen, which is nearer "
+                "to light");
         }
     }
     // What has nothing to scatter by takes the same light and the same shadows as what does.
