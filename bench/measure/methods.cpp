@@ -7,6 +7,7 @@
 #include "io/shortest.h"
 #include "measure.h"
 #include "power.h"
+#include "report.h"
 #include "scenes.h"
 
 namespace pellucid::bench {
@@ -86,7 +87,7 @@ std::vector<Setting> settings() {
     }
     for (const int size : {512, 1024})
         add("auto", "map of " + text(size, "texels"), PEL_SCATTERING_AUTO).mapSize = size;
-    add("auto", "with thickness", PEL_SCATTERING_AUTO).thickness = true;
+    add("auto", withThickness, PEL_SCATTERING_AUTO).thickness = true;
     Setting& light = add("light", "map of 2048 texels", PEL_SCATTERING_LIGHT);
     light.quick = light.shown = true;
     light.tunes = "light";
@@ -397,14 +398,14 @@ class Methods {
         }
     }
 
-    // All contenders in turns, in another order each time, so that a machine that drifts slows all. Three
-    // runs are enough of what takes long.
+    // All contenders in turns, in another order each time, so that a machine that drifts slows all. Each runs
+    // for two seconds at most, or once.
     void run(std::vector<Contender>& contenders, const std::string& scene, const char* group, int rounds) {
         std::mt19937 random(1);
         for (int round = 0; round < rounds; ++round) {
             std::ranges::shuffle(contenders, random);
             for (Contender& c : contenders) {
-                if (round >= 3 && c.wall.back() > 400) continue;
+                if (round > 0 && c.wall.front() * (round + 1) > 2000) continue;
                 request_.event({{"begin", scene + ": " + c.setting.name()}, {"group", group}});
                 const double start = milliseconds(), before = c.frame();
                 c.wall.push_back(milliseconds() - start);

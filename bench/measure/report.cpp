@@ -219,7 +219,18 @@ double percentile90(std::vector<double> values) {
     return values[size_t(0.9 * double(values.size() - 1) + 0.5)];
 }
 
-// Whether frames with a time budget keep it, and how near they are to what was as fast.
+// How far the square of a method's error may be from that without the walk's noise: two standard errors of
+// the mean product of both halves' noise, which are sqrt(2) times as noisy as their mean.
+double uncertaintyOf(const Json& device, const Json& e) {
+    double variance = 0, pixels = 0;
+    for (const Json& noise : e.value("noise", Json::array()))
+        variance += std::pow(noise.get<double>(), 2) / 3;
+    for (const Json& scene : device.value("scenes", Json::array()))
+        if (scene["name"] == e["scene"]) pixels = value(scene, "compared");
+    return pixels > 0 ? 2 * 2 * variance / std::sqrt(3 * pixels) : 0;
+}
+
+// Whether frames with a time budget keep it, and how near they are to what was as fast with the same images.
 void summarizeBudgets(Json& device) {
     size_t frames = 0, kept = 0, near = 0;
     double worst = 0;
@@ -229,11 +240,13 @@ void summarizeBudgets(Json& device) {
         double front = error;
         for (const Json& other : device.at("operations"))
             if (other.value("group", "") == "methods" && other["scene"] == e["scene"] &&
-                value(other, "added_ms") <= took)
+                other["setting"] != withThickness && value(other, "added_ms") <= took)
                 front = std::min(front, value(other, "error_rms"));
         e["kept"] = took <= 1.15 * value(e, "budget_ms");
         e["front_ratio"] = error / front;
-        ++frames, kept += e["kept"].get<bool>(), near += error <= 1.3 * front;
+        constexpr double most = 1.3 * 1.3;
+        ++frames, kept += e["kept"].get<bool>();
+        near += error * error <= most * front * front + (most - 1) * uncertaintyOf(device, e);
         worst = std::max(worst, error / front);
     }
     if (frames)

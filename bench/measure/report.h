@@ -21,6 +21,9 @@ nlohmann::ordered_json compareReports(const nlohmann::ordered_json& before,
                                       const nlohmann::ordered_json& after);
 std::string describeComparison(const nlohmann::ordered_json& comparison);  // a table for people
 
+// The setting of "auto" that is given an image which the others are not.
+constexpr const char* withThickness = "with thickness";
+
 // What a reader asks first. Adds to a device of a report:
 // "summary": each method and setting over all scenes: {"method", "setting", "scenes", "rmse" (RGB) and
 // "error", root mean squares, "flip", the mean where all scenes have it, "watts", the median, "ns_per_pixel"

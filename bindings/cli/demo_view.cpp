@@ -181,14 +181,23 @@ void addPixels(DemoView& view, const DemoBody& body, const DemoSurface& surface,
     demo::StrandLight onHair;
     onHair.occluders = &body.mesh;
     onHair.sky = studio(body.head, request), onHair.sky.panels.clear();
+    sample::Bounces bounces;
+    bounces.sky = onHair.sky;
+    std::ranges::copy(sample::Look().albedo, bounces.albedo.begin());
+    bounces.rays = request.rays;
+    bounces.hair = &body.hair;
     for (size_t i = 0; i < request.lights.size(); ++i) {
         const DemoLight& lamp = request.lights[i];
         const sample::Vec3 toLight = directionOf(body.head, lamp).toLight;
         view.gbuffer.channels.push_back(io::Channel::halves(
             view.scene.lights[i].wideShadow,
             sample::softShadow(body.mesh, g, toLight, lamp.radius, request.rays / 2, &body.hair).data));
+        sample::SurfaceLight& bounced = bounces.lamps.emplace_back();
+        bounced.toLight = toLight;
+        std::ranges::copy(lamp.color, bounced.color.begin());
         onHair.lamps.push_back({toLight, {lamp.color[0], lamp.color[1], lamp.color[2]}});
     }
+    const sample::Image indirect = sample::bouncedLight(body.mesh, g, bounces);
     sample::Image albedo = g.albedo, specular = g.specular;
     std::vector<float> ids(g.material.begin(), g.material.end());
     const sample::Image before =
@@ -209,6 +218,7 @@ void addPixels(DemoView& view, const DemoBody& body, const DemoSurface& surface,
     add(PEL_SLOT_ROUGHNESS, "Roughness", "V", g.roughness.data);
     add(PEL_SLOT_SPECULAR, "Specular", "V", specular.data);
     add(PEL_SLOT_AMBIENT_OCCLUSION, "AmbientOcclusion", "V", surface.occlusion.data, io::ChannelType::Half);
+    add(PEL_SLOT_INDIRECT, "Indirect", "RGB", indirect.data, io::ChannelType::Half);
     add(PEL_SLOT_MATERIAL, "Material", "I", ids);
     if (!surface.wetness.empty()) add(PEL_SLOT_WETNESS, "Wetness", "V", surface.wetness);
     add(PEL_SLOT_RADIANCE, "Before", "RGB", before.data, io::ChannelType::Half);
@@ -259,6 +269,7 @@ DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3
         view.scene.channels[PEL_SLOT_WETNESS].clear();
         // These hold the shadows of hair.
         view.scene.channels[PEL_SLOT_AMBIENT_OCCLUSION].clear();
+        view.scene.channels[PEL_SLOT_INDIRECT].clear();
         for (io::SceneLight& light : view.scene.lights) light.wideShadow.clear();
         for (float& id : ids)
             if (id == float(demo::DEMO_EYES) || id >= float(demo::DEMO_RIGHT_EYE)) id = demo::DEMO_SKIN;
@@ -266,10 +277,12 @@ DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3
     }
     for (size_t c = 0; c < 3; ++c) {
         std::vector<float>& albedo = pixelsOf(PEL_SLOT_ALBEDO, c);
+        std::vector<float>* const indirect = skin ? &pixelsOf(PEL_SLOT_INDIRECT, c) : nullptr;
         std::vector<float>& before = pixelsOf(PEL_SLOT_RADIANCE, c);
         for (size_t i = 0; i < ids.size(); ++i) {
             if (ids[i] == float(demo::DEMO_SKIN))
                 albedo[i] = std::min(1.0f, (skin ? albedo[i] : sample::Look().albedo[c]) * tint[c]);
+            if (indirect) (*indirect)[i] *= tint[c];  // of most of it, that reflected once
             if (!skin) before[i] = ids[i] ? 0 : backdrop[c];
         }
     }

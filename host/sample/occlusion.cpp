@@ -18,56 +18,76 @@ Vec3 across(Vec3 n) {
     return normalize(std::abs(n.x) < 0.5 ? cross(n, {1, 0, 0}) : cross(n, {0, 1, 0}));
 }
 
-// The share of rays that hit nothing, of those above their pixel's horizon, over similar pixels of a pattern;
-// 1 where there are none. Each ray starts `offset` from the surface in directionAt(normal, x, y), (x, y) in
-// the unit disk. Hair counts up to hairReach. All pixels of the pattern share a set of points: equal steps of
-// the area, golden azimuths.
-template <class DirectionAt>
-Image unoccluded(const Scene& scene, const Scene* hair, const GBuffer& g, int rays, double offset,
-                 DirectionAt&& directionAt) {
+// A direction about `n` whose projection to the surface is (x, y) of the unit disk.
+Vec3 above(Vec3 n, double x, double y) {
+    return across(n) * x + cross(n, across(n)) * y + n * std::sqrt(std::max(0.0, 1 - x * x - y * y));
+}
+
+// Means over rays of similar pixels of a pattern; `empty` where no ray is above the horizon. Each ray starts
+// `offset` from the surface in directionAt(normal, x, y), (x, y) in the unit disk; addTo(sum, ray, step) adds
+// what one with this number in the pattern brings. All pixels of the pattern share a set of points: equal
+// steps of the area, golden azimuths.
+template <int Planes, class DirectionAt, class AddTo>
+Image meanOverRays(const GBuffer& g, int rays, double offset, float empty, DirectionAt&& directionAt,
+                   AddTo&& addTo) {
     if (rays < 1) throw std::invalid_argument("occlusion: at least one ray a pixel");
-    Image own(g.width, g.height, 2), mean(g.width, g.height, 1, 1);  // own: clear ones, and those above
+    using Sum = std::array<float, Planes>;
+    Image own(g.width, g.height, Planes + 1), mean(g.width, g.height, Planes, empty);  // and how many rays
     const auto isBackground = [&](int x, int y) { return g.coverage.at(0, x, y) == 0; };
 #pragma omp parallel for schedule(dynamic, 4)
     for (int y = 0; y < g.height; ++y)
-        for (int x = 0; x < g.width; ++x)
+        for (int x = 0; x < g.width; ++x) {
+            Sum sum{};
             for (int i = 0; i < rays && !isBackground(x, y); ++i) {
                 const Vec3 p = vectorAt(g.position, x, y), n = vectorAt(g.geometricNormal, x, y);
-                const double step = i * pattern * pattern + x % pattern + pattern * (y % pattern),
-                             radius = std::sqrt((step + 0.5) / (pattern * pattern * rays)),
+                const int step = i * pattern * pattern + x % pattern + pattern * (y % pattern);
+                const double radius = std::sqrt((step + 0.5) / (pattern * pattern * rays)),
                              angle = 2 * std::numbers::pi * std::fmod(step / std::numbers::phi, 1.0);
                 const Vec3 d = directionAt(n, radius * std::cos(angle), radius * std::sin(angle));
                 if (dot(n, d) <= 0) continue;
-                const Ray ray{p + n * offset, d};
-                own.at(0, x, y) +=
-                    !(hair && hair->occluded(ray, hairReach)) && !scene.occluded(ray, INFINITY);
-                own.at(1, x, y) += 1;
+                addTo(sum, Ray{p + n * offset, d}, step);
+                own.at(Planes, x, y) += 1;
             }
+            for (int k = 0; k < Planes; ++k) own.at(k, x, y) = sum[size_t(k)];
+        }
 #pragma omp parallel for schedule(dynamic, 4)
     for (int y = 0; y < g.height; ++y)
         for (int x = 0; x < g.width; ++x) {
             if (isBackground(x, y)) continue;
             const Vec3 p = vectorAt(g.position, x, y), n = vectorAt(g.geometricNormal, x, y);
-            float sum = 0, count = 0;
+            std::array<float, Planes + 1> sum{};
             for (int v = y - pattern / 2; v < y + pattern / 2; ++v)
                 for (int u = x - pattern / 2; u < x + pattern / 2; ++u) {
                     if (u < 0 || v < 0 || u >= g.width || v >= g.height || isBackground(u, v)) continue;
                     if (dot(n, vectorAt(g.geometricNormal, u, v)) < alikeNormal ||
                         std::abs(dot(n, vectorAt(g.position, u, v) - p)) > alikeHeight)
                         continue;
-                    sum += own.at(0, u, v), count += own.at(1, u, v);
+                    for (int k = 0; k <= Planes; ++k) sum[size_t(k)] += own.at(k, u, v);
                 }
-            if (count > 0) mean.at(0, x, y) = sum / count;
+            for (int k = 0; k < Planes && sum[Planes] > 0; ++k)
+                mean.at(k, x, y) = sum[size_t(k)] / sum[Planes];
         }
     return mean;
+}
+
+bool meetsHair(const Scene* hair, const Ray& ray, double within = hairReach) {
+    return hair && hair->occluded(ray, std::min(within, hairReach));
+}
+
+// The share of rays that hit nothing; 1 where there are none.
+template <class DirectionAt>
+Image unoccluded(const Scene& scene, const Scene* hair, const GBuffer& g, int rays, double offset,
+                 DirectionAt&& directionAt) {
+    return meanOverRays<1>(g, rays, offset, 1, directionAt,
+                           [&](std::array<float, 1>& sum, const Ray& ray, int) {
+                               sum[0] += !meetsHair(hair, ray) && !scene.occluded(ray, INFINITY);
+                           });
 }
 
 }  // namespace
 
 Image ambientOcclusion(const Scene& scene, const GBuffer& g, int rays, const Scene* hair) {
-    return unoccluded(scene, hair, g, rays, normalOffset, [](Vec3 n, double x, double y) {
-        return across(n) * x + cross(n, across(n)) * y + n * std::sqrt(1 - x * x - y * y);
-    });
+    return unoccluded(scene, hair, g, rays, normalOffset, above);
 }
 
 Image softShadow(const Scene& scene, const GBuffer& g, Vec3 toLight, double radius, int rays,
@@ -75,6 +95,39 @@ Image softShadow(const Scene& scene, const GBuffer& g, Vec3 toLight, double radi
     const Vec3 right = across(toLight) * radius, up = cross(toLight, right);
     return unoccluded(scene, hair, g, rays, facetOffset,
                       [&](Vec3, double x, double y) { return normalize(toLight + right * x + up * y); });
+}
+
+Image bouncedLight(const Scene& scene, const GBuffer& g, const Bounces& b) {
+    constexpr int most = 3;
+    const Lighting lighting{b.lamps, {}};
+    return meanOverRays<3>(
+        g, b.rays, normalOffset, 0, above, [&](std::array<float, 3>& sum, Ray ray, int step) {
+            Rgb part{1, 1, 1};
+            for (int bounce = 0; bounce <= most; ++bounce) {
+                Vec3 n;
+                const Hit hit = scene.firstHit(ray, INFINITY, n);
+                const bool left = hit.triangle == Hit::none;
+                if ((left && !bounce) || meetsHair(b.hair, ray, hit.distance)) return;
+                if (!left && (bounce == most || dot(n, ray.direction) >= 0)) return;  // the inside is dark
+                Rgb light{};
+                if (left)
+                    light = b.sky.radiance(ray.direction);
+                else
+                    light = irradianceAt(scene, lighting,
+                                         {hit.triangle, {hit.weights[0], hit.weights[1], hit.weights[2]}});
+                for (size_t c = 0; c < 3; ++c) {
+                    if (!left) part[c] *= b.albedo[c];
+                    sum[c] += float(part[c] * light[c]);
+                }
+                if (left) return;
+                // A sequence of low discrepancy for each bounce [Roberts 2018, "The unreasonable effectiveness of
+                // quasirandom sequences"].
+                const double radius = std::sqrt(std::fmod((step + 1) * 0.7548776662 + 0.5 * bounce, 1.0)),
+                             angle = 2 * std::numbers::pi * std::fmod((step + 1) * 0.5698402910, 1.0);
+                ray = {ray.origin + ray.direction * hit.distance + n * normalOffset,
+                       above(n, radius * std::cos(angle), radius * std::sin(angle))};
+            }
+        });
 }
 
 }  // namespace pellucid::sample

@@ -1,6 +1,8 @@
-// Ambient occlusion and soft shadows of a G-buffer, by rays.
+// Ambient occlusion, soft shadows and bounced light of a G-buffer, by rays.
 #pragma once
 #include "sample/gbuffer.h"
+#include "sample/lit_mesh.h"
+#include "sample/sky.h"
 
 namespace pellucid::sample {
 
@@ -14,5 +16,18 @@ Image ambientOcclusion(const Scene& scene, const GBuffer& gbuffer, int rays = 8,
 // part above the pixel's horizon is not hidden; 1 where there is none.
 Image softShadow(const Scene& scene, const GBuffer& gbuffer, Vec3 toLight, double radius, int rays,
                  const Scene* hair = nullptr);
+
+// Irradiance / pi, RGB, of light that reaches each pixel after up to three diffuse reflections off a mesh of
+// one albedo: paths of cosine-distributed rays, that many to a pixel, from the lamps (PelLight's unit) and
+// the sky. 0 on the background; shared over pixels as the occlusion is. Rays that meet `hair` first bring
+// nothing.
+struct Bounces {
+    std::vector<SurfaceLight> lamps;
+    Sky sky;
+    Rgb albedo{0.5, 0.5, 0.5};
+    int rays = 8;
+    const Scene* hair = nullptr;
+};
+Image bouncedLight(const Scene& scene, const GBuffer& gbuffer, const Bounces& bounces);
 
 }  // namespace pellucid::sample

@@ -37,8 +37,7 @@ std::string chooseMethods(ShaderState& state, uint32_t methods, uint64_t tooMany
     const bool given = bool(state.images[PEL_SLOT_IRRADIANCE]);
     const bool onScreen =
         places && !tooMany && (given || shadowsAreSharp(state)) && (methods >> PEL_SCATTERING_SCREEN & 1);
-    const bool lit =
-        !state.lights.empty() || !isBlack(state.ambient) || state.ambientCube || state.environment;
+    const bool lit = !state.lights.empty() || hasAmbient(state);
     bool scatters = false;
     for (auto& [id, material] : state.materials) {
         if (!isAuto(material)) continue;

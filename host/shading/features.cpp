@@ -149,6 +149,14 @@ bool isBlack(const PelAmbient& a) {
            std::all_of(std::begin(a.sh), std::end(a.sh), [](auto& c) { return isBlack(c); });
 }
 
+bool isSurrounded(const ShaderState& state) {
+    return !isBlack(state.ambient) || state.ambientCube || state.environment;
+}
+
+bool hasAmbient(const ShaderState& state) {
+    return isSurrounded(state) || state.images[PEL_SLOT_INDIRECT];
+}
+
 uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material) {
     const auto& images = state.images;
     const PelMaterial& m = material.params;
@@ -181,8 +189,8 @@ uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material)
     if (material.eye)
         needs |=
             PEL_FEATURE_EYE | (state.reflectionCube || state.environment ? PEL_FEATURE_REFLECTION_CUBE : 0);
-    const bool ambient = !isBlack(state.ambient) || state.ambientCube || state.environment;
-    if (ambient && images[PEL_SLOT_THICKNESS] && m.deepScatterAmbient > 0 && !isBlack(m.deepScatterColor))
+    if (isSurrounded(state) && images[PEL_SLOT_THICKNESS] && m.deepScatterAmbient > 0 &&
+        !isBlack(m.deepScatterColor))
         needs |= PEL_FEATURE_AMBIENT_SCATTER;
     return needs;
 }
@@ -236,8 +244,8 @@ uint32_t deriveFeatures(const ShaderState& state) {
     uint32_t features = 0;
     if (wide) features |= PEL_FEATURE_SHADOW;
     if (filtered) features |= PEL_FEATURE_FILTER_SHADOW;
-    if (!isBlack(state.ambient)) features |= PEL_FEATURE_AMBIENT;
-    if (state.ambientCube || state.environment) features |= PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_CUBE;
+    if (hasAmbient(state)) features |= PEL_FEATURE_AMBIENT;
+    if (state.ambientCube || state.environment) features |= PEL_FEATURE_AMBIENT_CUBE;
     for (const auto& [id, material] : state.materials) features |= materialNeeds(state, material);
     if (features & (PEL_FEATURE_THICKNESS_TAPS | PEL_FEATURE_FILTER_SHADOW)) features |= forms;
     if (makesIrradiance(state)) features |= PEL_FEATURE_MAKE_IRRADIANCE;
@@ -299,8 +307,7 @@ bool lightIsMapped(const ShaderState& state) {
         if (!shines(light)) return false;
         maps += mapsOf(light);
     }
-    return maps > 0 && maps <= PEL_LIGHT_MAPS && isBlack(state.ambient) && !state.ambientCube &&
-           !state.environment;
+    return maps > 0 && maps <= PEL_LIGHT_MAPS && !hasAmbient(state);
 }
 
 }  // namespace pel

@@ -1,10 +1,10 @@
 // Irradiance / pi at each pixel, before it scatters: all lights with sharp shadows, and the ambient light
 // (section 6 of the mathematics without a profile); without specular light and albedo.
 //
-// Inputs: shading normals, positions or depth if a light has a position, ambient occlusion, thickness of the
-// body, shadows per pixel and light, ids. Output: planes of RGB, NaN where an input is. Pixels of materials
-// that use the tables (PEL_SCATTER_PREINTEGRATED) are not changed. One work-group: a run of tiles; one
-// work-item: PEL_WIDTH pixels of a row at a time. Variants: as shade.cl.
+// Inputs: shading normals, positions or depth if a light has a position, ambient occlusion, indirect light,
+// thickness of the body, shadows per pixel and light, ids. Output: planes of RGB, NaN where an input is.
+// Pixels of materials that use the tables (PEL_SCATTER_PREINTEGRATED) are not changed. One work-group: a run
+// of tiles; one work-item: PEL_WIDTH pixels of a row at a time. Variants: as shade.cl.
 #define IMAGES_RESTRICT restrict
 #include "lib/image/planes.clh"
 #include "lib/shading/tiles.clh"
@@ -46,6 +46,11 @@ static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMat
         e = ambientAlong(scene, n);
         if (PEL_FORMAT_AMBIENT_OCCLUSION)
             e = scale3(e, loadScalar(PEL_FORMAT_AMBIENT_OCCLUSION, SPAN(AMBIENT_OCCLUSION)));
+        if (PEL_FORMAT_INDIRECT) {
+            const Vec3w indirect = loadColor(PEL_FORMAT_INDIRECT, SPAN(INDIRECT));
+            valid &= finite3(indirect);
+            e = add3(e, indirect);
+        }
     }
 #if PEL_THIN
     // Of sheets the other side too, with the shadow of this one.

@@ -50,7 +50,8 @@
     X(MEAN_CURVATURE, 24, SHADE, SCALAR, 1, "mean_curvature", "mean curvature", \
       PEL_BIT_IRRADIANCE | PEL_BIT_DIRECT_SCATTER) \
     X(SKIN, 25, PASS, UV, 3, "skin", "skin", 0) \
-    X(MOTION, 26, PASS, UV, 3, "motion", "motion", 0)
+    X(MOTION, 26, PASS, UV, 3, "motion", "motion", 0) \
+    X(INDIRECT, 27, SHADE, COLOR, 3, "indirect", "indirect light", PEL_BIT_AMBIENT)
 // clang-format on
 
 // PEL_IMAGE_<NAME>, their count, and PEL_READ_<NAME>: the bits.

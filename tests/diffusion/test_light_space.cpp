@@ -526,6 +526,29 @@ TEST(LightSpace, PlainShadowImagesAreScatteredBy) {
     }
 }
 
+// PEL_SLOT_INDIRECT is irradiance as that of the lights is, and no occlusion dims it.
+TEST(LightSpace, IndirectLightScattersAsThatOfLights) {
+    constexpr uint32_t side = 40;
+    Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{0.5, 0.2, 0.8}), 64)}, side, byAuto, 0.4f);
+    Frame exact = f;
+    f.giveIrradiance = false;
+    std::vector<float>& indirect = f.images[PEL_SLOT_INDIRECT];
+    for (size_t i = 0; i < f.picture.pixels(); ++i)
+        for (size_t c = 0; c < 3; ++c) {
+            indirect.push_back(i % side < side / 2 ? 0.1f * float(c + 1) : 0);
+            exact.picture.irradiance[3 * i + c] += indirect.back();
+        }
+    f.images[PEL_SLOT_AMBIENT_OCCLUSION].assign(f.picture.pixels(), 0);
+    for (const PelScattering method :
+         {byAuto, PEL_SCATTERING_NONE, PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE}) {
+        f.material.scattering = exact.material.scattering = method;
+        EXPECT_LT(difference(f.picture, f.shade().light, exact.shade().light).most, 1e-4) << method;
+    }
+    f.material.scattering = byLight;  // whose maps do not hold it
+    exact.material.scattering = PEL_SCATTERING_SCREEN;
+    EXPECT_LT(difference(f.picture, f.shade().light, exact.shade().light).most, 1e-4);
+}
+
 TEST(LightSpace, ASingularMatrixIsAnError) {
     Frame f = frameOf({makeBall(Form::parallel, {0, 0, 1}, 16)}, 16, byLight);
     std::fill_n(f.lamps[0].light.worldToShadow + 4, 4, 0.0f);

@@ -268,8 +268,9 @@ Shaded shadePixel(const Material& material, const Pixel& pixel, const std::vecto
         total.specular = total.specular + one.specular;
     }
     total.ambient =
-        pixel.ambientOcclusion *
-        (material.albedo * ambientTerm(ambient, pixel.shading, pixel.blurred, material.normalBlend));
+        material.albedo *
+        (pixel.ambientOcclusion * ambientTerm(ambient, pixel.shading, pixel.blurred, material.normalBlend) +
+         pixel.indirect);
     if (pixel.hasThickness && material.deepScatterAmbient > 0) {
         const double t = pixel.thickness / material.deepScatterRadius;
         total.deepScatter = total.deepScatter + material.deepScatterAmbient * std::exp(-t * t / 2) *

@@ -141,6 +141,7 @@ struct Pixel {
     Vec3 geometric, shading, blurred, toViewer;
     double curvature = 0;  // 1/length
     double ambientOcclusion = 1;
+    Rgb indirect;               // irradiance / pi beside the lights and the ambient
     bool hasThickness = false;  // of its own, from an image
     double thickness = 0;       // length
 };

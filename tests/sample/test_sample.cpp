@@ -435,6 +435,44 @@ TEST(Sample, AmbientOcclusionUnderASquareIsItsFormFactor) {
     EXPECT_THROW(sample::ambientOcclusion(scene, sample::GBuffer(), 0), std::invalid_argument);
 }
 
+// Beside a wall that a lamp along the floor lights [Howell, B-4: half of a rectangle across the element]. With
+// an even sky and no loss, all paths end in it but for those of more reflections than are followed.
+TEST(Sample, BouncedLightBesideAWallIsItsFormFactor) {
+    constexpr double high = 60, wide = 80, albedo = 0.1;
+    sample::Mesh mesh = sample::makeRectangle(0, high, -wide, wide, 0);
+    for (size_t i = 0; i < mesh.positions.size(); i += 3) {
+        float* p = &mesh.positions[i];
+        p[2] = float(high) - p[0], p[0] = 0;
+        mesh.normals[i] = 1, mesh.normals[i + 2] = 0;
+    }
+    mesh.append(sample::makeRectangle(0, 2000, -2000, 2000, 0));
+    const sample::Scene scene(mesh.view());
+    const sample::Camera camera{.eye = {30, 0, 40}, .target = {30, 0, 0}, .up = {0, 1, 0}, .nearPlane = 1};
+    const sample::GBuffer g = sample::renderGBuffer(scene, camera, 16, 16, plain());
+    sample::Bounces b;
+    b.lamps.resize(1), b.lamps[0].toLight = {1, 0, 0}, b.lamps[0].color = {1, 2, 4};
+    b.sky.scale = 0, b.albedo = {albedo, albedo, albedo}, b.rays = 64;
+    const sample::Image lit = sample::bouncedLight(scene, g, b);
+    for (int x = 0; x < 16; x += 5) {
+        const double d = g.position.at(0, x, 8), far = std::hypot(d, high),
+                     seen = (std::atan(wide / d) - d / far * std::atan(wide / far)) / std::numbers::pi;
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(lit.at(c, x, 8), albedo * seen * (1 << c), 0.01 * (1 << c) * albedo) << x;
+    }
+    b.lamps.clear(), b.albedo = {1, 1, 0.5};
+    b.sky = {.zenith = {1, 1, 1}, .horizon = {1, 1, 1}, .floor = {1, 1, 1}, .lampRadiance = {0, 0, 0}};
+    const sample::Image even = sample::bouncedLight(scene, g, b), open = sample::ambientOcclusion(scene, g);
+    for (int x = 0; x < 16; x += 5) {
+        EXPECT_NEAR(even.at(0, x, 8) + open.at(0, x, 8), 1, 0.03) << x;
+        EXPECT_LT(even.at(2, x, 8), 0.6 * even.at(0, x, 8));
+    }
+    const sample::Scene hair(sample::Curves{{10, -50, 10, 8, 10, 50, 10, 8}, {0}});
+    b.hair = &hair;
+    EXPECT_LT(sample::bouncedLight(scene, g, b).at(0, 8, 8), 0.95 * even.at(0, 8, 8));
+    b.rays = 0;
+    EXPECT_THROW(sample::bouncedLight(scene, g, b), std::invalid_argument);
+}
+
 // A roof over x < 0, or a hair along y, above a floor: their edges hide the parts of the disk beyond lines.
 TEST(Sample, SoftShadowIsTheHiddenPartOfADisk) {
     constexpr double height = 30, hairHeight = 20, hairRadius = 0.8, radius = 0.06;

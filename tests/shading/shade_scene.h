@@ -258,6 +258,7 @@ inline reference::Shaded truth(const Frame& f, const Tables& tables, size_t i) {
     }
     pixel.curvature = value(PEL_SLOT_CURVATURE, 0);
     pixel.ambientOcclusion = value(PEL_SLOT_AMBIENT_OCCLUSION, 1);
+    if (!s[PEL_SLOT_INDIRECT].values.empty()) pixel.indirect = s[PEL_SLOT_INDIRECT].vec(i);
     pixel.hasThickness = !s[PEL_SLOT_THICKNESS].values.empty();
     pixel.thickness = value(PEL_SLOT_THICKNESS, 0);
     std::vector<reference::PixelLight> lights;

@@ -67,6 +67,13 @@ INSTANTIATE_TEST_SUITE_P(
                     Term{"PlainShadow", PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SHADOW, CURVATURE | WIDE},
                     Term{"ShadowLut", PEL_FEATURE_SHADOW | PEL_FEATURE_SHADOW_LUT, WIDE | LUT},
                     Term{"Ambient", PEL_FEATURE_AMBIENT, AMBIENT},
+                    Term{"Indirect", PEL_FEATURE_AMBIENT, AMBIENT,
+                         [](Frame& f) { f.slots[PEL_SLOT_INDIRECT] = f.slots[PEL_SLOT_ALBEDO]; }},
+                    Term{"IndirectAlone", PEL_FEATURE_AMBIENT, AMBIENT,
+                         [](Frame& f) {
+                             f.ambient = pelAmbientDefaults();
+                             f.slots[PEL_SLOT_INDIRECT] = f.slots[PEL_SLOT_ALBEDO];
+                         }},
                     Term{"AmbientConstantWithoutIds", PEL_FEATURE_AMBIENT, AMBIENT,
                          [](Frame& f) {
                              std::memset(f.ambient.sh, 0, sizeof f.ambient.sh);

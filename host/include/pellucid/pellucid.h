@@ -898,7 +898,12 @@ typedef enum PelImageSlot {
      * from the camera it was (length; in parallel views along rising depth). Read with
      * PelShaderOptions.historyWeight. NaN, Inf: the pixel takes nothing from the last frame. Not set: 0 */
     PEL_SLOT_MOTION = 26,
-    PEL_SLOT_COUNT = 27
+    /* RGB, irradiance / pi: what arrives beside the lights and PelAmbient, such as light that bounced off
+     * other surfaces, or an engine's probes. No albedo; added to the ambient term after its occlusion, and
+     * scatters with it. Where PEL_SLOT_IRRADIANCE is set, it has to be in that for the materials that read
+     * it. Not set: 0 */
+    PEL_SLOT_INDIRECT = 27,
+    PEL_SLOT_COUNT = 28
 } PelImageSlot;
 
 /* The images of one light. */
