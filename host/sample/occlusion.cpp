@@ -70,7 +70,7 @@ Image meanOverRays(const GBuffer& g, int rays, double offset, float empty, Direc
     return mean;
 }
 
-bool meetsHair(const Scene* hair, const Ray& ray, double within = hairReach) {
+bool meetsHair(const Scene* hair, const Ray& ray, double within = INFINITY) {
     return hair && hair->occluded(ray, std::min(within, hairReach));
 }
 
@@ -82,6 +82,33 @@ Image unoccluded(const Scene& scene, const Scene* hair, const GBuffer& g, int ra
                            [&](std::array<float, 1>& sum, const Ray& ray, int) {
                                sum[0] += !meetsHair(hair, ray) && !scene.occluded(ray, INFINITY);
                            });
+}
+
+// What comes back along a ray after one to three reflections.
+Rgb reflectedLight(const Scene& scene, const Bounces& b, const Lighting& lamps, Ray ray, int step) {
+    constexpr int most = 3;
+    Rgb sum{}, part{1, 1, 1};
+    for (int bounce = 0; bounce <= most; ++bounce) {
+        Vec3 n;
+        const Hit hit = scene.firstHit(ray, INFINITY, n);
+        if (meetsHair(b.hair, ray, hit.distance)) break;
+        if (hit.triangle == Hit::none) {
+            const Rgb sky = bounce ? b.sky.radiance(ray.direction) : Rgb{};
+            for (size_t c = 0; c < 3; ++c) sum[c] += part[c] * sky[c];
+            break;
+        }
+        if (bounce == most || dot(n, ray.direction) >= 0) break;  // the inside is dark
+        const Rgb light = irradianceAt(
+            scene, lamps, SurfacePoint{hit.triangle, {hit.weights[0], hit.weights[1], hit.weights[2]}});
+        for (size_t c = 0; c < 3; ++c) part[c] *= b.albedo[c], sum[c] += part[c] * light[c];
+        // A sequence of low discrepancy, shifted for each bounce [Roberts 2018, "The unreasonable
+        // effectiveness of quasirandom sequences"].
+        const double radius = std::sqrt(std::fmod((step + 1) * 0.7548776662 + 0.5 * bounce, 1.0)),
+                     angle = 2 * std::numbers::pi * std::fmod((step + 1) * 0.5698402910, 1.0);
+        ray = {ray.origin + ray.direction * hit.distance + n * normalOffset,
+               above(n, radius * std::cos(angle), radius * std::sin(angle))};
+    }
+    return sum;
 }
 
 }  // namespace
@@ -98,36 +125,12 @@ Image softShadow(const Scene& scene, const GBuffer& g, Vec3 toLight, double radi
 }
 
 Image bouncedLight(const Scene& scene, const GBuffer& g, const Bounces& b) {
-    constexpr int most = 3;
-    const Lighting lighting{b.lamps, {}};
-    return meanOverRays<3>(
-        g, b.rays, normalOffset, 0, above, [&](std::array<float, 3>& sum, Ray ray, int step) {
-            Rgb part{1, 1, 1};
-            for (int bounce = 0; bounce <= most; ++bounce) {
-                Vec3 n;
-                const Hit hit = scene.firstHit(ray, INFINITY, n);
-                const bool left = hit.triangle == Hit::none;
-                if ((left && !bounce) || meetsHair(b.hair, ray, hit.distance)) return;
-                if (!left && (bounce == most || dot(n, ray.direction) >= 0)) return;  // the inside is dark
-                Rgb light{};
-                if (left)
-                    light = b.sky.radiance(ray.direction);
-                else
-                    light = irradianceAt(scene, lighting,
-                                         {hit.triangle, {hit.weights[0], hit.weights[1], hit.weights[2]}});
-                for (size_t c = 0; c < 3; ++c) {
-                    if (!left) part[c] *= b.albedo[c];
-                    sum[c] += float(part[c] * light[c]);
-                }
-                if (left) return;
-                // A sequence of low discrepancy for each bounce [Roberts 2018, "The unreasonable effectiveness of
-                // quasirandom sequences"].
-                const double radius = std::sqrt(std::fmod((step + 1) * 0.7548776662 + 0.5 * bounce, 1.0)),
-                             angle = 2 * std::numbers::pi * std::fmod((step + 1) * 0.5698402910, 1.0);
-                ray = {ray.origin + ray.direction * hit.distance + n * normalOffset,
-                       above(n, radius * std::cos(angle), radius * std::sin(angle))};
-            }
-        });
+    const Lighting lamps{b.lamps, {}};
+    return meanOverRays<3>(g, b.rays, normalOffset, 0, above,
+                           [&](std::array<float, 3>& sum, const Ray& ray, int step) {
+                               const Rgb light = reflectedLight(scene, b, lamps, ray, step);
+                               for (size_t c = 0; c < 3; ++c) sum[c] += float(light[c]);
+                           });
 }
 
 }  // namespace pellucid::sample

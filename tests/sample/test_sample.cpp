@@ -435,8 +435,8 @@ TEST(Sample, AmbientOcclusionUnderASquareIsItsFormFactor) {
     EXPECT_THROW(sample::ambientOcclusion(scene, sample::GBuffer(), 0), std::invalid_argument);
 }
 
-// Beside a wall that a lamp along the floor lights [Howell, B-4: half of a rectangle across the element]. With
-// an even sky and no loss, all paths end in it but for those of more reflections than are followed.
+// Beside a wall that a lamp along the floor lights [Howell, B-4: half of a rectangle across the element].
+// With an even sky and no loss, all paths end in it but for those of more reflections than are followed.
 TEST(Sample, BouncedLightBesideAWallIsItsFormFactor) {
     constexpr double high = 60, wide = 80, albedo = 0.1;
     sample::Mesh mesh = sample::makeRectangle(0, high, -wide, wide, 0);
