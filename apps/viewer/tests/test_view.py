@@ -329,6 +329,10 @@ def test_the_mouse_takes_the_object_along():
     state.apply({"kind": "light", "dx": 0.1, "dy": -0.1})
     turned = look.lamps[0].azimuth - azimuth, look.lamps[0].elevation - elevation
     assert turned == pytest.approx((12, 12))
+    # The last of many motions is what comes back.
+    state.apply({"kind": "light", "dx": 0.1, "dy": 0.0})
+    assert state.undo() and state.redo()
+    assert shown.look.lamps[0].azimuth == pytest.approx(azimuth + 24)
 
 
 def test_presets_and_looks():

@@ -144,7 +144,8 @@ def main() -> int:
 
         app.on_startup(lambda: webbrowser.open(address(keys.key)))
     logging.getLogger("nicegui").setLevel(logging.ERROR)  # it warns of each slow propagation of bindings
-    ui.run(host=a.host, port=port, show=False, reload=False, show_welcome_message=False, dark=True)
+    ui.run(host=a.host, port=port, show=False, reload=False, show_welcome_message=False, dark=True,
+           ws_per_message_deflate=False)  # JPEG files do not become smaller
     return 0
 
 

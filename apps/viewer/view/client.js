@@ -10,6 +10,9 @@
   document.addEventListener('pointermove', (e) => {
     if (e.buttons && e.target.closest('.q-slider')) touch();
   }, true);
+  // Motions between two pictures are added up: each takes the server's time from the next picture.
+  let queued = null;
+  function flush() { if (queued) say(queued); queued = null; }
   function say(message) { if (socket && socket.readyState === 1) socket.send(JSON.stringify(message)); }
   function size() {
     if (!canvas) return;
@@ -73,6 +76,7 @@
       showScale(head.scale);
       if (head.histogram || head.sample === 0 && !head.moving) showHistogram(head.histogram);
       say({kind: 'taken'});
+      flush();
     };
   }
   function showScale(scale) {
@@ -121,12 +125,11 @@
     canvas = document.getElementById('pel-canvas');
     if (!canvas) { setTimeout(start, 50); return; }
     new ResizeObserver(size).observe(canvas);
-    let queued = null;
-    function move(kind, dx, dy) {  // motions between two pictures are added up
+    function move(kind, dx, dy) {
       if (queued && queued.kind === kind) { queued.dx += dx; queued.dy += dy; return; }
-      if (queued) say(queued);
+      flush();
       queued = {kind: kind, dx: dx, dy: dy, at: performance.now()};
-      requestAnimationFrame(() => { if (queued) say(queued); queued = null; });
+      setTimeout(flush, 25);
     }
     canvas.addEventListener('contextmenu', (e) => e.preventDefault());
     canvas.addEventListener('pointerdown', (e) => { last = e; canvas.setPointerCapture(e.pointerId); });

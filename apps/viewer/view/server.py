@@ -88,6 +88,7 @@ class Viewer:
         self._placed = False  # whether the camera was moved: until then it frames the object
         self._aspect = 16 / 9
         self._pace = Pace()
+        self._noted = 0.0
         self._changed: set[asyncio.Event] = set()
         self._loop: Optional[asyncio.AbstractEventLoop] = None
         self._moved = 0.0
@@ -123,9 +124,12 @@ class Viewer:
 
     def changed(self, moving: bool = False) -> None:
         """Tells every page to draw again. `moving`: soon once more, so that a rougher picture serves now."""
-        self._moved = time.monotonic() if moving else 0.0
+        now = time.monotonic()
+        self._moved = now if moving else 0.0
         self.changes += 1
-        self._history.note(self.session)
+        if not moving or now - self._noted > 0.1:  # a copy of all settings: of a motion, few and the last
+            self._noted = now
+            self._history.note(self.session)
         for event in self._changed:
             event.set()
 
@@ -145,6 +149,7 @@ class Viewer:
 
     def undo(self) -> bool:
         """Takes the last change back; whether there was one."""
+        self._history.note(self.session)
         return self._history.undo(self.session)
 
     def redo(self) -> bool:
@@ -302,6 +307,8 @@ class Viewer:
                 width, height = (max(16, round(v * scale)) for v in size)
                 changes, stamp = self.changes, self.stamp
                 made = await self.frame(width, height, small, 0 if small else sample)
+                if not small:
+                    self._history.note(self.session)
                 sample = 0 if small else sample + 1
                 head = {"error": self.error, "moving": small > 0, "width": width, "height": height,
                         "changes": changes, "at": stamp, "sample": sample}
