@@ -149,7 +149,8 @@ bool isBlack(const PelAmbient& a) {
            std::all_of(std::begin(a.sh), std::end(a.sh), [](auto& c) { return isBlack(c); });
 }
 
-bool isSurrounded(const ShaderState& state) {
+// By PelAmbient, a cube map or an environment.
+static bool isSurrounded(const ShaderState& state) {
     return !isBlack(state.ambient) || state.ambientCube || state.environment;
 }
 

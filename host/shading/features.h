@@ -34,9 +34,7 @@ bool makesLightFromBehind(const ShaderState& state, uint32_t features);
 inline bool isBlack(const float (&color)[3]) {
     return color[0] == 0 && color[1] == 0 && color[2] == 0;
 }
-// Whether light comes from all round: PelAmbient, a cube map, an environment.
-bool isSurrounded(const ShaderState& state);
-// The same, or indirect light per pixel.
+// Whether light comes from all round, or indirect light is given per pixel.
 bool hasAmbient(const ShaderState& state);
 // Whether PelAmbient gives no light; there may still be a cube map.
 bool isBlack(const PelAmbient& ambient);

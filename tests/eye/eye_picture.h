@@ -16,8 +16,8 @@ struct EyeScene {
     double unit = 10;  // mm
     Vec3 camera{5.2, 1.1, 9.3};
     int size = 128, textureSize = 0;
-    std::vector<float> texture;          // RGB
-    std::vector<float> wetness, shadow;  // per pixel; empty: none
+    std::vector<float> texture;                    // RGB
+    std::vector<float> wetness, shadow, indirect;  // per pixel; empty: none
     bool skipping = true;
 
     EyeScene() {
@@ -109,6 +109,8 @@ class EyePicture {
         shader.set(PEL_SLOT_NORMAL_SHADING, image(normal, PEL_FORMAT_RGB32F, s_.size));
         shader.set(PEL_SLOT_MATERIAL, image(id, PEL_FORMAT_R8_UINT, s_.size));
         if (s_.textureSize) shader.setIrisTexture(1, image(s_.texture, PEL_FORMAT_RGB32F, s_.textureSize));
+        if (!s_.indirect.empty())
+            shader.set(PEL_SLOT_INDIRECT, image(s_.indirect, PEL_FORMAT_RGB32F, s_.size));
         if (!s_.wetness.empty()) shader.set(PEL_SLOT_WETNESS, image(s_.wetness, PEL_FORMAT_R32F, s_.size));
         if (!s_.shadow.empty())
             shader.set(0, PEL_LIGHT_WIDE_SHADOW, image(s_.shadow, PEL_FORMAT_R32F, s_.size));

@@ -90,6 +90,18 @@ TEST(EyePicture, AnIrisInTheOpenShowsItsColour) {
     EXPECT_GT(count, 100u);
 }
 
+// Light that is given per pixel, and the same from everywhere.
+TEST(EyePicture, IndirectLightIsLikeAmbientLight) {
+    EyeScene scene;
+    std::fill_n(scene.ambient.constant, 3, 0.4f);
+    const std::vector<float> ambient = EyePicture(scene).shade();
+    scene.ambient = pelAmbientDefaults();
+    scene.indirect.assign(3 * size_t(scene.size) * size_t(scene.size), 0.4f);
+    const std::vector<float> indirect = EyePicture(scene).shade();
+    EXPECT_GT(*std::ranges::max_element(ambient), 0.1f);
+    for (size_t i = 0; i < ambient.size(); ++i) EXPECT_NEAR(indirect[i], ambient[i], 1e-6) << i;
+}
+
 // Without a texture fibres are drawn: round a circle they differ, and each seed has its own.
 TEST(EyePicture, DrawnFibresDifferRoundTheIris) {
     EyeScene scene;
