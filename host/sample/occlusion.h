@@ -17,17 +17,17 @@ Image ambientOcclusion(const Scene& scene, const GBuffer& gbuffer, int rays = 8,
 Image softShadow(const Scene& scene, const GBuffer& gbuffer, Vec3 toLight, double radius, int rays,
                  const Scene* hair = nullptr);
 
-// Irradiance / pi, RGB, of light that reaches each pixel after up to three diffuse reflections off a mesh of
-// one albedo: paths of cosine-distributed rays, that many to a pixel, from the lamps (PelLight's unit) and
-// the sky. 0 on the background; shared over pixels as the occlusion is. Rays that meet `hair` first bring
-// nothing.
+// What lights a mesh of one albedo. `lamps`: in PelLight's unit; `rays`: to each pixel.
 struct Bounces {
     std::vector<SurfaceLight> lamps;
     Sky sky;
     Rgb albedo{0.5, 0.5, 0.5};
     int rays = 8;
-    const Scene* hair = nullptr;
+    const Scene* hair = nullptr;  // of curves, or none: rays that meet it first bring nothing
 };
+// Irradiance / pi, RGB, of light that reaches each pixel after one to three diffuse reflections off the mesh,
+// by paths of cosine-distributed rays; 0 on the background. Shared over pixels as the occlusion is. Throws
+// std::invalid_argument for `rays` below 1.
 Image bouncedLight(const Scene& scene, const GBuffer& gbuffer, const Bounces& bounces);
 
 }  // namespace pellucid::sample
