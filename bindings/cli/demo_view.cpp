@@ -274,15 +274,16 @@ DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3
         for (float& id : ids)
             if (id == float(demo::DEMO_EYES) || id >= float(demo::DEMO_RIGHT_EYE)) id = demo::DEMO_SKIN;
         std::ranges::fill(pixelsOf(PEL_SLOT_SPECULAR, 0), 1.0f);
+    } else {
+        for (size_t c = 0; c < 3; ++c)  // most of it was reflected once
+            for (float& v : pixelsOf(PEL_SLOT_INDIRECT, c)) v *= tint[c];
     }
     for (size_t c = 0; c < 3; ++c) {
         std::vector<float>& albedo = pixelsOf(PEL_SLOT_ALBEDO, c);
-        std::vector<float>* const indirect = skin ? &pixelsOf(PEL_SLOT_INDIRECT, c) : nullptr;
         std::vector<float>& before = pixelsOf(PEL_SLOT_RADIANCE, c);
         for (size_t i = 0; i < ids.size(); ++i) {
             if (ids[i] == float(demo::DEMO_SKIN))
                 albedo[i] = std::min(1.0f, (skin ? albedo[i] : sample::Look().albedo[c]) * tint[c]);
-            if (indirect) (*indirect)[i] *= tint[c];  // of most of it, that reflected once
             if (!skin) before[i] = ids[i] ? 0 : backdrop[c];
         }
     }

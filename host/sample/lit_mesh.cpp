@@ -190,7 +190,7 @@ std::vector<SurfacePoint> nearestPoints(const Scene& scene, std::span<const floa
     for (size_t i = 0; i < places.size(); ++i) {
         const Hit hit = scene.nearest({positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]});
         distances[i] = hit.distance;
-        places[i] = {hit.triangle, {hit.weights[0], hit.weights[1], hit.weights[2]}};
+        places[i] = {hit.triangle, hit.weights};
     }
     return places;
 }

@@ -18,6 +18,12 @@ Vec3 across(Vec3 n) {
     return normalize(std::abs(n.x) < 0.5 ? cross(n, {1, 0, 0}) : cross(n, {0, 1, 0}));
 }
 
+// The place in the unit disk within whose distance from the middle lies that share of the area.
+std::array<double, 2> onDisk(double area, double turns) {
+    const double radius = std::sqrt(area), angle = 2 * std::numbers::pi * turns;
+    return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
 // A direction about `n` whose projection to the surface is (x, y) of the unit disk.
 Vec3 above(Vec3 n, double x, double y) {
     return across(n) * x + cross(n, across(n)) * y + n * std::sqrt(std::max(0.0, 1 - x * x - y * y));
@@ -41,9 +47,9 @@ Image meanOverRays(const GBuffer& g, int rays, double offset, float empty, Direc
             for (int i = 0; i < rays && !isBackground(x, y); ++i) {
                 const Vec3 p = vectorAt(g.position, x, y), n = vectorAt(g.geometricNormal, x, y);
                 const int step = i * pattern * pattern + x % pattern + pattern * (y % pattern);
-                const double radius = std::sqrt((step + 0.5) / (pattern * pattern * rays)),
-                             angle = 2 * std::numbers::pi * std::fmod(step / std::numbers::phi, 1.0);
-                const Vec3 d = directionAt(n, radius * std::cos(angle), radius * std::sin(angle));
+                const auto at = onDisk((step + 0.5) / (pattern * pattern * rays),
+                                       std::fmod(step / std::numbers::phi, 1.0));
+                const Vec3 d = directionAt(n, at[0], at[1]);
                 if (dot(n, d) <= 0) continue;
                 addTo(sum, Ray{p + n * offset, d}, step);
                 own.at(Planes, x, y) += 1;
@@ -98,15 +104,13 @@ Rgb reflectedLight(const Scene& scene, const Bounces& b, const Lighting& lamps, 
             break;
         }
         if (bounce == most || dot(n, ray.direction) >= 0) break;  // the inside is dark
-        const Rgb light = irradianceAt(
-            scene, lamps, SurfacePoint{hit.triangle, {hit.weights[0], hit.weights[1], hit.weights[2]}});
+        const Rgb light = irradianceAt(scene, lamps, SurfacePoint{hit.triangle, hit.weights});
         for (size_t c = 0; c < 3; ++c) part[c] *= b.albedo[c], sum[c] += part[c] * light[c];
         // A sequence of low discrepancy, shifted for each bounce [Roberts 2018, "The unreasonable
         // effectiveness of quasirandom sequences"].
-        const double radius = std::sqrt(std::fmod((step + 1) * 0.7548776662 + 0.5 * bounce, 1.0)),
-                     angle = 2 * std::numbers::pi * std::fmod((step + 1) * 0.5698402910, 1.0);
-        ray = {ray.origin + ray.direction * hit.distance + n * normalOffset,
-               above(n, radius * std::cos(angle), radius * std::sin(angle))};
+        const auto at = onDisk(std::fmod((step + 1) * 0.7548776662 + 0.5 * bounce, 1.0),
+                               std::fmod((step + 1) * 0.5698402910, 1.0));
+        ray = {ray.origin + ray.direction * hit.distance + n * normalOffset, above(n, at[0], at[1])};
     }
     return sum;
 }

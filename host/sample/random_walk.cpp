@@ -168,8 +168,7 @@ class Walker {
             if (hit.triangle != Hit::none) {
                 const double facing = std::abs(dot(normal, d));
                 if (index == 1 || random.next() >= fresnel(facing, 1 / index)) {
-                    exit = {body_.litTriangle(hit.triangle),
-                            {hit.weights[0], hit.weights[1], hit.weights[2]}};
+                    exit = {body_.litTriangle(hit.triangle), hit.weights};
                     return weight;
                 }
                 const Vec3 inwards = dot(normal, d) > 0 ? -normal : normal;

@@ -127,7 +127,7 @@ bool Scene::occluded(const Ray& ray, double within) const {
 namespace {
 
 // Barycentric weights of the point of a triangle next to p.
-void nearestOfTriangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c, double (&weights)[3]) {
+void nearestOfTriangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c, std::array<double, 3>& weights) {
     const Vec3 edges[3] = {b - a, c - b, a - c}, corners[3] = {a, b, c}, normal = cross(b - a, c - a);
     const double area2 = dot(normal, normal);
     double best = INFINITY;

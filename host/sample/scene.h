@@ -1,5 +1,6 @@
 // A mesh made ready for ray tracing. The sample renderer's only contact with Embree.
 #pragma once
+#include <array>
 #include <functional>
 #include <memory>
 
@@ -15,8 +16,8 @@ struct Ray {
 struct Hit {
     static constexpr uint32_t none = UINT32_MAX;
     uint32_t triangle = none;
-    double distance = INFINITY;     // mm along the ray
-    double weights[3] = {0, 0, 0};  // barycentric, of the triangle's corners in order; they sum to 1
+    double distance = INFINITY;       // mm along the ray
+    std::array<double, 3> weights{};  // barycentric, of the triangle's corners in order; they sum to 1
 };
 
 // Hairs: x, y, z and the radius of each point, mm, and the points at which a segment to the next one starts.

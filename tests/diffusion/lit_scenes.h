@@ -130,7 +130,7 @@ class Stage {
             if (!s.covered[i]) continue;
             const float* p = &s.positions[3 * i];
             const sample::Hit hit = scene_->nearest({p[0], p[1], p[2]});
-            s.places.push_back({hit.triangle, {hit.weights[0], hit.weights[1], hit.weights[2]}});
+            s.places.push_back({hit.triangle, hit.weights});
             where.push_back(i);
         }
         const std::vector<float> E = irradianceAt(*scene_, s.lighting, s.places);
