@@ -185,9 +185,9 @@ void addEllipsoid(io::PartedMesh& head, uint32_t part, Vec3 centre, Vec3 radii) 
 void fillCorners(io::PartedMesh& head, const sample::EyeLook& eye, uint32_t ball,
                  std::vector<sample::SkinZone>& zones) {
     const double toNose = eye.centre.x > 0 ? -1 : 1;
-    const Vec3 caruncle = Vec3{0.21, 0.13, 0.1} * eye.radius, white = Vec3{0.25, 0.25, 0.2} * eye.radius;
+    const Vec3 caruncle = Vec3{0.21, 0.13, 0.1} * eye.radius, white = Vec3{0.2, 0.25, 0.2} * eye.radius;
     const Vec3 inner = cornerOf(head, eye, toNose) + Vec3{0.4 * caruncle.x * toNose, 0, -0.5 * caruncle.z},
-               outer = cornerOf(head, eye, -toNose) + Vec3{-0.03 * eye.radius * toNose, 0, -1.3 * white.z};
+               outer = cornerOf(head, eye, -toNose) + Vec3{-0.01 * eye.radius * toNose, 0, -1.02 * white.z};
     addEllipsoid(head, ball, outer, white);
     addEllipsoid(head, uint32_t(head.part("skin")), inner, caruncle);
     zones.push_back({inner, caruncle * 1.3, {1.08, 0.74, 0.72}, 0.4, 2.5, 0.5, 0.5});
@@ -210,6 +210,13 @@ io::SceneEye modelOf(const sample::EyeLook& look, uint32_t material) {
 }
 
 }  // namespace
+
+DemoHead bustOf(DemoHead head) {
+    head.bust = true;
+    head.looks.clear(), head.zones.clear(), head.eyes.clear();
+    head.eyeModels.clear(), head.strands.clear();
+    return head;
+}
 
 double Scalp::above(Vec3 p) const {
     // The hairline's height over the eyes, by the angle from the front in degrees: forehead, temple,

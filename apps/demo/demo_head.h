@@ -48,8 +48,12 @@ struct DemoHead {
     std::vector<io::SceneEye> eyeModels;  // the same as PelEye, around DEMO_EYES and DEMO_RIGHT_EYE
     Scalp scalp;                          // of a head with two eyes
     sample::HeadPose pose;
+    bool bust = false;     // of one smooth material, eyes too
     sample::Bounds frame;  // what the picture shows: a neck that was cut off is left out
 };
+
+// The head without eyes, hair and colours.
+DemoHead bustOf(DemoHead head);
 
 // `levels`: Catmull-Clark.
 DemoHead loadDemoHead(const std::string& path, int levels);

@@ -65,15 +65,13 @@ std::vector<float> dressEyes(GBuffer& g, Vec3 up) {
             });
             const double distance = apart(way), share = 1 - distance / lidReach;
             if (share <= 0) continue;
-            if (eye)
-                wet[i] = float(std::max(0.0, 1 - distance / wetReach));
-            else
-                setMargin(g, x, y, way, up, std::min(1.0, 1.5 * share));
+            wet[i] = float(eye ? std::max(0.0, 1 - distance / wetReach) : std::min(1.0, 1.5 * share));
+            if (!eye) setMargin(g, x, y, way, up, wet[i]);
         }
     return wet;
 }
 
-void darkenFolds(GBuffer& g, const sample::Image& occlusion) {
+void darkenFolds(GBuffer& g, const sample::Image& occlusion, const std::vector<float>& wetness) {
     constexpr double open = 0.9, reach = 1.2;  // of the sky; mm, over which the edges of folds are soft
     sample::Image dark(g.width, g.height, 1);
     for (int y = 0; y < g.height; ++y)
@@ -92,10 +90,11 @@ void darkenFolds(GBuffer& g, const sample::Image& occlusion) {
         for (int x = g.width - 1; x >= 0; --x) spread(x, y, x + 1, y), spread(x, y, x, y + 1);
     for (int y = 0; y < g.height; ++y)
         for (int x = 0; x < g.width; ++x) {
-            const uint32_t id = g.material[size_t(y) * size_t(g.width) + size_t(x)];
-            if (isEye(id)) continue;
-            multiply(g, x, y, {0.05, 0.05, 0.06}, dark.at(0, x, y));
-            g.specular.at(0, x, y) *= 1 - dark.at(0, x, y);
+            const size_t i = size_t(y) * size_t(g.width) + size_t(x);
+            if (isEye(g.material[i])) continue;
+            const float share = dark.at(0, x, y) * (1 - 0.5f * wetness[i]);
+            multiply(g, x, y, {0.05, 0.05, 0.06}, share);
+            g.specular.at(0, x, y) *= 1 - share;
         }
 }
 

@@ -4,6 +4,7 @@
 #include "demo/demo_hair.h"
 #include "io/atomic_file.h"
 #include "mesh_curvature.h"
+#include "sample/occlusion.h"
 #include "system/process.h"
 
 namespace pellucid::cli {
@@ -134,13 +135,15 @@ std::array<io::SceneFile, 3> scenesOf(const DemoView& view) {
 ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const DemoBody& body,
                      const DemoSurface& surface, const DemoViewRequest& request, const std::string& folder) {
     DemoView view;
-    stages.measure(request.name + ": light and shadow maps (sample host)",
-                   [&] { view = renderDemoView(body, surface, request); });
+    ShadedView shaded;
+    stages.measure(request.name + ": light and shadow maps (sample host)", [&] {
+        shaded.light = renderDemoLight(body, surface, request);
+        view = renderDemoView(body, surface, shaded.light, request);
+    });
     const std::array<io::SceneFile, 3> scenes = scenesOf(view);
     stages.measure(view.name + ": kernels", [&] {
         for (const io::SceneFile& each : scenes) io::buildPrograms(run.device(), each, luts, view.images);
     });
-    ShadedView shaded;
     shaded.lambert = shadeAs(run, stages, luts, view, "Lambert", scenes[0]);
     shaded.tables = shadeAs(run, stages, luts, view, "by tables", scenes[1]);
     shaded.complete = shadeAs(run, stages, luts, view, "on the screen", scenes[2]);
@@ -156,15 +159,22 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const DemoBod
 
 // Adds pictures rendered at twice the size, but for views that are large already.
 void addFinePictures(Run& run, Stages& stages, io::LutStore& luts, const DemoBody& body,
-                     std::vector<DemoViewRequest> requests, std::vector<ShadedView>& views) {
+                     const DemoSurface& coarse, std::vector<DemoViewRequest> requests,
+                     std::vector<ShadedView>& views) {
     constexpr uint64_t most = uint64_t(4096) * 2304;  // pixels; a G-buffer of them takes 1 GB
-    for (DemoViewRequest& r : requests) r.width *= 2, r.height *= 2, r.rays /= 2;
+    for (DemoViewRequest& r : requests) r.width *= 2, r.height *= 2;
     if (uint64_t(requests[0].width) * requests[0].height > most) return;
     stages.measure("pictures at twice the size", [&] {
-        const DemoSurface surface = renderDemoSurface(body, requests[0]);
+        const DemoSurface surface = renderDemoSurface(body, requests[0], &coarse);
         for (size_t i = 0; i < views.size(); ++i) {
             DemoView view{requests[i].name, views[i].view.scene, views[i].view.images};
-            addPixels(view, body, surface, requests[i]);
+            DemoLightImages light = std::move(views[i].light);
+            const auto enlarge = [&](sample::Image& image) {
+                image = sample::enlarged(image, coarse.gbuffer, surface.gbuffer);
+            };
+            std::ranges::for_each(light.shadows, enlarge);
+            enlarge(light.indirect);
+            addPixels(view, body, surface, light, requests[i]);
             for (const io::SceneFile& shown : scenesOf(view)) {
                 io::SceneFrame frame(run.device(), view.gbuffer, shown, luts, view.images);
                 frame.shade();
@@ -210,15 +220,25 @@ void run(Arguments a) {
     std::vector<ShadedView> views;
     for (const DemoViewRequest& request : wanted)
         views.push_back(shadeView(run, stages, luts, body, surface, request, a.output));
-    surface = {};
-    addFinePictures(run, stages, luts, body, wanted, views);
+    addFinePictures(run, stages, luts, body, surface, wanted, views);
     for (const ShadedView& view : views) {
         run.report["pictures"].push_back(writePicture(a.output, view));
         run.note("picture: " + run.report["pictures"].back().get<std::string>());
     }
+    DemoView bust;
+    stages.measure("a bust for other materials (sample host)", [&] {
+        const DemoHead plain = demo::bustOf(head);
+        const sample::Scene noHair{sample::Curves{}};
+        const DemoBody bald{plain, scene, noHair};
+        DemoViewRequest request = wanted[0];
+        request.rays /= 2;  // nothing is as fine as hair
+        surface = renderDemoSurface(bald, request);
+        bust = renderDemoView(bald, surface, renderDemoLight(bald, surface, request), request);
+    });
     std::vector<io::Tile> materials;
     for (const auto& m : demoMaterials) {
-        const DemoView made = madeOf(views.front().view, m.profile, m.tint);
+        const bool skin = std::string_view(m.profile).starts_with("skin");
+        const DemoView made = madeOf(skin ? views.front().view : bust, m.profile, m.tint);
         materials.push_back(
             {m.profile, developed(made, shadeAs(run, stages, luts, made, m.profile, made.scene))});
     }

@@ -31,7 +31,7 @@ struct DemoViewRequest {
     std::vector<DemoLight> lights;  // the first one's reflection is in the sky
     float skyScale = 1;             // of the ambient light
     uint32_t width = 1280, height = 720;
-    int rays = 8;  // a pixel, for the light of the sky; half of them to each lamp with a size
+    int rays = 8;  // a pixel, for the light of the sky; half of them to each lamp
 };
 
 // A scene with only the two tables that the views use, curvature and shadow.
@@ -45,28 +45,39 @@ struct DemoSurface {
     std::vector<float> wetness;  // of eyes, or empty
 };
 
+// What rays find of a view's light.
+struct DemoLightImages {
+    std::vector<sample::Image> shadows;  // of each lamp
+    sample::Image indirect;
+};
+
 // The head made ready for rays.
 struct DemoBody {
     const DemoHead& head;
     const sample::Scene &mesh, &hair;
 };
 
-DemoSurface renderDemoSurface(const DemoBody& body, const DemoViewRequest& request);
+// `coarse`: of the same view, whose occlusion is enlarged in place of rays.
+DemoSurface renderDemoSurface(const DemoBody& body, const DemoViewRequest& request,
+                              const DemoSurface* coarse = nullptr);
 // `surface`: of the same size and framing.
-DemoView renderDemoView(const DemoBody& body, const DemoSurface& surface, const DemoViewRequest& request);
+DemoLightImages renderDemoLight(const DemoBody& body, const DemoSurface& surface,
+                                const DemoViewRequest& request);
+DemoView renderDemoView(const DemoBody& body, const DemoSurface& surface, const DemoLightImages& light,
+                        const DemoViewRequest& request);
 // The G-buffer alone, whose channels the view's scene names.
-void addPixels(DemoView& view, const DemoBody& body, const DemoSurface& surface,
+void addPixels(DemoView& view, const DemoBody& body, const DemoSurface& surface, const DemoLightImages& light,
                const DemoViewRequest& request);
 
 // The same scene shaded plainly, by Lambert, or by tables.
 io::SceneFile withoutScattering(io::SceneFile scene);
 io::SceneFile byTables(io::SceneFile scene);
-// The view with its skin made of another material of the library, and its albedo multiplied by a tint. A
-// material that is no skin makes a bust: without eyes, hair and colours.
+// The view with its skin made of another material of the library, and its albedo multiplied by a tint.
 DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3]);
 
 struct ShadedView {
     DemoView view;
+    DemoLightImages light;
     std::vector<float> lambert, tables, complete;  // RGB per pixel
     // Twice as large, before the backdrop: lambert, tables, complete. Empty for views that are large already.
     std::vector<io::Picture> fine;

@@ -152,7 +152,8 @@ io::SceneFile standardLuts() {
     return scene;
 }
 
-DemoSurface renderDemoSurface(const DemoBody& body, const DemoViewRequest& request) {
+DemoSurface renderDemoSurface(const DemoBody& body, const DemoViewRequest& request,
+                              const DemoSurface* coarse) {
     const DemoHead& head = body.head;
     const int width = int(request.width), height = int(request.height);
     DemoSurface out;
@@ -160,6 +161,7 @@ DemoSurface renderDemoSurface(const DemoBody& body, const DemoViewRequest& reque
     sample::GBufferOptions look;
     look.looks = head.looks, look.zones = head.zones, look.eyes = head.eyes;
     look.detail.roughness = skinRoughness;
+    look.detail.enabled = !head.bust;
     if (!head.looks.empty()) {  // a young face: fine pores, hardly a fold; the zones are enough
         look.detail.blotchAmount = 0.02;
         look.detail.poreWavelength = 0.6;
@@ -167,37 +169,49 @@ DemoSurface renderDemoSurface(const DemoBody& body, const DemoViewRequest& reque
         look.detail.foldSlope = 0.008;
     }
     out.gbuffer = sample::renderGBuffer(body.mesh, out.camera, width, height, look);
-    out.occlusion = sample::ambientOcclusion(body.mesh, out.gbuffer, request.rays, &body.hair);
+    out.occlusion = coarse ? sample::enlarged(coarse->occlusion, coarse->gbuffer, out.gbuffer)
+                           : sample::ambientOcclusion(body.mesh, out.gbuffer, request.rays, &body.hair);
+    if (head.bust)
+        for (uint32_t& id : out.gbuffer.material) id = std::min<uint32_t>(id, demo::DEMO_SKIN);
     if (!head.eyeModels.empty()) {
         out.wetness = demo::dressEyes(out.gbuffer, head.pose.up);
-        demo::darkenFolds(out.gbuffer, out.occlusion);
+        demo::darkenFolds(out.gbuffer, out.occlusion, out.wetness);
     }
     return out;
 }
 
-void addPixels(DemoView& view, const DemoBody& body, const DemoSurface& surface,
+DemoLightImages renderDemoLight(const DemoBody& body, const DemoSurface& surface,
+                                const DemoViewRequest& request) {
+    DemoLightImages out;
+    sample::Bounces bounces;
+    bounces.sky = studio(body.head, request), bounces.sky.panels.clear();
+    std::ranges::copy(sample::Look().albedo, bounces.albedo.begin());
+    bounces.rays = request.rays;
+    bounces.hair = &body.hair;
+    for (const DemoLight& lamp : request.lights) {
+        sample::SurfaceLight& bounced = bounces.lamps.emplace_back();
+        bounced.toLight = directionOf(body.head, lamp).toLight;
+        std::ranges::copy(lamp.color, bounced.color.begin());
+        out.shadows.push_back(sample::softShadow(body.mesh, surface.gbuffer, bounced.toLight, lamp.radius,
+                                                 request.rays / 2, &body.hair));
+    }
+    out.indirect = sample::bouncedLight(body.mesh, surface.gbuffer, bounces);
+    return out;
+}
+
+void addPixels(DemoView& view, const DemoBody& body, const DemoSurface& surface, const DemoLightImages& light,
                const DemoViewRequest& request) {
     const sample::GBuffer& g = surface.gbuffer;
     demo::StrandLight onHair;
     onHair.occluders = &body.mesh;
     onHair.sky = studio(body.head, request), onHair.sky.panels.clear();
-    sample::Bounces bounces;
-    bounces.sky = onHair.sky;
-    std::ranges::copy(sample::Look().albedo, bounces.albedo.begin());
-    bounces.rays = request.rays;
-    bounces.hair = &body.hair;
     for (size_t i = 0; i < request.lights.size(); ++i) {
         const DemoLight& lamp = request.lights[i];
-        const sample::Vec3 toLight = directionOf(body.head, lamp).toLight;
-        view.gbuffer.channels.push_back(io::Channel::halves(
-            view.scene.lights[i].wideShadow,
-            sample::softShadow(body.mesh, g, toLight, lamp.radius, request.rays / 2, &body.hair).data));
-        sample::SurfaceLight& bounced = bounces.lamps.emplace_back();
-        bounced.toLight = toLight;
-        std::ranges::copy(lamp.color, bounced.color.begin());
-        onHair.lamps.push_back({toLight, {lamp.color[0], lamp.color[1], lamp.color[2]}});
+        onHair.lamps.push_back(
+            {directionOf(body.head, lamp).toLight, {lamp.color[0], lamp.color[1], lamp.color[2]}});
+        view.gbuffer.channels.push_back(
+            io::Channel::halves(view.scene.lights[i].wideShadow, light.shadows[i].data));
     }
-    const sample::Image indirect = sample::bouncedLight(body.mesh, g, bounces);
     sample::Image albedo = g.albedo, specular = g.specular;
     std::vector<float> ids(g.material.begin(), g.material.end());
     const sample::Image before =
@@ -218,13 +232,14 @@ void addPixels(DemoView& view, const DemoBody& body, const DemoSurface& surface,
     add(PEL_SLOT_ROUGHNESS, "Roughness", "V", g.roughness.data);
     add(PEL_SLOT_SPECULAR, "Specular", "V", specular.data);
     add(PEL_SLOT_AMBIENT_OCCLUSION, "AmbientOcclusion", "V", surface.occlusion.data, io::ChannelType::Half);
-    add(PEL_SLOT_INDIRECT, "Indirect", "RGB", indirect.data, io::ChannelType::Half);
+    add(PEL_SLOT_INDIRECT, "Indirect", "RGB", light.indirect.data, io::ChannelType::Half);
     add(PEL_SLOT_MATERIAL, "Material", "I", ids);
     if (!surface.wetness.empty()) add(PEL_SLOT_WETNESS, "Wetness", "V", surface.wetness);
     add(PEL_SLOT_RADIANCE, "Before", "RGB", before.data, io::ChannelType::Half);
 }
 
-DemoView renderDemoView(const DemoBody& body, const DemoSurface& surface, const DemoViewRequest& request) {
+DemoView renderDemoView(const DemoBody& body, const DemoSurface& surface, const DemoLightImages& light,
+                        const DemoViewRequest& request) {
     DemoView view;
     view.name = request.name;
     view.scene.luts = standardLuts().luts;
@@ -233,20 +248,19 @@ DemoView renderDemoView(const DemoBody& body, const DemoSurface& surface, const 
     view.scene.options.accumulate = 1;
     for (const DemoLight& lamp : request.lights) {
         const sample::DirectionalLight direction = directionOf(body.head, lamp);
-        io::SceneLight light;
-        light.light.type = PEL_LIGHT_DIRECTIONAL;
-        copy(light.light.toLight, direction.toLight);
-        std::ranges::copy(lamp.color, light.light.color);
-        addShadow(view, body.mesh, lamp, direction, light);
-        light.wideShadow = lamp.name + "Shadow.V";
-        light.light.plainShadow = 1;
-        view.scene.lights.push_back(light);
+        io::SceneLight& added = view.scene.lights.emplace_back();
+        added.light.type = PEL_LIGHT_DIRECTIONAL;
+        copy(added.light.toLight, direction.toLight);
+        std::ranges::copy(lamp.color, added.light.color);
+        addShadow(view, body.mesh, lamp, direction, added);
+        added.wideShadow = lamp.name + "Shadow.V";
+        added.light.plainShadow = 1;
     }
     addSurroundings(view, body.head, studio(body.head, request));
     copy(view.scene.camera.position, surface.camera.eye);
     std::ranges::copy(surface.camera.inverseViewProjection(double(request.width) / request.height).toFloats(),
                       view.scene.camera.inverseViewProjection);
-    addPixels(view, body, surface, request);
+    addPixels(view, body, surface, light, request);
     return view;
 }
 
@@ -256,36 +270,18 @@ io::SceneFile byTables(io::SceneFile scene) {
 }
 
 DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3]) {
-    const bool skin = profile.starts_with("skin");
     view.scene.materials[0].profile = profile;
     const auto pixelsOf = [&](PelImageSlot slot, size_t component) -> std::vector<float>& {
         return std::ranges::find(view.gbuffer.channels, view.scene.channels[slot][component],
                                  &io::Channel::name)
             ->pixels;
     };
-    std::vector<float>& ids = pixelsOf(PEL_SLOT_MATERIAL, 0);
-    if (!skin) {
-        view.scene.eyes.clear();
-        view.scene.channels[PEL_SLOT_WETNESS].clear();
-        // These hold the shadows of hair.
-        view.scene.channels[PEL_SLOT_AMBIENT_OCCLUSION].clear();
-        view.scene.channels[PEL_SLOT_INDIRECT].clear();
-        for (io::SceneLight& light : view.scene.lights) light.wideShadow.clear();
-        for (float& id : ids)
-            if (id == float(demo::DEMO_EYES) || id >= float(demo::DEMO_RIGHT_EYE)) id = demo::DEMO_SKIN;
-        std::ranges::fill(pixelsOf(PEL_SLOT_SPECULAR, 0), 1.0f);
-    } else {
-        for (size_t c = 0; c < 3; ++c)  // most of it was reflected once
-            for (float& v : pixelsOf(PEL_SLOT_INDIRECT, c)) v *= tint[c];
-    }
+    const std::vector<float>& ids = pixelsOf(PEL_SLOT_MATERIAL, 0);
     for (size_t c = 0; c < 3; ++c) {
+        for (float& v : pixelsOf(PEL_SLOT_INDIRECT, c)) v *= tint[c];  // most of it was reflected once
         std::vector<float>& albedo = pixelsOf(PEL_SLOT_ALBEDO, c);
-        std::vector<float>& before = pixelsOf(PEL_SLOT_RADIANCE, c);
-        for (size_t i = 0; i < ids.size(); ++i) {
-            if (ids[i] == float(demo::DEMO_SKIN))
-                albedo[i] = std::min(1.0f, (skin ? albedo[i] : sample::Look().albedo[c]) * tint[c]);
-            if (!skin) before[i] = ids[i] ? 0 : backdrop[c];
-        }
+        for (size_t i = 0; i < ids.size(); ++i)
+            if (ids[i] == float(demo::DEMO_SKIN)) albedo[i] = std::min(1.0f, albedo[i] * tint[c]);
     }
     return view;
 }

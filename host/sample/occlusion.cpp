@@ -29,6 +29,12 @@ Vec3 above(Vec3 n, double x, double y) {
     return across(n) * x + cross(n, across(n)) * y + n * std::sqrt(std::max(0.0, 1 - x * x - y * y));
 }
 
+// Whether a pixel shows the surface about the place `p` with the normal `n`.
+bool isAlike(const GBuffer& g, int x, int y, Vec3 p, Vec3 n) {
+    return g.coverage.at(0, x, y) != 0 && dot(n, vectorAt(g.geometricNormal, x, y)) >= alikeNormal &&
+           std::abs(dot(n, vectorAt(g.position, x, y) - p)) <= alikeHeight;
+}
+
 // Means over rays of similar pixels of a pattern; `empty` where no ray is above the horizon. Each ray starts
 // `offset` from the surface in directionAt(normal, x, y), (x, y) in the unit disk; addTo(sum, ray, step) adds
 // what one with this number in the pattern brings. All pixels of the pattern share a set of points: equal
@@ -64,10 +70,7 @@ Image meanOverRays(const GBuffer& g, int rays, double offset, float empty, Direc
             std::array<float, Planes + 1> sum{};
             for (int v = y - pattern / 2; v < y + pattern / 2; ++v)
                 for (int u = x - pattern / 2; u < x + pattern / 2; ++u) {
-                    if (u < 0 || v < 0 || u >= g.width || v >= g.height || isBackground(u, v)) continue;
-                    if (dot(n, vectorAt(g.geometricNormal, u, v)) < alikeNormal ||
-                        std::abs(dot(n, vectorAt(g.position, u, v) - p)) > alikeHeight)
-                        continue;
+                    if (u < 0 || v < 0 || u >= g.width || v >= g.height || !isAlike(g, u, v, p, n)) continue;
                     for (int k = 0; k <= Planes; ++k) sum[size_t(k)] += own.at(k, u, v);
                 }
             for (int k = 0; k < Planes && sum[Planes] > 0; ++k)
@@ -135,6 +138,36 @@ Image bouncedLight(const Scene& scene, const GBuffer& g, const Bounces& b) {
                                const Rgb light = reflectedLight(scene, b, lamps, ray, step);
                                for (size_t c = 0; c < 3; ++c) sum[c] += float(light[c]);
                            });
+}
+
+Image enlarged(const Image& image, const GBuffer& from, const GBuffer& to) {
+    constexpr double least = 1e-3;  // of a pixel further away than the next
+    Image out(to.width, to.height, image.channels);
+#pragma omp parallel for schedule(dynamic, 4)
+    for (int y = 0; y < to.height; ++y)
+        for (int x = 0; x < to.width; ++x) {
+            const double atX = (x + 0.5) * from.width / to.width - 0.5,
+                         atY = (y + 0.5) * from.height / to.height - 0.5;
+            const Vec3 p = vectorAt(to.position, x, y), n = vectorAt(to.geometricNormal, x, y);
+            double sum = 0, nearest = INFINITY;
+            int nearX = std::clamp(int(atX + 0.5), 0, from.width - 1),
+                nearY = std::clamp(int(atY + 0.5), 0, from.height - 1);
+            for (int v = std::max(0, int(atY) - 1); v < std::min(from.height, int(atY) + 3); ++v)
+                for (int u = std::max(0, int(atX) - 1); u < std::min(from.width, int(atX) + 3); ++u) {
+                    if (to.coverage.at(0, x, y) == 0 || from.coverage.at(0, u, v) == 0) continue;
+                    if (isAlike(from, u, v, p, n)) {
+                        const double share =
+                            std::max(least, 1 - std::abs(u - atX)) * std::max(least, 1 - std::abs(v - atY));
+                        sum += share;
+                        for (int c = 0; c < image.channels; ++c)
+                            out.at(c, x, y) += float(share) * image.at(c, u, v);
+                    } else if (const double away = length(vectorAt(from.position, u, v) - p); away < nearest)
+                        nearest = away, nearX = u, nearY = v;
+                }
+            for (int c = 0; c < image.channels; ++c)
+                out.at(c, x, y) = sum > 0 ? out.at(c, x, y) / float(sum) : image.at(c, nearX, nearY);
+        }
+    return out;
 }
 
 }  // namespace pellucid::sample

@@ -30,4 +30,8 @@ struct Bounces {
 // std::invalid_argument for `rays` below 1.
 Image bouncedLight(const Scene& scene, const GBuffer& gbuffer, const Bounces& bounces);
 
+// One of these images for another size of the same view: of each pixel's neighbours in it those that show the
+// same surface count, or else the nearest in space.
+Image enlarged(const Image& image, const GBuffer& from, const GBuffer& to);
+
 }  // namespace pellucid::sample

@@ -435,6 +435,27 @@ TEST(Sample, AmbientOcclusionUnderASquareIsItsFormFactor) {
     EXPECT_THROW(sample::ambientOcclusion(scene, sample::GBuffer(), 0), std::invalid_argument);
 }
 
+// A square 5 mm before a wall: an image of a view is enlarged within each of them, and between pixels of one.
+TEST(Sample, ImagesAreEnlargedWithinSurfaces) {
+    sample::Mesh both = sample::makeRectangle(-100, 100, -100, 100, 0);
+    both.append(sample::makeRectangle(-9, 7, -8, 11, 5));
+    const sample::Scene scene(both.view());
+    const sample::Camera camera{.eye = {0, 0, 60}, .target = {0, 0, 0}, .up = {0, 1, 0}, .nearPlane = 1};
+    const sample::GBuffer from = sample::renderGBuffer(scene, camera, 16, 16, plain()),
+                          to = sample::renderGBuffer(scene, camera, 37, 37, plain());
+    sample::Image image(16, 16, 2);
+    std::copy_n(from.position.plane(2), image.planeSize(), image.plane(0));
+    std::copy_n(from.position.plane(0), image.planeSize(), image.plane(1));
+    const sample::Image out = sample::enlarged(image, from, to);
+    const double pixel = from.position.at(0, 1, 8) - from.position.at(0, 0, 8);
+    for (int y = 0; y < 37; ++y)
+        for (int x = 0; x < 37; ++x) {
+            EXPECT_NEAR(out.at(0, x, y), to.position.at(2, x, y), 1e-4) << x << " " << y;
+            EXPECT_NEAR(out.at(1, x, y), to.position.at(0, x, y), pixel) << x << " " << y;
+        }
+    EXPECT_NEAR(out.at(1, 4, 18), to.position.at(0, 4, 18), 0.02 * pixel) << "far from edges";
+}
+
 // Beside a wall that a lamp along the floor lights [Howell, B-4: half of a rectangle across the element].
 // With an even sky and no loss, all paths end in it but for those of more reflections than are followed.
 TEST(Sample, BouncedLightBesideAWallIsItsFormFactor) {

@@ -262,8 +262,11 @@ TEST(Folds, AreDarkWithSoftEdges) {
     occlusion.at(0, 3, 0) = 0.1f;
     for (int x = 0; x < 6; ++x) g.position.at(0, x, 0) = 0.5f * float(x);
     g.position.at(2, 5, 0) = -5;
-    demo::darkenFolds(g, occlusion);
+    sample::GBuffer lids = g;
+    demo::darkenFolds(lids, occlusion, std::vector(6, 1.0f));
+    demo::darkenFolds(g, occlusion, std::vector(6, 0.0f));
     const float* green = g.albedo.plane(1);
+    EXPECT_GT(lids.albedo.at(1, 3, 0), 2 * green[3]) << "the edge of a lid";
     EXPECT_LT(green[3], 0.1f);
     EXPECT_LT(g.specular.data[3], 0.2f);
     EXPECT_LT(green[3], green[2]);
