@@ -118,13 +118,17 @@ TEST_F(CliLut, SkinIsDescribedDrawnAndTakenFromAPicture) {
     expectKept("s.png", "skin.png", "0.0003");
     EXPECT_EQ(reportOf("profile show @s.toml").at("kind"), "skin-layers");
     io::Image image;
-    image.width = image.height = 1;
-    for (int c = 0; c < 3; ++c)
-        image.channels.push_back({std::string(1, "RGB"[c]), io::ChannelType::Float, {albedo[c]}});
+    image.width = 4, image.height = 1;
+    for (int c = 0; c < 3; ++c)  // the last pixel is green, as no skin is
+        image.channels.push_back({std::string(1, "RGB"[c]),
+                                  io::ChannelType::Float,
+                                  {albedo[c], albedo[c], albedo[c], c == 1 ? 0.9f : 0.1f}});
     io::writeExr(path("a.exr"), image);
-    EXPECT_LT(reportOf("profile pigments @a.exr -o @m.exr").at("delta_e_max").get<double>(),
-              tolerance::skinRoundTrip);
+    const auto found = reportOf("profile pigments @a.exr -o @m.exr");
+    EXPECT_LT(found.at("delta_e_median").get<double>(), tolerance::skinRoundTrip);
+    EXPECT_EQ(found.at("share_above_1"), 0.25);
     const io::Image maps = io::readImage(path("m.exr"));
+    EXPECT_EQ(found.at("delta_e_max"), maps.channel("difference").pixels[3]);
     EXPECT_NEAR(maps.channel("melanin").pixels[0], 0.03f, 1e-3f);
     EXPECT_NEAR(maps.channel("blood").pixels[0], 0.01f, 1e-3f);
 }

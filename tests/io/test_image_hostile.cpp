@@ -176,6 +176,16 @@ TEST_F(HostileImage, HeadersThatLie) {
         EXPECT_NE(refusal("a.exr", Exr().bytes().substr(0, cut)), "") << cut;
 }
 
+TEST_F(HostileImage, AttributesEndWithTheFile) {
+    const std::string start(ExrAttributes::start, ' '),
+        whole = start + Exr::attribute("name", "type", "four");
+    const auto found = ExrAttributes(whole).next();
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->value, "four");
+    for (size_t length = start.size(); length < whole.size(); ++length)
+        EXPECT_FALSE(ExrAttributes(std::string_view(whole).substr(0, length)).next()) << length;
+}
+
 TEST_F(HostileImage, SizesInOtherHeadersToo) {
     const auto with = [](std::string bytes, size_t at, const std::string& what) {
         return bytes.replace(at, what.size(), what);

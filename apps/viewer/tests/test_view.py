@@ -13,7 +13,7 @@ from pellucid import Device  # noqa: E402
 from pellucid.view.camera import Orbit, direction  # noqa: E402
 from pellucid.view.look import EYES, PRESETS, SKIN, Look  # noqa: E402
 from pellucid.view.pictures import TILE_COLORS, chosen_method, tiles  # noqa: E402
-from pellucid.view.server import Pace, Viewer  # noqa: E402
+from pellucid.view.server import SLOW_LIGHT, Pace, Viewer  # noqa: E402
 from pellucid.view.session import Session, iris_image  # noqa: E402
 
 # Values that the standard look does not have.
@@ -290,6 +290,9 @@ def test_pictures_are_as_small_as_the_time_asks():
     for i in range(60):
         steady.shown(0.045 * i, True)
     assert steady.step == (1.0, 3)
+    for i in range(60):
+        steady.shown(3 + 0.045 * i, True, SLOW_LIGHT)
+    assert steady.step != (1.0, 3)
     # Larger pictures that turn out too slow are not tried again at once.
     torn, seen, now = Pace(), [], 0.0
     for _ in range(50):

@@ -24,7 +24,8 @@ from .session import Frame
 
 T = TypeVar("T")
 SETTLED = 0.2  # seconds without a motion, after which the picture is drawn in full
-SLOW, FAST = 1 / 20, 1 / 28  # seconds between pictures, while something moves, that are too many or few
+# Seconds between pictures that are too many, while a view or a light moves; MUCH of them are too few.
+SLOW, SLOW_LIGHT, MUCH = 1 / 20, 1 / 26, 0.7
 
 
 class Pace:
@@ -43,7 +44,7 @@ class Pace:
     def step(self) -> tuple[float, int]:
         return self.STEPS[self._step]
 
-    def shown(self, now: float, moving: bool) -> None:
+    def shown(self, now: float, moving: bool, slow: float = SLOW) -> None:
         """A picture has been taken at `now`."""
         if not moving:
             self._last = None
@@ -57,13 +58,13 @@ class Pace:
         self._rest = max(self._rest - len(self._periods), 0)
         period = sum(sorted(self._periods)[:-1]) / (len(self._periods) - 1)  # one may have been held up
         self._periods.clear()
-        if period > SLOW:
+        if period > slow:
             self._step = min(self._step + 1, len(self.STEPS) - 1)
             self._rest = 60
         elif self._step > 0 and not self._rest:
             (larger, fewer), (scale, every) = self.STEPS[self._step - 1], self.step
             pixels = (larger * every / (scale * fewer))**2
-            if period * (0.5 + 0.5 * pixels) < FAST:  # about half of the time goes into pixels
+            if period * (0.5 + 0.5 * pixels) < MUCH * slow:  # about half of the time goes into pixels
                 self._step -= 1
 
 
@@ -87,7 +88,7 @@ class Viewer:
         self.resumed = False  # whether the session shows what was open last
         self._placed = False  # whether the camera was moved: until then it frames the object
         self._aspect = 16 / 9
-        self._pace = Pace()
+        self._pace, self._slow = Pace(), SLOW
         self._noted = 0.0
         self._changed: set[asyncio.Event] = set()
         self._loop: Optional[asyncio.AbstractEventLoop] = None
@@ -231,6 +232,7 @@ class Viewer:
         else:
             return
         self._placed = self._placed or kind in ("orbit", "pan", "zoom")
+        self._slow = SLOW_LIGHT if kind in ("light", "surroundings") else SLOW
         self.stamp = float(message.get("at", self.stamp))
         self.changed(moving=kind != "size")
 
@@ -274,7 +276,7 @@ class Viewer:
                 message = json.loads(await socket.receive_text())
                 kind = message.get("kind")
                 if kind == "taken":
-                    self._pace.shown(time.monotonic(), self.moving)
+                    self._pace.shown(time.monotonic(), self.moving, self._slow)
                     taken = min(taken + 1, sent)
                     news.set()
                 elif kind == "restart":
