@@ -249,7 +249,6 @@ DemoView renderDemoView(const DemoBody& body, const DemoSurface& surface, const 
     for (const DemoLight& lamp : request.lights) {
         const sample::DirectionalLight direction = directionOf(body.head, lamp);
         io::SceneLight& added = view.scene.lights.emplace_back();
-        added.light.type = PEL_LIGHT_DIRECTIONAL;
         copy(added.light.toLight, direction.toLight);
         std::ranges::copy(lamp.color, added.light.color);
         addShadow(view, body.mesh, lamp, direction, added);

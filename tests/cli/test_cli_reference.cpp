@@ -101,6 +101,39 @@ TEST_F(CliReference, VerticesUnitAndProfile) {
     EXPECT_TRUE(read(path("own.npy")) == read(path("named.npy")));
 }
 
+// A lamp at x = 20, by its distance and the cosine from its axis.
+TEST_F(CliReference, LampsEndAtTheirRangeAndCone) {
+    PelLight& lamp = scene_.lights[0].light;
+    lamp.position[0] = 20, lamp.spotDirection[0] = -1, lamp.spotDirection[2] = 0;
+    const auto lit = [&](PelLightType type, float range) {
+        lamp.type = type, lamp.range = range;
+        pellucid::io::writeScene(path("s.toml"), scene_);
+        done(ofBall + picture + "--finest 2 --coarsest 4 -o @o.exr");
+        return pellucid::io::readImage(path("o.exr")).channel("Irradiance.R").pixels;
+    };
+    lamp.spotCosInner = 0.92f, lamp.spotCosOuter = 0.88f;
+    const auto whole = lit(PEL_LIGHT_POINT, 0), ended = lit(PEL_LIGHT_POINT, 14),
+               cone = lit(PEL_LIGHT_SPOT, 0);
+    int inside = 0;
+    for (size_t i = 0; i < whole.size(); ++i) {
+        const double x = 20 - given("P.X")[i], y = given("P.Y")[i], z = given("P.Z")[i],
+                     distance = std::hypot(x, y, z), cosine = x / distance;
+        if (whole[i] == 0) continue;
+        EXPECT_LE(ended[i], whole[i]) << i;
+        if (std::abs(distance - 14) > 0.5) {
+            EXPECT_EQ(ended[i] > 0, distance < 14) << distance;
+        }
+        if (std::abs(cosine - 0.88) > 0.01) {
+            EXPECT_EQ(cone[i] > 0, cosine > 0.88) << cosine;
+        }
+        if (cosine > 0.93) {
+            EXPECT_EQ(cone[i], whole[i]) << cosine;
+        }
+        inside += distance < 13 && cosine > 0.93;
+    }
+    EXPECT_GT(inside, 2);
+}
+
 TEST_F(CliReference, WalkWritesHalvesForCompare) {
     const std::string walk =
         ofBall + picture + "--walk --profile @burley.toml --reflectance 0.8 0.8 0.8 --samples 24 -o ";

@@ -195,8 +195,8 @@ TEST_F(HostileImage, SizesInOtherHeadersToo) {
     const size_t frame = jpeg.find("\xff\xc0");
     ASSERT_NE(frame, std::string::npos);
     // A map of two colours, one byte a pixel; a map of none is no map.
-    const auto mapped = [](char colors) {
-        const char header[] = {0, 1, 1, 0, 0, colors, 0, 24, 0, 0, 0, 0, 2, 0, 1, 0, 8, 0x20};
+    const auto mapped = [](char colors, char bits = 24) {
+        const char header[] = {0, 1, 1, 0, 0, colors, 0, bits, 0, 0, 0, 0, 2, 0, 1, 0, 8, 0x20};
         return std::string(header, sizeof header) + std::string("\1\2\3\4\5\6", 6) + std::string("\0\1", 2);
     };
     EXPECT_EQ(refusal("m.tga", mapped(2)), "");
@@ -207,6 +207,7 @@ TEST_F(HostileImage, SizesInOtherHeadersToo) {
           {"a.tga", with(written("tga"), 12, "\x60\xea\x60\xea"), "60000 x 60000 pixels"},
           {"a.tga", with(written("tga"), 12, std::string("\0\x10\0\x10", 4)), "too short for its pixels"},
           {"m.tga", mapped(0), "is not a TGA of a known kind"},
+          {"m.tga", mapped(2, 8), "is not a TGA of a known kind"},
           {"a.bmp", with(written("bmp"), 18, std::string("\x60\xea\0\0\x60\xea\0\0", 8)),
            "60000 x 60000 pixels"},
           {"a.jpg", with(jpeg, frame + 5, "\xea\x60\xea\x60"), "60000 x 60000 pixels of 3 channels"}})

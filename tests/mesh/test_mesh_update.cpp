@@ -109,6 +109,7 @@ TEST(LiveMesh, WorksOnNoMoreRowsThanTheChangeReaches) {
     EXPECT_LE(stats.rowsEstimated, 22u * 8) << "three rings in whole slices";
     EXPECT_LE(stats.rowsSmoothed, (26u + 30u) * 8);
     EXPECT_GT(stats.bytesUploaded, 0u);
+    EXPECT_LE(stats.bytesUploaded, 2 * 4 * stats.rowsSmoothed) << "two numbers a row at most";
     EXPECT_EQ(stats.rowsTotal, mesh.vertices());
     // The same vertices again: not even the list.
     const PelDeviceStats before = device().stats();
