@@ -91,6 +91,22 @@ TEST(WarmUp, ACommitAndAnExecutionFindEverythingBuilt) {
     EXPECT_EQ(built, 0u) << "all is there";
 }
 
+// Whose table is not there yet.
+TEST(WarmUp, AnEyeFindsEverythingBuilt) {
+    const Device own("");
+    const Tables tables = makeTables(own, 32, 32);
+    Scene scene(own, tables, 40, 24);
+    scene.shader.setEye(2, pelEyeDefaults());
+    const std::vector<PelShader> shaders{scene.shader.get()};
+    const PelWarmUp work = workOf(shaders);
+    uint32_t built = 0;
+    pellucid::check(pelWarmUpPrograms(own.get(), &work, &built));
+    EXPECT_GT(built, 4u) << "more than without an eye";
+    const uint64_t before = buildsSince(0);
+    scene.shader.commit().execute();
+    EXPECT_EQ(buildsSince(before), 0u);
+}
+
 TEST(WarmUp, TablesAndCurvatureFindEverythingBuilt) {
     const Device own("");
     Telling telling;

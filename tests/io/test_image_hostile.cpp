@@ -220,6 +220,20 @@ TEST_F(HostileImage, SizesInOtherHeadersToo) {
     }
 }
 
+// A thumbnail behind the end of the file, to which the footer leads.
+TEST_F(HostileImage, TheFooterOfATgaIsNotFollowed) {
+    const std::string picture = written("tga"), end("TRUEVISION-XFILE.\0", 18);
+    const size_t body = picture.ends_with(end) ? picture.size() - 26 : picture.size();
+    std::string extension = Exr::word(495) + std::string(491, '\0');
+    extension.replace(0, 2, "\xef\x01", 2), extension.replace(486, 4, Exr::word(uint32_t(body) + 490));
+    const Image expected = decodeImage("a.tga", picture, {}, inputLimit());
+    for (const uint32_t at : {uint32_t(body), uint32_t(1) << 30}) {
+        const std::string file = picture.substr(0, body) + extension + Exr::word(at) + Exr::word(0) + end;
+        EXPECT_EQ(decodeImage("a.tga", file, {}, inputLimit()).channels[0].pixels,
+                  expected.channels[0].pixels);
+    }
+}
+
 TEST_F(HostileImage, ATableIsOneBeforeItsPixelsAreRead) {
     Exr exr;
     exr.display[2] = exr.display[3] = 9999;
