@@ -24,8 +24,9 @@ from .session import Frame
 
 T = TypeVar("T")
 SETTLED = 0.2  # seconds without a motion, after which the picture is drawn in full
-# Seconds between pictures that are too many, while a view or a light moves; MUCH of them are too few.
-SLOW, SLOW_LIGHT, MUCH = 1 / 20, 1 / 26, 0.7
+# Seconds between pictures that are too many, while a view or a light moves; MUCH of them are too few. For a light's
+# sake sides become no smaller than LEAST_LIGHT.
+SLOW, SLOW_LIGHT, MUCH, LEAST_LIGHT = 1 / 20, 1 / 26, 0.7, 0.8
 
 
 class Pace:
@@ -58,7 +59,7 @@ class Pace:
         self._rest = max(self._rest - len(self._periods), 0)
         period = sum(sorted(self._periods)[:-1]) / (len(self._periods) - 1)  # one may have been held up
         self._periods.clear()
-        if period > slow:
+        if period > (slow if self.step[0] > LEAST_LIGHT else SLOW):
             self._step = min(self._step + 1, len(self.STEPS) - 1)
             self._rest = 60
         elif self._step > 0 and not self._rest:
