@@ -165,6 +165,22 @@ TEST_F(ImageFile, OnlyTheNamedChannelsAreRead) {
     EXPECT_TRUE(contains(messageOf<FileError>([&] { some.channel("Z"); }), "several"));
 }
 
+TEST_F(ImageFile, ChannelsComeByLayerAndColour) {
+    Image image;
+    image.width = image.height = 1;
+    const std::vector<std::string> order{"B",     "A",        "Z",     "one.R", "one.G",
+                                         "one.A", "one.more", "two.B", "two.X"};
+    for (const size_t i : {5, 1, 8, 3, 0, 7, 2, 6, 4})
+        image.channels.push_back({order[i], ChannelType::Float, {float(i)}});
+    writeExr(path("order.exr"), image);
+    const Image read = readImage(path("order.exr"));
+    ASSERT_EQ(read.channels.size(), order.size());
+    for (size_t i = 0; i < order.size(); ++i) {
+        EXPECT_EQ(read.channels[i].name, order[i]);
+        EXPECT_EQ(read.channels[i].pixels[0], float(i));
+    }
+}
+
 TEST_F(ImageFile, ChannelsAreFoundByNameOrTheErrorListsThem) {
     Image image = makeImage(1, 1);
     image.source = "g.exr";
