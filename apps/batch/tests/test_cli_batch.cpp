@@ -118,6 +118,25 @@ TEST_F(BatchCommand, NamesFilesAndWritesAnIndexOfThem) {
     EXPECT_EQ(made("[[lut]]\nname = \"shine\"\nsize = 8\n")["redone"], 1) << "another request of this name";
 }
 
+// Requests that differ in one field alone.
+TEST(BatchManifest, EveryFieldOfATableIsInItsName) {
+    std::string text = "version = 2\n";
+    for (const char* field : {"", "size = 9", "encoding = \"float\"", "profile = \"marble\"",
+                              "form = \"arc\"", "axis = \"linear\"", "radius_min = 0.3", "radius_max = 70",
+                              "diffusion_radius = 3", "melanin = 0.1", "blood = 0.1", "oxygenation = 0.5"})
+        text += std::string("[[lut]]\n") + field + "\n";
+    for (const char* field : {"", "size = 9", "axis = \"linear\"", "width_min = 0.3", "width_max = 70",
+                              "sharpening = 2", "closed_ends = 0"})
+        text += std::string("[[lut]]\nkind = \"shadow\"\n") + field + "\n";
+    const auto manifest = pellucid::io::parseManifest("m.toml", text, {});
+    EXPECT_TRUE(manifest.errors.empty());
+    EXPECT_EQ(manifest.duplicates, 0u);
+    EXPECT_EQ(manifest.text, text);
+    std::set<std::string> names;
+    for (const auto& entry : manifest.entries) names.insert(entry.file);
+    EXPECT_EQ(names.size(), 19u);
+}
+
 // By default a manifest of version 1 makes FaceWorks' tables, one of version 2 those that a material makes of
 // its profile. What these are: test_cli_lut.cpp.
 TEST_F(BatchCommand, TablesBeginAsTheVersionOrThePresetSays) {
