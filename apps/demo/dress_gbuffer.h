@@ -6,8 +6,8 @@
 namespace pellucid::demo {
 
 // Where an eye meets its lids the film of tears is thicker. The lids' edges are pink and moist, above also
-// dark, where the lashes are rooted. Returns the wetness of PEL_SLOT_WETNESS, and on lids how near the eye is:
-// 1 at its edge, 0 beyond the lids' edges.
+// dark, where the lashes are rooted. Returns the wetness of PEL_SLOT_WETNESS, and on lids how near the eye
+// is: 1 at its edge, 0 beyond the lids' edges.
 std::vector<float> dressEyes(sample::GBuffer& gbuffer, sample::Vec3 up);
 
 // Little of the light that gets between lips and hairs or into a nostril comes out again; from the wet edges

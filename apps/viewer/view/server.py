@@ -24,8 +24,8 @@ from .session import Frame
 
 T = TypeVar("T")
 SETTLED = 0.2  # seconds without a motion, after which the picture is drawn in full
-# Seconds between pictures that are too many, while a view or a light moves; MUCH of them are too few. For a light's
-# sake sides become no smaller than LEAST_LIGHT.
+# Seconds between pictures that are too many, while a view or a light moves; MUCH of them are too few. For a
+# light's sake sides become no smaller than LEAST_LIGHT.
 SLOW, SLOW_LIGHT, MUCH, LEAST_LIGHT = 1 / 20, 1 / 26, 0.7, 0.8
 
 
