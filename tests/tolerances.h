@@ -115,6 +115,8 @@ constexpr double areaTables = 0.05;  // by the size over the distance: two place
 constexpr double areaHighlightSmall = 6e-3, areaHighlight = 0.08, areaHighlightLarge = 0.2;
 // share of light in a penumbra: the filter is rounder than a disk's edge response, and 32 taps find its width
 constexpr double softShadow = 0.02;
+// relative: polynomials of degree 5 and 6 for 2^x
+constexpr double fastMath = 4e-7;
 // relative: the tenth power of a float value read at float coordinates up to 300
 constexpr double specularTable = 2e-4;
 // length: depths of a map that spans 200 to 700, through one float division

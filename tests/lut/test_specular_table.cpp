@@ -1,8 +1,6 @@
 // kernels/lib/shading/specular_table.clh as a renderer includes it: against the oracle, and against the same
 // texels in double precision.
-#include <CL/cl.h>
-#include "test.h"
-
+#include "own_kernel.h"
 #include "reference/lut.h"
 #include "reference/shade.h"
 
@@ -16,10 +14,7 @@ constexpr uint32_t width = 300, height = 200;
 // n, l, v, m per evaluation: ten floats each.
 std::vector<float> evaluate(const pellucid::Device& device, const std::vector<float>& table,
                             const std::vector<float>& inputs, int lanes) {
-    // Clang warns of vectors wider than the registers.
-    const char* source =
-        "#ifndef __NV_CL_C_VERSION\n#pragma clang diagnostic ignored \"-Wpsabi\"\n#endif\n"
-        R"(#include "lib/shading/specular_table.clh"
+    return runOwnKernel(device, R"(#include "lib/shading/specular_table.clh"
 #define V(i) vec3(loadw(at, in + (i) * n), loadw(at, in + (i + 1) * n), loadw(at, in + (i + 2) * n))
 __kernel void evaluate(__global const float* in, __global const float* table, uint width, uint height,
                        __global float* out) {
@@ -28,35 +23,8 @@ __kernel void evaluate(__global const float* in, __global const float* table, ui
     storew(specularKskTable(table, width, height, normal, light, view, dot3(normal, light),
                             loadw(at, in + 9 * n), 0.028f),
            at, out);
-})";
-    void *context, *id, *queue;
-    pellucid::check(pelDeviceGetCl(device.get(), &context, &id, &queue));
-    cl_int code;
-    cl_program program = clCreateProgramWithSource(cl_context(context), 1, &source, nullptr, &code);
-    const auto cl = cl_device_id(id);
-    const std::string options =
-        "-cl-std=CL1.2 -I" PELLUCID_SOURCE_DIR "/kernels -DPEL_WIDTH=" + std::to_string(lanes);
-    EXPECT_EQ(clBuildProgram(program, 1, &cl, options.c_str(), nullptr, nullptr), CL_SUCCESS);
-    cl_kernel kernel = clCreateKernel(program, "evaluate", &code);
-    const pellucid::Buffer in(device, inputs), texels(device, table), out(device, count * sizeof(float));
-    const auto argument = [&](cl_uint number, const auto& value) {
-        EXPECT_EQ(clSetKernelArg(kernel, number, sizeof value, &value), CL_SUCCESS);
-    };
-    const auto memory = [](const pellucid::Buffer& buffer) {
-        void* found = nullptr;
-        pellucid::check(pelBufferGetCl(buffer.get(), &found));
-        return found;
-    };
-    argument(0, memory(in)), argument(1, memory(texels)), argument(2, width), argument(3, height);
-    argument(4, memory(out));
-    const size_t items = count / size_t(lanes);
-    EXPECT_EQ(clEnqueueNDRangeKernel(cl_command_queue(queue), kernel, 1, nullptr, &items, nullptr, 0, nullptr,
-                                     nullptr),
-              CL_SUCCESS);
-    EXPECT_EQ(clFinish(cl_command_queue(queue)), CL_SUCCESS);
-    clReleaseKernel(kernel);
-    clReleaseProgram(program);
-    return out.readAll<float>();
+})",
+                        lanes, count, inputs, table, width, height);
 }
 
 TEST(SpecularTable, ReadsWhatTheTableHolds) {
