@@ -3,8 +3,8 @@
 #include <CL/cl.h>
 #include "test.h"
 
-// What the kernel `evaluate` of `source` writes to its last argument, `count` floats, on as many work-items as
-// take `lanes` of them each. `arguments`: floats, which get a buffer, or numbers.
+// What the kernel `evaluate` of `source` writes to its last argument, `count` floats, by work-items that take
+// `lanes` of them each. `arguments`: floats, which get a buffer, or numbers.
 template <class... Arguments>
 std::vector<float> runOwnKernel(const pellucid::Device& device, const std::string& source, int lanes,
                                 size_t count, const Arguments&... arguments) {
