@@ -316,6 +316,7 @@ def test_a_mesh_of_another_unit_brings_a_question(page, tmp_path):
     upload(page, "Drop an OFF", mesh)
     yes = wait_for(lambda: page.find_elements(By.CSS_SELECTOR, "[data-pel='unit-yes']"), "the question")[0]
     card = yes.find_element(By.XPATH, "./ancestor::*[contains(@class,'q-card')]")
-    assert "0.24 mm across" in card.text and "lengths in metres?" in card.text
+    text = wait_for(lambda: card.text, "its text, which is nothing while it appears")
+    assert "0.24 mm across" in text and "lengths in metres?" in text
     yes.click()
     wait_for(lambda: not page.find_elements(By.CSS_SELECTOR, "[data-pel='unit-yes']"), "the end of it")
