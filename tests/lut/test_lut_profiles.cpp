@@ -77,6 +77,11 @@ TEST(LutProfiles, NormalBlendOfSkinIsThePublishedOne) {
     EXPECT_STREQ(info.name, "skin");
 }
 
+TEST(LutProfiles, AGaussianWithoutWeightDoesNotWidenAProfile) {
+    const PelProfileInfo info = Profile::gaussians({{2, {1, 1, 1}}, {100, {0, 0, 0}}, {9, {0, 1, 0}}}).info();
+    EXPECT_FLOAT_EQ(info.radius, 3);
+}
+
 TEST(LutProfiles, RefusesWhatMakesNoSense) {
     const float nan3[3] = {NAN, 1, 1}, ones[3] = {1, 1, 1}, negative[3] = {1, -1, 1},
                 half[3] = {0.5f, 0.5f, 0.5f}, most = std::numeric_limits<float>::max();

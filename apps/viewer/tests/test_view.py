@@ -41,6 +41,15 @@ def test_positions_lie_on_the_rays_of_their_pixels(session):
     assert g.position[g.material == 0].max(initial=0) == 0
 
 
+def test_planes_enclose_a_ball_closely():
+    orbit = Orbit(distance=10)
+    eye, matrix = orbit.matrices((0, 1, 0), (0, 0, 1), (0, 0, 0), 1.0, 1.0)
+    back = eye / np.linalg.norm(eye)
+    for at, end in ((back, -1), (-back, 1)):
+        clip = matrix @ [*at, 1.0]
+        assert 0.9 < end * clip[2] / clip[3] < 1
+
+
 def test_lights_are_the_lamps_that_are_on_and_their_maps_are_a_third_as_large_while_something_moves(session):
     reset(session)
     look = session.look
