@@ -233,7 +233,12 @@ void run(Arguments a) {
         DemoViewRequest request = wanted[0];
         request.rays /= 2;  // nothing is as fine as hair
         surface = renderDemoSurface(bald, request);
-        bust = renderDemoView(bald, surface, renderDemoLight(bald, surface, request), request);
+        const DemoView& key = views.front().view;
+        bust = {key.name, key.scene, key.images};  // the shadow maps are those of the same mesh
+        bust.scene.eyes.clear();
+        bust.scene.materials.resize(1);
+        bust.scene.channels[PEL_SLOT_WETNESS].clear();
+        addPixels(bust, bald, surface, renderDemoLight(bald, surface, request), request);
     });
     std::vector<io::Tile> materials;
     for (const auto& m : demoMaterials) {

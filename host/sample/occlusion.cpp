@@ -148,13 +148,14 @@ Image enlarged(const Image& image, const GBuffer& from, const GBuffer& to) {
         for (int x = 0; x < to.width; ++x) {
             const double atX = (x + 0.5) * from.width / to.width - 0.5,
                          atY = (y + 0.5) * from.height / to.height - 0.5;
+            const bool isBackground = to.coverage.at(0, x, y) == 0;
             const Vec3 p = vectorAt(to.position, x, y), n = vectorAt(to.geometricNormal, x, y);
             double sum = 0, nearest = INFINITY;
             int nearX = std::clamp(int(atX + 0.5), 0, from.width - 1),
                 nearY = std::clamp(int(atY + 0.5), 0, from.height - 1);
             for (int v = std::max(0, int(atY) - 1); v < std::min(from.height, int(atY) + 3); ++v)
                 for (int u = std::max(0, int(atX) - 1); u < std::min(from.width, int(atX) + 3); ++u) {
-                    if (to.coverage.at(0, x, y) == 0 || from.coverage.at(0, u, v) == 0) continue;
+                    if (isBackground || from.coverage.at(0, u, v) == 0) continue;
                     if (isAlike(from, u, v, p, n)) {
                         const double share =
                             std::max(least, 1 - std::abs(u - atX)) * std::max(least, 1 - std::abs(v - atY));
