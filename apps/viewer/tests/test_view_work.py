@@ -12,6 +12,10 @@ files = pytest.importorskip("pellucid.files", reason="this build reads no files"
 pytest.importorskip("nicegui", reason="nicegui is not installed")
 from view_session import reset  # noqa: E402
 
+from pellucid.mesh import MeshTopology  # noqa: E402
+from pellucid.shader import Shader  # noqa: E402
+from pellucid.view.export import export  # noqa: E402
+from pellucid.view.passes import Pass  # noqa: E402
 from pellucid.view.reference import Reference, vertex_irradiance  # noqa: E402
 from pellucid.view.session import Session  # noqa: E402
 from pellucid.view.widgets import Panel  # noqa: E402
@@ -56,6 +60,55 @@ def test_the_reference_leaves_the_session_free(session):
         gate.set()
         session.report = None
         reset(session)
+
+
+@pytest.mark.parametrize("late", ["curvature", "commit"])
+def test_a_first_picture_waits_for_no_kernel(session, monkeypatch, late):
+    reset(session)
+    kind = MeshTopology if late == "curvature" else Shader
+    gate, real = threading.Event(), getattr(kind, late)
+
+    def waits(*arguments, **options):
+        gate.wait(60)
+        return real(*arguments, **options)
+
+    monkeypatch.setattr(kind, late, waits)
+    own = Session(session.device)
+    own.report = lambda: None
+    try:
+        own.show(session.mesh)
+        assert own.measuring == (late == "curvature")
+        own.orbit = session.orbit
+        first = own.frame(192, 108)
+        again = own.frame(96, 54)  # of another size, meanwhile
+        assert first.stands_in and again.stands_in and again.pixels.shape == (54, 96, 3)
+    finally:
+        gate.set()
+    wait_until(lambda: not own.frame(192, 108).stands_in)
+    session.look.mode = "lambert"
+    plain, whole = session.frame(192, 108).pixels.astype(int), first.pixels.astype(int)
+    assert ((plain > 0).any(2) == (whole > 0).any(2)).mean() > 0.999
+    assert np.abs(plain - whole).mean() < 2  # without gloss, and the edges of shadows
+    reset(session)
+    assert np.array_equal(own.frame(192, 108).pixels, session.frame(192, 108).pixels)
+    assert np.array_equal(own.gbuffer(192, 108).curvature, session.gbuffer(192, 108).curvature)
+
+
+def test_what_is_written_waits_for_its_kernels(session, monkeypatch, tmp_path):
+    reset(session)
+    own, standing, real = Session(session.device), [], Pass.shade
+    own.report = lambda: None
+    own.show(session.mesh)
+
+    def shade(self, *rest):
+        made = real(self, *rest)
+        standing.append(self.stands_in or own.background)
+        return made
+
+    monkeypatch.setattr(Pass, "shade", shade)
+    export(own, tmp_path, 96, 54)
+    own.smooth(96, 54)
+    assert len(standing) > 8 and not any(standing) and own.background
 
 
 def test_the_reference_has_the_light_of_the_lamps(session):

@@ -55,7 +55,11 @@ def export(session: Session, folder: Any, width: int = 1280, height: int = 720) 
 
     ``pellucid shade gbuffer.exr --scene scene.toml -o again.exr`` there gives picture.exr again.
     """
-    out = Path(folder)
+    with session.complete():
+        return _export(session, Path(folder), width, height)
+
+
+def _export(session: Session, out: Path, width: int, height: int) -> list[Path]:
     out.mkdir(parents=True, exist_ok=True)
     look = session.look.copy()
     mode, session.look.mode = session.look.mode, "final"

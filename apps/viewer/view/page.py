@@ -56,7 +56,8 @@ class StatisticsPanel(Panel):
             if name in self.bars:
                 self.bars[name].set_value(min(1.0, ms / longest))
                 self.bars[name + " ms"].set_text(f"{ms:.1f} ms")
-        c = frame.counts
+        if not (c := frame.counts):  # of a picture without Pellucid
+            return
         lines = [f"tiles shaded {c['tiles_shaded']} of {c['tiles_total']}",
                  f"pixels shaded {c['pixels_shaded']} of {c['pixels_total']}",
                  f"launches {c['launches']}, scratch {c['scratch_bytes'] / 2**20:.1f} MiB"]

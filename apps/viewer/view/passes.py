@@ -1,6 +1,11 @@
 """A shader and its last settings: what did not change is not set again, and compiles nothing again."""
 from __future__ import annotations
 
+import contextlib
+import os
+import sys
+import threading
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from typing import TYPE_CHECKING, Any, Callable
 
 import numpy as np
@@ -9,6 +14,7 @@ from numpy.typing import NDArray
 from .._types import Ambient, Camera
 from ..device import Device
 from ..shader import Shader, warm_up_programs
+from .lambert import irradiance_at
 from .look import MATERIALS, SKIN, Look
 from .texture import Texture
 
@@ -18,6 +24,18 @@ if TYPE_CHECKING:
 
 OUTPUTS = {"diffuse": "out_diffuse", "specular": "out_specular", "deep_scatter": "out_deep_scatter",
            "thickness": "out_thickness"}
+
+PATIENCE = 0.3  # seconds that a picture waits for what the first one is to do without
+
+
+def _yield_to_pictures() -> None:
+    if sys.platform == "linux":
+        with contextlib.suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), 19)  # of this thread alone
+
+
+# Builds kernels while such pictures are shown.
+BESIDE = ThreadPoolExecutor(2, "pellucid-kernels", _yield_to_pictures)
 
 
 def tinted(g: GBuffer, look: Look) -> NDArray[np.float32]:
@@ -36,6 +54,7 @@ class Pass:
         self._texture: Texture | None = None
         self._uv = np.zeros((0, 0, 2), np.float32)
         self.stands_in = False  # whether kernels are still being built, and the picture has no scattering
+        self._first: Future[Any] | None = None  # a commit that builds kernels beside pictures
 
     def _update(self, what: str, value: Any, how: Callable[[], Any]) -> None:
         if what not in self._set or self._set[what] != value:
@@ -46,6 +65,13 @@ class Pass:
     def shade(self, session: Session, g: GBuffer, look: Look, outputs: tuple[str, ...], small: bool,
               albedo: bool) -> Pass:
         """`albedo` False: irradiance alone."""
+        if self._first is not None:
+            if session.background and session.sketched and not wait([self._first], PATIENCE).done:
+                return self._sketch(session, g, look, outputs, small, albedo)
+            first, self._first = self._first, None
+            self._set["committed"] = False
+            first.result()
+            self._set["committed"] = True
         self._images(g, look, albedo)
         height, width = g.material.shape
         memory = (g.position.ctypes.data, width, height)
@@ -110,13 +136,34 @@ class Pass:
                 # Only then may kernels have to be compiled: with progress.
                 warm_up_programs(self.device, shaders=[self.shader])
                 self._structure = structure
-            self.shader.commit()
             self._set["committed"] = True
+            if session.background and session.sketched:
+                self._first = BESIDE.submit(self.shader.commit)
+                return self.shade(session, g, look, outputs, small, albedo)
+            self.shader.commit()
+        if session.measuring:
+            return self._sketch(session, g, look, outputs, small, albedo)
         self.outputs["radiance"][...] = 0
         self.shader.execute()
+        session.sketched = False
         self.stands_in = session.background and bool(self.shader.stats().stands_in)
         if self.stands_in:
             self._set["committed"] = False  # the next picture asks again
+        return self
+
+    def _sketch(self, session: Session, g: GBuffer, look: Look, outputs: tuple[str, ...], small: bool,
+                albedo: bool) -> Pass:
+        """Lambert's light without Pellucid, into memory of its own: the shader may be in use."""
+        seen = g.material > 0
+        shown = np.zeros((*seen.shape, 3), np.float32)
+        shown[seen] = irradiance_at(session, look, g.position[seen], g.normal_shading[seen], small)
+        if albedo:
+            shown *= tinted(g, look)
+        self.outputs = {name: np.zeros_like(g.curvature) if name == "out_thickness" else shown
+                        for name in ("radiance", *outputs)}
+        for what in ("images", "parts", "albedo"):  # to be set again
+            self._set.pop(what, None)
+        self.stands_in = True
         return self
 
     def _images(self, g: GBuffer, look: Look, albedo: bool) -> None:

@@ -1,9 +1,11 @@
 """Mesh, look and camera in, picture out: what the page shows, and what a program can use without it."""
 from __future__ import annotations
 
+import contextlib
 import time
+from concurrent.futures import Future, wait
 from dataclasses import dataclass, field, fields
-from typing import Any, Callable, Optional, TypeVar
+from typing import Any, Callable, Iterator, Optional, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +20,7 @@ from . import surroundings
 from .camera import Orbit, direction
 from .look import CUT, EYES, PIGMENTS, RIGHT_EYE, SKIN, TEETH, TONGUE, Lamp, Look, skin_triangles
 from .paint import SKIN_ALBEDO, Paint, load, painted, read
-from .passes import Pass
+from .passes import BESIDE, PATIENCE, Pass
 from .pictures import LINEAR, picture, scattered_tiles, srgb_bytes
 from .reference import Reference
 from .renderer import GBuffer, Renderer, depth
@@ -151,7 +153,9 @@ class Session:
         self.references: dict[str, Reference] = {}  # by pass
         # called as references advance; None: pictures wait for them, and for kernels
         self.report: Optional[Callable[[], None]] = None
-        self._preparing = False
+        self._complete = False
+        self.sketched = True  # until kernels have made a picture
+        self._curvature: Optional[Future[Any]] = None  # of the mesh, while it is measured
         self._shift = (0.0, 0.0)
         self._view: Any = None  # `camera` of the frame that is being made: the page may move it meanwhile
         self._prepared: Any = None
@@ -191,20 +195,47 @@ class Session:
             raise ValueError(f"{mesh.source or 'the mesh'} has no triangles")
         topology = MeshTopology(self.device, mesh.triangles, len(mesh.positions), weld="exact",
                                 positions=mesh.positions)
-        curvature = topology.curvature(mesh.positions, mesh.normals, smoothing_passes=2)
-        self.renderer.set_mesh(mesh, curvature, self.mm, paint=paint)
+        curvature = BESIDE.submit(topology.curvature, mesh.positions, mesh.normals, smoothing_passes=2)
+        # A first picture does without, if kernels have to be built for it.
+        known = not self.sketched or wait([curvature], PATIENCE).done
+        self.renderer.set_mesh(mesh, curvature.result() if known else 0.0, self.mm, paint=paint)
+        self._curvature = None if known else curvature
         self.mesh, self.paint = mesh, paint
         self.centre = (np.asarray(mesh.low, float) + mesh.high) / 2
+        self._forget()
+        for name in list(self.references):
+            self.cancel_reference(name)
+
+    def _forget(self) -> None:
+        """What was made of the mesh before."""
         for made in (self._maps, self._gbuffers, self._textures):
             made.clear()
         self._rest = self._detailed = self._shaded = None
-        for name in list(self.references):
-            self.cancel_reference(name)
+
+    def _take_curvature(self) -> None:
+        if self._curvature is not None and (self._curvature.done() or not self.background):
+            measured, self._curvature = self._curvature.result(), None
+            self.renderer.set_mesh(self.mesh, measured, self.mm, paint=self.paint)
+            self._forget()
+
+    @property
+    def measuring(self) -> bool:
+        """Whether the curvature of the mesh is not known yet."""
+        return self._curvature is not None
 
     @property
     def background(self) -> bool:
         """Whether kernels are built while pictures without scattering stand in."""
-        return self.report is not None and not self._preparing
+        return self.report is not None and not self._complete
+
+    @contextlib.contextmanager
+    def complete(self) -> Iterator[None]:
+        """Within it, pictures wait for their kernels."""
+        before, self._complete = self._complete, True
+        try:
+            yield
+        finally:
+            self._complete = before
 
     def size(self) -> float:
         """Largest extent of the mesh, mm."""
@@ -299,6 +330,8 @@ class Session:
                                    aspect)
 
     def gbuffer(self, width: int, height: int, small: bool = False) -> GBuffer:
+        if not self.background:
+            self._take_curvature()
         state = self.drawn_state(width, height, small)
         made = self._gbuffers.get((width, height))
         if made is None or made[0] != state:
@@ -412,8 +445,9 @@ class Session:
             0 for a picture by itself. After it 1, 2, .. `samples` - 1: the mean with one more that is
             shifted by a part of a pixel, so that edges become smooth.
         """
-        built = self.device.stats().programs_built
+        built = 0 if self.sketched else self.device.stats().programs_built  # which waits for the device
         started = time.perf_counter()
+        self._take_curvature()
         self._shift = (_HALTON[sample - 1][0] - 0.5, _HALTON[sample - 1][1] - 0.5) if sample else (0.0, 0.0)
         right = self.right()
         if right is not None and self.beside:
@@ -429,7 +463,6 @@ class Session:
             rest = kept[1] if kept is not None and kept[0] == self.look else None
             pixels = [self.renderer.enlarged(view[1], image, made.depth, made.matrix, (width, height),
                                              self._coarse(), rest, made.inside) for image in pixels]
-        self.last_pass, stats = p, p.shader.stats()
         shown = pixels[0] if right is None else self._joined(*pixels)
         if right is None:
             self.cancel_reference("other")
@@ -438,9 +471,12 @@ class Session:
         else:
             shown = self._mean(shown, sample)
             self._rest, self._detailed = (shown, view[1]), None
-        times = {"OpenGL": 1e3 * (time.perf_counter() - started - seconds), "Pellucid": 1e3 * seconds,
-                 "on the device": stats.device_milliseconds}
-        after = self.device.stats().programs_built
+        times = {"OpenGL": 1e3 * (time.perf_counter() - started - seconds), "Pellucid": 1e3 * seconds}
+        self.last_pass = p
+        if self.sketched:
+            return Frame(shown, times, stands_in=True)
+        stats, after = p.shader.stats(), self.device.stats().programs_built
+        times["on the device"] = stats.device_milliseconds
         return Frame(shown, times, stats.to_dict(), p.shader.warnings() + list(self.mesh.warnings), after,
                      after - built, p.stands_in)
 
@@ -493,11 +529,8 @@ class Session:
             other = base.copy()
             for name, value in change.items():
                 setattr(other, name, value)
-            self._preparing = True
-            try:
+            with self.complete():
                 picture(self, "main", other, width, height, False)
-            finally:
-                self._preparing = False
         self._prepared = structure
 
     def right(self) -> Optional[Look]:
@@ -542,7 +575,8 @@ class Session:
 
     def smooth(self, width: int, height: int) -> NDArray[np.uint8]:
         """The picture with smooth edges, (height, width, 3), sRGB."""
-        pixels = self.frame(width, height).pixels
-        for sample in range(1, self.samples):
-            pixels = self.frame(width, height, sample=sample).pixels
+        with self.complete():
+            pixels = self.frame(width, height).pixels
+            for sample in range(1, self.samples):
+                pixels = self.frame(width, height, sample=sample).pixels
         return pixels
