@@ -117,6 +117,7 @@ TEST_F(TimeBudget, GuessesWithoutARecord) {
         writeRecord("a device that is not here");
         const PelShaderStats of = shot(lit, PEL_SCATTERING_AUTO, 0.002f, budget).stats;
         EXPECT_EQ(of.tuned, 0u);
+        EXPECT_EQ(of.takenHalfRate, uint64_t(budget > 1));
         EXPECT_LT(of.expectedError, last);
         last = of.expectedError;
         ::unsetenv("PELLUCID_TUNING");
