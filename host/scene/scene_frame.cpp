@@ -125,7 +125,7 @@ SceneFrame::SceneFrame(const Device& device, const Image& gbuffer, const SceneFi
         shader_.commit();
         return;
     }
-    warmUpPrograms(device_, 0, {shader_});
+    if (!options.buildInBackground) warmUpPrograms(device_, 0, {shader_});
     gbuffer_ = nullptr;
 }
 

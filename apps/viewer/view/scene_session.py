@@ -52,6 +52,7 @@ class SceneSession:
         self.count = False
         self.samples = 1
         self.other = None
+        self.report: Any = None  # as of Session: whether pictures without scattering stand in
 
     def _shade(self, small: bool, outputs: tuple[str, ...] = (), plain: bool = False) -> Shaded:
         scene = self._small if small else self.scene
@@ -64,7 +65,7 @@ class SceneSession:
             light.color = color * factor
         scene.ambient.constant, scene.ambient.sh = (v * np.float32(self.look.ambient) for v in self._ambient)
         try:
-            return shade(scene, self.device, outputs, self.count)
+            return shade(scene, self.device, outputs, self.count, wait=self.report is None)
         finally:
             scene.materials, scene.profiles = kept, names
 
@@ -96,7 +97,8 @@ class SceneSession:
         times = {"Pellucid": 1e3 * (time.perf_counter() - started),
                  "on the device": made.stats.device_milliseconds}
         after = self.device.stats().programs_built
-        return Frame(pixels, times, made.stats.to_dict(), made.warnings, after, after - built)
+        return Frame(pixels, times, made.stats.to_dict(), made.warnings, after, after - built,
+                     bool(made.stats.stands_in))
 
     def prepare(self, width: int, height: int) -> None:
         """Nothing: a scene's sliders need no other kernels."""

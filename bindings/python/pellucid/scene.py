@@ -143,7 +143,7 @@ def load_scene(path: Any, gbuffer: Union[str, Path, Mapping[str, ArrayLike], Non
 
 
 def shade(scene: Scene, device: Optional[Device] = None, outputs: Iterable[str] = (),
-          count: bool = False) -> Shaded:
+          count: bool = False, wait: bool = True) -> Shaded:
     """Shades a scene to the same bits as ``pellucid shade``.
 
     Called again after changes of materials, lights or options, it sets only these: images stay on the
@@ -158,6 +158,8 @@ def shade(scene: Scene, device: Optional[Device] = None, outputs: Iterable[str] 
         Parts that are wanted beside radiance: "diffuse", "deep_scatter", "specular", "thickness".
     count : bool
         Whether every counter of `Shaded.stats` is filled, at some cost.
+    wait : bool
+        False: while kernels are being built, the picture is one without scattering (`stats.stands_in`).
 
     Raises
     ------
@@ -178,11 +180,12 @@ def shade(scene: Scene, device: Optional[Device] = None, outputs: Iterable[str] 
         scene._device = device
     elif scene._device is None:
         scene._device = Device()
-    counted = scene.options.count_pixels
+    options = scene.options
+    counted, background = options.count_pixels, options.build_in_background
     try:
-        scene.options.count_pixels = int(count or counted)
+        options.count_pixels, options.build_in_background = int(count or counted), int(not wait)
         state = scene._state()
     finally:
-        scene.options.count_pixels = counted
+        options.count_pixels, options.build_in_background = counted, background
     made = scene._native.shade(scene._device._handle.address(), state, wanted)
     return Shaded(made["radiance"], made["outputs"], _filled(ShaderStats, made["stats"]), made["warnings"])

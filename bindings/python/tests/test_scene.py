@@ -2,6 +2,7 @@
 import os
 import pickle
 import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -163,3 +164,31 @@ def test_errors(folder, device):
             (lambda: pickle.dumps(scene), TypeError, "load it there")]:
         with pytest.raises(error, match=message):
             call()
+
+
+COLD = """import sys, time
+import numpy as np
+import pellucid as pel
+scene = pel.load_scene("scene.toml")
+first = pel.shade(scene, wait=False)
+end = time.monotonic() + 120
+while (made := pel.shade(scene, wait=False)).stats.stands_in and time.monotonic() < end:
+    time.sleep(0.2)
+np.savez("made.npz", first=first.radiance, last=made.radiance)
+assert not scene.options.build_in_background
+print(first.stats.stands_in, made.stats.stands_in)
+"""
+
+
+def test_a_picture_stands_in_while_kernels_are_built(folder):
+    caches = {"POCL_CACHE_DIR": str(folder / "pocl"), "PELLUCID_CACHE_DIR": str(folder / "cache")}
+    for path in caches.values():
+        os.mkdir(path)
+    out = subprocess.run([sys.executable, "-c", COLD], cwd=folder, env={**os.environ, **caches}, check=True,
+                         capture_output=True, text=True).stdout
+    if out.split()[0] == "0":
+        pytest.skip("this device builds no programs in the background")
+    assert out.split() == ["1", "0"]
+    made = np.load(folder / "made.npz")
+    whole = pel.shade(pel.load_scene(folder / "scene.toml")).radiance
+    assert np.array_equal(made["last"], whole) and not np.array_equal(made["first"], whole)
