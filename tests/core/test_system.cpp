@@ -1,4 +1,6 @@
 // What the files in folders named `posix` and `windows` do: outputs, inputs, this process, libraries.
+#include <thread>
+
 #include "io/atomic_file.h"
 #include "io/input_file.h"
 #include "io/io_files.h"
@@ -14,6 +16,23 @@ using System = FolderTest;
 constexpr const char *library = "kernel32.dll", *function = "GetTickCount";
 #else
 constexpr const char *library = "libc.so.6", *function = "strlen";
+#endif
+
+#ifndef _WIN32
+TEST_F(System, AConnectionEndsWithTheOtherProcess) {
+    const std::string sent(1 << 20, 'x');
+    std::string back(sent.size(), '\0');
+    host::Child echo({"/bin/cat"});
+    std::thread reader([&] { EXPECT_TRUE(echo.read(back.data(), back.size())); });
+    EXPECT_TRUE(echo.write(sent.data(), sent.size()));
+    reader.join();
+    EXPECT_EQ(back, sent);
+    echo.end();
+    EXPECT_FALSE(echo.read(back.data(), 1));
+    EXPECT_FALSE(echo.write(sent.data(), sent.size()));
+    host::Child none({path("nothing")});
+    EXPECT_FALSE(none.write(sent.data(), sent.size()));
+}
 #endif
 
 TEST_F(System, OutputsAppearWholeOrNotAtAll) {
