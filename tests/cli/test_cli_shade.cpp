@@ -28,6 +28,8 @@ TEST_F(Shade, PicturesToLookAt) {
     const std::vector<float> radiance =
         shaded("--picture @sheet.png --show final,diffuse,specular --tonemap filmic");
     expectKept("sheet.png", "shade.png", "0.0003");
+    EXPECT_EQ(reportOf(shade_ + " --picture @sheet.png").at("picture"), path("sheet.png"));
+    EXPECT_FALSE(reportOf(shade_).contains("picture"));
     for (const std::string name : {"p.png", "p.jpg", "p.bmp", "p.tga"}) {
         done("shade @g.exr --scene @s.toml --exposure 0.5 --tonemap none -o @" + name);
         const io::Image picture = io::readImage(path(name));

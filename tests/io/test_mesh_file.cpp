@@ -357,6 +357,20 @@ TEST_F(MeshFile, TrianglesThatFaceAnotherWayThanTheirNeighboursAreToldOrTurned) 
     EXPECT_EQ(mesh.trianglesTurned, 2u);
 }
 
+TEST_F(MeshFile, NormalsOfTheFileAreUsedIfAllOfThemCanBe) {
+    const auto of = [&](const std::string& third) {
+        return load("n.obj",
+                    "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 3 4\nvn " + third + "\nf 1//1 2//2 3//3\n");
+    };
+    EXPECT_EQ(of("1 0 0").normals, (std::vector<float>{0, 0, 1, 0, 0.6f, 0.8f, 1, 0, 0}));
+    for (const char* third : {"0 0 0", "1e-7 0 0"}) {
+        const MeshData mesh = of(third);
+        EXPECT_TRUE(mesh.normals.empty()) << third;
+        ASSERT_EQ(mesh.warnings.size(), 1u) << third;
+        EXPECT_EQ(mesh.warnings[0].find("normals left out: 1 vertex normal"), 0u) << mesh.warnings[0];
+    }
+}
+
 TEST_F(MeshFile, NormalsPointOutwardsAlsoAcrossSeams) {
     MeshData mesh = solid(), soup;  // in the soup every face has corners of its own
     computeNormals(mesh);

@@ -510,7 +510,11 @@ TEST(ShadowForms, WhatIsRefused) {
         rows[i].change(light.params, light);
         refused(PEL_ERROR_INVALID_ARGUMENT, rows[i].word, {light});
     }
-    Light other = cascades;
+    Light other = cascades;  // axes may stand in any order
+    for (int row = 0; row < 3; ++row)
+        for (int k = 0; k < 4; ++k) other.params.worldToShadow[4 * row + k] = float(k == (row + 2) % 3);
+    shadeForms(formFrame(1, 9, 3), {other});
+    other = cascades;
     other.maps[1].components = 2;
     other.maps[1].values.resize(2 * other.maps[1].values.size());
     refused(PEL_ERROR_UNSUPPORTED, "cascade has format", {other});
