@@ -65,8 +65,8 @@ struct Shading : scatter_scene::ShownImages {
         if (in.shadow) setMap(PEL_LIGHT_WIDE_SHADOW, scene.shadow, width, height);
         shader.setMaterial(1, material).commit();
     }
-    // Of a light that looks down; the finest first.
-    void setMaps(const std::vector<SquareMap>& maps) {
+    // Of a light that looks down; the finest first. `others`: lights without any.
+    void setMaps(const std::vector<SquareMap>& maps, const std::vector<PelLight>& others = {}) {
         PelLight light = pelLightDefaults();
         light.shadowCascades = maps.size() > 1 ? uint32_t(maps.size()) : 0;
         for (size_t k = 0; k < maps.size(); ++k) {
@@ -75,7 +75,9 @@ struct Shading : scatter_scene::ShownImages {
             std::copy_n(matrix, 16, k ? light.cascadeToShadow[k - 1] : light.worldToShadow);
             (k ? light.cascadeDepthRange[k - 1] : light.shadowDepthRange) = extent;
         }
-        shader.set(std::vector<PelLight>{light});
+        std::vector<PelLight> lights{light};
+        lights.insert(lights.end(), others.begin(), others.end());
+        shader.set(lights);
         for (size_t k = 0; k < maps.size(); ++k)
             setMap(PelLightSlot(k ? PEL_LIGHT_CASCADE_1 + int(k) - 1 : int(PEL_LIGHT_SHADOW_MAP)),
                    maps[k].depth, maps[k].side, maps[k].side);
@@ -186,6 +188,22 @@ TEST(ShadeProfile, TransmissionIsTheSlabsAndNeverAdded) {
     half.transmission = 0.5f;
     const auto less = Shading(half).execute();
     for (size_t i = 0; i < less.size(); ++i) EXPECT_LE(less[i], radiance[i]);
+}
+
+TEST(ShadeProfile, NothingIsKnownToComeThroughFromALightWithoutAMap) {
+    Shading shading(materialOf(Profile::burleyDistance(distance)), {.thickness = false});
+    shading.set(PEL_SLOT_POSITION, shading.scene.position);
+    PelLight below = pelLightDefaults();
+    below.toLight[0] = below.toLight[1] = 0, below.toLight[2] = -1;
+    shading.shader.set(std::vector<PelLight>{below}).commit();
+    const auto alone = shading.execute();
+    const std::vector<SquareMap> map{{2, 60, std::vector<float>(4, 0.2f)}};
+    shading.setMaps(map);
+    const auto mapped = shading.execute();
+    shading.setMaps(map, {below});
+    const auto both = shading.execute();
+    for (size_t i = 0; i < both.size(); ++i)
+        EXPECT_NEAR(both[i], alone[i] + mapped[i], tolerance::profileLookUp) << i;
 }
 
 TEST(ShadeProfile, TransmissionOfEveryKindIsWhatLiesBeyond) {
