@@ -117,6 +117,8 @@ constexpr double areaHighlightSmall = 6e-3, areaHighlight = 0.08, areaHighlightL
 constexpr double softShadow = 0.02;
 // relative: polynomials of degree 5 and 6 for 2^x
 constexpr double fastMath = 4e-7;
+// relative: squares of squares of such powers, and exponents near 60 in float
+constexpr double slabDensity = 2e-5;
 // relative: the tenth power of a float value read at float coordinates up to 300
 constexpr double specularTable = 2e-4;
 // length: depths of a map that spans 200 to 700, through one float division
