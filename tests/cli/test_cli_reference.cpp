@@ -69,6 +69,7 @@ TEST_F(CliReference, PixelsOfABall) {
     const auto report = reportOf(ofBall + picture + fine + "-o @o.exr");
     expectReport(report);
     EXPECT_LT(report["points_off_mesh"].get<double>(), 1);
+    EXPECT_EQ(report["points"], std::ranges::count(given("Id.X"), 1.0f));
     const Image out = pellucid::io::readImage(path("o.exr"));
     for (size_t i = 0; i < out.pixelCount(); ++i) {
         const float light = out.channel("Irradiance.R").pixels[i];
