@@ -20,24 +20,25 @@ const Vec3 eye{1, 2, 5}, target{0.2, -0.3, 0.1}, forward = normalized(target - e
 struct Case {
     PelConvention convention;
     bool perspective, infinite;
+    double z0, z1;  // z / w at the near plane, and at the far one
 };
 
 std::vector<Case> cases() {
     std::vector<Case> all;
-    for (int depth = 0; depth < 3; ++depth)
+    for (const auto& [depth, z0, z1] : {std::tuple{PEL_CLIP_DEPTH_MINUS_ONE_TO_ONE, -1.0, 1.0},
+                                        {PEL_CLIP_DEPTH_ZERO_TO_ONE, 0.0, 1.0},
+                                        {PEL_CLIP_DEPTH_ONE_TO_ZERO, 1.0, 0.0}})
         for (int bits = 0; bits < 32; ++bits) {
-            const Case c{{PelClipDepth(depth), bits & 1, bits >> 1 & 1, bits >> 2 & 1},
-                         (bits & 8) != 0,
-                         (bits & 16) != 0};
+            const Case c{
+                {depth, bits & 1, bits >> 1 & 1, bits >> 2 & 1}, (bits & 8) != 0, (bits & 16) != 0, z0, z1};
             if (!c.infinite || c.perspective) all.push_back(c);
         }
     return all;
 }
 
-// Clip space of a point: z / w is z0 at the near plane and z1 at the far one.
+// Clip space of a point.
 Vec4 clip(const Case& c, Vec3 p) {
-    const double ends[3][2] = {{-1, 1}, {0, 1}, {1, 0}};
-    const double z0 = ends[c.convention.depth][0], z1 = ends[c.convention.depth][1], near = 2, far = 9;
+    const double z0 = c.z0, z1 = c.z1, near = 2, far = 9;
     const Vec3 q = p - eye;
     const double x = 1.3 * dot(q, right), y = (c.convention.yDown ? -1.7 : 1.7) * dot(q, up),
                  d = dot(q, forward);
