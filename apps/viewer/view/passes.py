@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 OUTPUTS = {"diffuse": "out_diffuse", "specular": "out_specular", "deep_scatter": "out_deep_scatter",
            "thickness": "out_thickness"}
 
-PATIENCE = 0.3  # seconds that a picture waits for what the first one is to do without
+PATIENCE = 0.3  # seconds that a first picture waits for kernels before it does without
 
 
 def _yield_to_pictures() -> None:
