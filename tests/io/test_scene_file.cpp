@@ -1,6 +1,7 @@
 // host/io/scene/scene_file.h: the documentation's example, round trip, a message for each kind of mistake.
 #include "io/image/image_file.h"
 #include "io/scene/scene_file.h"
+#include "io/spelling.h"
 #include "io/toml_reader.h"
 #include "io_files.h"
 
@@ -262,6 +263,14 @@ TEST_F(SceneFileTest, MistakesNameKeyAndWhatIsRight) {
 
 // Scenes of version 1 begin with FaceWorks' tables, later ones with those that a material makes; a preset
 // says which whatever the version.
+TEST_F(SceneFileTest, WordsAreSuggestedUpToSomeEdits) {
+    const std::vector<std::string> known{"skin", "roughness", "radius"};
+    const std::pair<const char*, const char*> words[] = {
+        {"skin", "skin"},  {"ksin", "skin"}, {"skins", "skin"},        {"kin", "skin"},
+        {"skxxn", "skin"}, {"sxxxn", ""},    {"oughnss", "roughness"}, {"", ""}};
+    for (const auto& [given, suggested] : words) EXPECT_EQ(nearestWord(given, known), suggested) << given;
+}
+
 TEST_F(SceneFileTest, TablesBeginAsTheVersionOrThePresetSays) {
     const auto tables = [&](const std::string& head, const std::string& keys) {
         return readScene(

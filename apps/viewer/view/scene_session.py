@@ -51,7 +51,6 @@ class SceneSession:
         self.look = SceneLook(lights=[1.0] * len(self._colors))
         self.count = False
         self.samples = 1
-        self.other = None
         self.report: Any = None  # as of Session: whether pictures without scattering stand in
 
     def _shade(self, small: bool, outputs: tuple[str, ...] = (), plain: bool = False) -> Shaded:
