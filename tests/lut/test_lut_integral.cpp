@@ -185,15 +185,17 @@ TEST(LutIntegral, OneColumnIsTheMiddle) {
 // 1/width.
 TEST(LutIntegral, ClosedEndsOfShadowsRunFromNoneToAll) {
     const Device device("");
-    for (float sharpening : {1.0f, 10.0f}) {
-        PelShadowLutDesc desc = fixture::shadowTable(skin().ours, 33, 9, 4 / 2.7, 400 / 2.7, sharpening);
+    const std::vector<ProfileCase> all = fixture::profiles();
+    for (const auto& [profile, sharpening] :
+         {std::pair{&all.front(), 1.0f}, {&all.front(), 10.0f}, {&all[1], 1.0f}, {&all[1], 4.0f}}) {
+        PelShadowLutDesc desc = fixture::shadowTable(profile->ours, 33, 9, 4 / 2.7, 400 / 2.7, sharpening);
         desc.closedEnds = 1;
         desc.axis = PEL_AXIS_ROOT;
         const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
         for (uint32_t y = 0; y < 9; ++y) {
             const double root = std::sqrt(1.0 / 400) + y / 8.0 * (std::sqrt(1.0 / 4) - std::sqrt(1.0 / 400));
             const auto T = [&](double w) {
-                return reference::shadowT(*skin().truth, w, root * root, sharpening);
+                return reference::shadowT(*profile->truth, w, root * root, sharpening);
             };
             const reference::Rgb low = T(0), high = T(1);
             for (uint32_t x = 0; x < 33; ++x) {
@@ -204,7 +206,7 @@ TEST(LutIntegral, ClosedEndsOfShadowsRunFromNoneToAll) {
                 for (int c = 0; c < 3; ++c) {
                     const float texel = texels[(y * 33 + x) * 3 + size_t(c)];
                     EXPECT_NEAR(texel, (t[c] - low[c]) / (high[c] - low[c]), tolerance::closedEnds)
-                        << x << " " << y;
+                        << profile->name << " " << x << " " << y;
                     if (x % 32 == 0) {
                         EXPECT_EQ(texel, x == 0 ? 0 : 1);
                     }
