@@ -115,6 +115,8 @@ constexpr double areaTables = 0.05;  // by the size over the distance: two place
 constexpr double areaHighlightSmall = 6e-3, areaHighlight = 0.08, areaHighlightLarge = 0.2;
 // share of light in a penumbra: the filter is rounder than a disk's edge response, and 32 taps find its width
 constexpr double softShadow = 0.02;
+// the same: texels of a cube's face lie elsewhere, so that other taps meet the edge
+constexpr double softShadowInCube = 2e-3;
 // relative: polynomials of degree 5 and 6 for 2^x
 constexpr double fastMath = 4e-7;
 // relative: squares of squares of such powers, and exponents near 60 in float

@@ -128,6 +128,19 @@ void expectPartAbove(const Edge& edge) {
     EXPECT_LE(worst, 5 * tolerance::softShadow);
 }
 
+// Of the same occluder, seen in a cube and in a plain map.
+TEST(SoftShadow, OfACubeIsThatOfAMap) {
+    for (const auto& [radius, height] : {std::pair{20.0f, 60.0f}, {40.0f, 60.0f}, {20.0f, 120.0f}}) {
+        const auto map = shadowOf({PEL_LIGHT_SPHERE, radius, height}),
+                   cube = shadowOf({PEL_LIGHT_SPHERE, radius, height, true});
+        double square = 0;
+        for (size_t x = 0; x < columns; ++x) square += std::pow(cube[x] - map[x], 2);
+        std::printf("radius %g, height %g: %.5f\n", double(radius), double(height),
+                    std::sqrt(square / columns));
+        EXPECT_LT(std::sqrt(square / columns), tolerance::softShadowInCube);
+    }
+}
+
 TEST(SoftShadow, OfAnEdgeIsThePartOfTheLightAboveIt) {
     for (const bool cube : {false, true}) {
         for (const PelLightType type : {PEL_LIGHT_SPHERE, PEL_LIGHT_RECTANGLE})
