@@ -100,6 +100,11 @@ def test_progress_is_lines_without_tqdm_or_a_terminal(work, capsys, monkeypatch,
     device.set_progress(None)
     said = capsys.readouterr().err
     assert "%" in said and "\r" not in said
+    show = progress_bar()
+    for step in (*range(17), 8):  # a line for each tenth or more, and for what is done again
+        show(step / 16, "work")
+    lines = capsys.readouterr().err.splitlines()
+    assert lines == [f"work: {step / 16:.0%}" for step in (*range(0, 17, 2), 8)]
 
 
 def test_progress_bar_ends_with_its_work(monkeypatch):
