@@ -14,10 +14,10 @@ TEST(SlabDensity, EqualsItsFormulaInEachChannel) {
         squared.push_back(0.01f + 0.05f * float(i % 32));
         cosine.push_back(float(i / 32) / 7);
     }
-    const std::string source = R"(
-#include "lib/diffusion/profile_table.clh"
-__kernel void evaluate(__global const float* terms, __global const float* squared, __global const float* cosine,
-                       float widest, float red, float green, float blue, __global float* out) {
+    const std::string file = "diffusion/profile_table.clh", source = "#include \"lib/" + file + R"("
+__kernel void evaluate(__global const float* terms, __global const float* squared,
+                       __global const float* cosine, float widest, float red, float green, float blue,
+                       __global float* out) {
     const size_t at = get_global_id(0) * PEL_WIDTH;
     PelProfileTable table;
     table.widest = widest, table.perRadius2 = 1.0f;
