@@ -8,6 +8,7 @@ import pytest
 pytest.importorskip("moderngl", reason="moderngl is not installed")
 files = pytest.importorskip("pellucid.files", reason="this build reads no files")
 from pellucid import _show  # noqa: E402
+from pellucid.view import paint  # noqa: E402
 from pellucid.view.look import CUT, SKIN, Look  # noqa: E402
 from pellucid.view.session import Session  # noqa: E402
 
@@ -34,6 +35,15 @@ def square(folder, uvs=True):
     path = folder / "square.obj"
     path.write_text("\n".join([*lines, "f 1/1 2/2 3/3 4/4" if uvs else "f 1 2 3 4"]) + "\n")
     return path
+
+
+def test_large_pictures_become_smaller(tmp_path, monkeypatch):
+    file = save(tmp_path / "four.png", COLORS)  # 64 x 64
+    assert np.array_equal(paint.read(file)[::32, ::32], COLORS)
+    monkeypatch.setattr(paint, "LARGEST", 16)
+    for source in (file, file.read_bytes()):
+        small = paint.read(source)
+        assert small.shape == (16, 16, 3) and np.abs(small[2::11, 2::11].astype(int) - COLORS).max() < 8
 
 
 def textured_glb(path, materials, texture):
