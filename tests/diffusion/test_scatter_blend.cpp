@@ -195,6 +195,30 @@ TEST(ScatterBlend, BlocksBecomeADiskWhereTheyHaveTo) {
     EXPECT_EQ(shaded(byAuto, 16, false).light, usual.light);
 }
 
+TEST(ScatterBlend, EachChannelHasItsShareOverBorders) {
+    Picture p = stripes(true);
+    for (size_t i = 0; i < p.pixels(); ++i) p.irradiance[3 * i + 1] = p.irradiance[3 * i + 2];
+    for (const PelScattering method : {screen, separable}) {
+        const auto shaded = [&](float red, float green, float blue) {
+            Frame f(p, method);
+            f.materials = 2;
+            f.material.scatterTaps = 64;
+            f.material.borderColor[0] = red, f.material.borderColor[1] = green,
+            f.material.borderColor[2] = blue;
+            return f.shade().light;
+        };
+        const std::vector<float> mixed = shaded(0.7f, 0.5f, 0.2f),
+                                 each[] = {shaded(0.7f, 0.7f, 0.7f), shaded(0.5f, 0.5f, 0.5f),
+                                           shaded(0.2f, 0.2f, 0.2f)};
+        std::array<bool, 3> matters{};
+        for (size_t i = 0; i < mixed.size(); ++i) {
+            ASSERT_EQ(mixed[i], each[i % 3][i]) << i << ", method " << int(method);
+            matters[i % 3] |= each[0][i] != each[2][i];
+        }
+        EXPECT_TRUE(matters[0] && matters[1] && matters[2]) << int(method);
+    }
+}
+
 TEST(ScatterBlend, SaysWhatHasNoEffect) {
     struct Field {
         const char* name;

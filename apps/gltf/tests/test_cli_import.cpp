@@ -160,6 +160,8 @@ TEST_F(Import, TexturesMultiplyTheAlbedo) {
                 R"({"metallicFactor":0,"baseColorFactor":[1,0.5,0.25,1],"baseColorTexture":{"index":1}}}])"));
         write("square.glb", file);
         reportOf("import @square.glb -o @out --size 12x12");
+        const std::string obj = read(out("mesh.obj"));
+        EXPECT_TRUE(contains(obj, "\nvt 0 1\nvt 1 1\nvt 1 0\nvt 0 0\n")) << obj;
         const io::Image g = io::readImage(out("gbuffer.exr"));
         for (int y = 0; y < size; ++y)
             for (int x = 0; x < size; ++x)
