@@ -312,4 +312,5 @@ TEST(TextureScatter, ShadersSampleIt) {
     const PelShaderStats stats = shader.stats();
     EXPECT_EQ(stats.tilesByScattering[PEL_SCATTERING_TEXTURE], 2u);
     EXPECT_EQ(stats.pixelsScattered, 16u * 24);
+    EXPECT_EQ(stats.scatterTaps, 4u * 16 * 24);
 }

@@ -34,6 +34,10 @@ def test_the_log_hears_errors_with_names(device):
     finally:
         pel.set_log_callback(None)
     assert [(level, name) for level, name, _ in heard] == [(pel.LogLevel.ERROR, "hero")]
+    own = pel.Device()
+    own.set_name("second GPU")
+    with pytest.raises(pel.PellucidError, match="^second GPU: "):
+        pel.Buffer(own, 1 << 60)
 
 
 def test_buffer_round_trip(device):
