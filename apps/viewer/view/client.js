@@ -69,7 +69,8 @@
         document.getElementById('pel-rate').textContent = head.width + ' x ' + head.height + ', ' +
           Object.entries(head.milliseconds).map(([k, v]) => k + ' ' + v.toFixed(0) + ' ms').join(', ') +
           (head.moving ? ', ' + times.length + ' frames/s' : '') + delay + ', ' +
-          head.kernels + ' kernels compiled (' + head.compiled + ' now)';
+          head.kernels + ' kernels compiled (' + head.compiled + ' now)' +
+          (head.standsIn ? '; scattering follows when its kernels are built' : '');
       }
       if (head.changes > shown) askProbe(null);
       shown = head.changes;

@@ -318,7 +318,7 @@ class Viewer:
                 if made is not None:
                     frame = made[0]
                     head |= {"milliseconds": frame.milliseconds, "kernels": frame.kernels,
-                             "compiled": frame.compiled}
+                             "compiled": frame.compiled, "standsIn": frame.stands_in}
                     if self.session.look.mode == "false_color":
                         head["scale"] = {"colors": SCALE, "low": "0",
                                          "high": f"{self.session.look.white:.3g}"}
