@@ -1,5 +1,6 @@
 // `pellucid demo`: mesh in, pictures out, and `pellucid shade` makes the same of what it leaves.
 #include "cli_shade.h"
+#include "sample/vector.h"
 
 using namespace pellucid;
 
@@ -49,24 +50,17 @@ TEST_F(Demo, ShadeMakesTheSamePicturesAndSomebodyLookedAtThem) {
     const io::Image gbuffer = io::readImage(path("demo/key_gbuffer.exr"));
     const std::vector<float> places = gbuffer.interleaved(scene.channels[PEL_SLOT_POSITION]);
     const std::vector<float> ids = gbuffer.interleaved(scene.channels[PEL_SLOT_MATERIAL]);
+    const auto vector = [](const float* v) { return sample::Vec3{v[0], v[1], v[2]}; };
+    const sample::Vec3 eye = vector(scene.camera.position);
+    sample::Matrix4 toWorld;
+    std::copy_n(scene.camera.inverseViewProjection, 16, toWorld.m.begin());
     size_t seen = 0;
-    const float* m = scene.camera.inverseViewProjection;
     for (size_t i = 192 * 54 + 60; i < 192 * 54 + 130; ++i) {
         if (ids[i] == 0) continue;
         ++seen;
         const double x = (double(i % 192) + 0.5) / 96 - 1, y = 1 - (double(i / 192) + 0.5) / 54;
-        double from[3], along[3], to[3], length = 0, ahead = 0, off = 0;
-        for (int k = 0; k < 3; ++k) {
-            const auto at = [&](double z) {
-                return (m[4 * k] * x + m[4 * k + 1] * y + m[4 * k + 2] * z + m[4 * k + 3]) /
-                       (m[12] * x + m[13] * y + m[14] * z + m[15]);
-            };
-            from[k] = scene.camera.position[k], along[k] = at(0.5) - from[k],
-            to[k] = places[3 * i + k] - from[k];
-            length += along[k] * along[k], ahead += along[k] * to[k];
-        }
-        for (int k = 0; k < 3; ++k) off += std::pow(to[k] - ahead / length * along[k], 2);
-        EXPECT_LT(std::sqrt(off), 0.5) << i;  // mm
+        const sample::Vec3 along = normalize(toWorld.project({x, y, 0.5}) - eye);
+        EXPECT_LT(length(cross(along, vector(&places[3 * i]) - eye)), 0.5) << i;  // mm
     }
     EXPECT_GT(seen, 10u);
     const auto gloss = [&](uint32_t id) {

@@ -261,8 +261,6 @@ TEST_F(SceneFileTest, MistakesNameKeyAndWhatIsRight) {
     EXPECT_TRUE(contains(messageOf<FileError>([&] { readScene(path("none.toml")); }), "No such file"));
 }
 
-// Scenes of version 1 begin with FaceWorks' tables, later ones with those that a material makes; a preset
-// says which whatever the version.
 TEST_F(SceneFileTest, WordsAreSuggestedUpToSomeEdits) {
     const std::vector<std::string> known{"skin", "roughness", "radius"};
     const std::pair<const char*, const char*> words[] = {
@@ -271,6 +269,8 @@ TEST_F(SceneFileTest, WordsAreSuggestedUpToSomeEdits) {
     for (const auto& [given, suggested] : words) EXPECT_EQ(nearestWord(given, known), suggested) << given;
 }
 
+// Scenes of version 1 begin with FaceWorks' tables, later ones with those that a material makes; a preset
+// says which whatever the version.
 TEST_F(SceneFileTest, TablesBeginAsTheVersionOrThePresetSays) {
     const auto tables = [&](const std::string& head, const std::string& keys) {
         return readScene(

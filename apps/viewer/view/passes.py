@@ -54,7 +54,7 @@ class Pass:
         self._texture: Texture | None = None
         self._uv = np.zeros((0, 0, 2), np.float32)
         self.stands_in = False  # whether kernels are still being built, and the picture has no scattering
-        self._first: Future[Any] | None = None  # a commit that builds kernels beside pictures
+        self._committing: Future[Any] | None = None  # beside pictures, while it builds kernels
 
     def _update(self, what: str, value: Any, how: Callable[[], Any]) -> None:
         if what not in self._set or self._set[what] != value:
@@ -65,12 +65,11 @@ class Pass:
     def shade(self, session: Session, g: GBuffer, look: Look, outputs: tuple[str, ...], small: bool,
               albedo: bool) -> Pass:
         """`albedo` False: irradiance alone."""
-        if self._first is not None:
-            if session.background and session.sketched and not wait([self._first], PATIENCE).done:
+        if self._committing is not None:
+            if session.background and session.sketched and not wait([self._committing], PATIENCE).done:
                 return self._sketch(session, g, look, outputs, small, albedo)
-            first, self._first = self._first, None
-            self._set["committed"] = False
-            first.result()
+            committing, self._committing = self._committing, None
+            committing.result()
             self._set["committed"] = True
         self._images(g, look, albedo)
         height, width = g.material.shape
@@ -136,11 +135,11 @@ class Pass:
                 # Only then may kernels have to be compiled: with progress.
                 warm_up_programs(self.device, shaders=[self.shader])
                 self._structure = structure
-            self._set["committed"] = True
             if session.background and session.sketched:
-                self._first = BESIDE.submit(self.shader.commit)
+                self._committing = BESIDE.submit(self.shader.commit)
                 return self.shade(session, g, look, outputs, small, albedo)
             self.shader.commit()
+            self._set["committed"] = True
         if session.measuring:
             return self._sketch(session, g, look, outputs, small, albedo)
         self.outputs["radiance"][...] = 0
