@@ -16,14 +16,14 @@
 namespace pellucid::cli {
 namespace {
 
-struct Arguments {
+struct BatchArguments {
     std::string manifest, folder;
     std::vector<std::string> devices;
     unsigned jobs = 0;
     bool json = false;
 };
 
-std::atomic<bool> stopped{false};  // no more entries are begun
+std::atomic<bool> batchStopped{false};  // no more entries are begun
 
 double seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -69,7 +69,7 @@ enum State : uint8_t { open, failed, kept, made, redone };  // of an entry; from
 
 // How many entries can be in flight. Each needs file handles for its folder, its file and its lock, and the
 // driver needs some for its programs.
-size_t jobsFor(const Arguments& a, size_t devices, size_t entries) {
+size_t jobsFor(const BatchArguments& a, size_t devices, size_t entries) {
     constexpr size_t perJob = 3, others = 32;
     const size_t handles = pel::system::filesLeft(),
                  wanted = a.jobs ? a.jobs : 4 * devices * std::max(1u, std::thread::hardware_concurrency());
@@ -81,7 +81,7 @@ size_t jobsFor(const Arguments& a, size_t devices, size_t entries) {
 // computes while another waits for its device or its disk.
 class Batch {
   public:
-    explicit Batch(const Arguments& a)
+    explicit Batch(const BatchArguments& a)
         : a_(a),
           manifest_(io::readManifest(a.manifest)),
           display_(manifest_.entries.size()),
@@ -167,7 +167,7 @@ class Batch {
     }
 
     void work(size_t device) {
-        for (size_t i; !stopped && (i = next_++) < states_.size();) {
+        for (size_t i; !batchStopped && (i = next_++) < states_.size();) {
             const io::BatchEntry& entry = manifest_.entries[i];
             try {
                 states_[i] = handle(entry, device);
@@ -178,7 +178,7 @@ class Batch {
             } catch (...) {  // the folder is full or gone: no entry can succeed
                 std::lock_guard lock(mutex_);
                 if (!fatal_) fatal_ = std::current_exception();
-                stopped = true;
+                batchStopped = true;
             }
         }
         --active_;
@@ -242,7 +242,7 @@ class Batch {
                 {"index", index}};
     }
 
-    const Arguments a_;
+    const BatchArguments a_;
     const double start_ = seconds();
     const io::BatchManifest manifest_;
     Display display_;
@@ -255,10 +255,10 @@ class Batch {
     std::exception_ptr fatal_;
 };
 
-void run(const Arguments& a) {
+void runBatch(const BatchArguments& a) {
     Batch batch(a);
     std::signal(SIGINT, [](int signal) {
-        stopped = true;  // the entries in flight are finished; a second Ctrl-C kills
+        batchStopped = true;  // the entries in flight are finished; a second Ctrl-C kills
         std::signal(signal, SIG_DFL);
     });
     batch.run();
@@ -268,8 +268,8 @@ void run(const Arguments& a) {
 }  // namespace
 
 void addBatch(CLI::App& app) {
-    auto [batch, a] = subcommand<Arguments>(
-        app, "batch", "Make the look-up tables of a manifest that are not there yet", run);
+    auto [batch, a] = subcommand<BatchArguments>(
+        app, "batch", "Make the look-up tables of a manifest that are not there yet", runBatch);
     option(batch, "manifest", a.manifest, "TOML: [[lut]] and [[grid]] (docs/guide/batch.md)", required);
     option(batch, "-o,--output", a.folder, "folder for the files; made if need be", required);
     option(batch, "--device", a.devices, "device; several share the work", Word{deviceWord}, oneEach);

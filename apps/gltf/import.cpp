@@ -8,7 +8,7 @@
 namespace pellucid::cli {
 namespace {
 
-struct Arguments {
+struct ImportArguments {
     Run::Options run;
     std::string file, output, size, camera = "first";
     std::vector<std::string> profiles;
@@ -17,7 +17,7 @@ struct Arguments {
     uint32_t smoothing = 2;
 };
 
-int cameraOf(const Arguments& a, size_t count) {
+int cameraOf(const ImportArguments& a, size_t count) {
     if (a.camera == "none" || (a.camera == "first" && count == 0)) return -1;
     if (a.camera == "first") return 0;
     size_t index = 0;
@@ -29,7 +29,7 @@ int cameraOf(const Arguments& a, size_t count) {
     return int(index);
 }
 
-void reportMaterials(Run& run, const Arguments& a, const io::ImportedGltf& imported) {
+void reportMaterials(Run& run, const ImportArguments& a, const io::ImportedGltf& imported) {
     run.report["materials"] = nlohmann::json::array();
     for (size_t i = 0; i < imported.looks.size(); ++i) {
         const io::GltfLook& look = imported.looks[i];
@@ -42,7 +42,7 @@ void reportMaterials(Run& run, const Arguments& a, const io::ImportedGltf& impor
     }
 }
 
-void run(const Arguments& a) {
+void runImport(const ImportArguments& a) {
     try {
         io::requireExtension(a.file, {"glb", "gltf"});
     } catch (const io::FileError& e) {
@@ -93,8 +93,8 @@ void run(const Arguments& a) {
 }  // namespace
 
 void addImport(CLI::App& app) {
-    auto [command, a] = subcommand<Arguments>(
-        app, "import", "Take over a glTF scene: mesh, materials, lights, G-buffer", run);
+    auto [command, a] = subcommand<ImportArguments>(
+        app, "import", "Take over a glTF scene: mesh, materials, lights, G-buffer", runImport);
     option(command, "scene", a.file, "glTF 2.0: .glb or .gltf", required);
     option(command, "-o,--output", a.output, "folder for scene.toml, mesh.obj, gbuffer.exr; made if need be",
            required);

@@ -9,7 +9,7 @@
 namespace pellucid::cli {
 namespace {
 
-constexpr int shadowMapSize = 1024;
+constexpr int importedShadowMapSize = 1024;
 
 sample::Vec3 vec(const io::Triple& t) {
     return {t[0], t[1], t[2]};
@@ -97,8 +97,9 @@ void addShadowMap(const std::string& folder, const sample::Scene& scene, size_t 
     PelLight& p = light.light;
     sample::ShadowMap map;
     if (p.type == PEL_LIGHT_DIRECTIONAL) {
-        map = sample::renderShadowMap(
-            scene, sample::DirectionalLight{{p.toLight[0], p.toLight[1], p.toLight[2]}}, shadowMapSize);
+        map = sample::renderShadowMap(scene,
+                                      sample::DirectionalLight{{p.toLight[0], p.toLight[1], p.toLight[2]}},
+                                      importedShadowMapSize);
         p.shadowProjection = PEL_SHADOW_PARALLEL;
         p.shadowDepthRange = float(map.depthRange);
     } else if (p.type == PEL_LIGHT_SPOT) {
@@ -106,7 +107,7 @@ void addShadowMap(const std::string& folder, const sample::Scene& scene, size_t 
             {p.position[0], p.position[1], p.position[2]},
             {p.spotDirection[0], p.spotDirection[1], p.spotDirection[2]},
             std::min(std::acos(double(p.spotCosOuter)) * 180 / std::numbers::pi, 80.0)};
-        map = sample::renderShadowMap(scene, spot, shadowMapSize);
+        map = sample::renderShadowMap(scene, spot, importedShadowMapSize);
         p.shadowProjection = PEL_SHADOW_PERSPECTIVE;
         p.shadowDepthA = float(map.depthA), p.shadowDepthB = float(map.depthB);
     } else {

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Arguments {
+struct BenchArguments {
     std::vector<std::string> devices, only, without, reports, budgets{"1ms"};
     std::vector<double> errors{2e-3};
     std::string output, slower, lessAccurate, truth;
@@ -51,7 +51,7 @@ void writePage(const std::string& path, const Json& reports) {
 std::atomic<bool> stopped{false};
 
 // Numbers of the devices to measure: those of --device, or all but simulators; with --first-gpu all GPUs.
-std::vector<std::string> chosenDevices(const Arguments& a) {
+std::vector<std::string> chosenDevices(const BenchArguments& a) {
     if (!a.devices.empty()) return a.devices;
     std::vector<std::string> chosen;
     for (const PelDeviceInfo& d : Device::all()) {
@@ -66,7 +66,7 @@ std::vector<std::string> chosenDevices(const Arguments& a) {
     return chosen;
 }
 
-bench::Request requestOf(const Arguments& a, const std::string& device) {
+bench::Request requestOf(const BenchArguments& a, const std::string& device) {
     bench::Request request;
     request.device = device;
     request.quick = a.quick, request.stability = a.stabilityShare > 0 ? a.stabilityShare
@@ -83,7 +83,7 @@ bench::Request requestOf(const Arguments& a, const std::string& device) {
 }
 
 // What the process that waits for this one reads.
-void measureWithEvents(const Arguments& a) {
+void measureWithEvents(const BenchArguments& a) {
     // Drivers may print; not among the events.
     std::FILE* out = ::fdopen(::dup(STDOUT_FILENO), "w");
     ::dup2(STDERR_FILENO, STDOUT_FILENO);
@@ -104,7 +104,7 @@ void measureWithEvents(const Arguments& a) {
     std::fclose(out);
 }
 
-void makeTruth(const Arguments& a) {
+void makeTruth(const BenchArguments& a) {
     std::signal(SIGINT, [](int) { stopped = true; });
     bench::makeTruth(
         Device(a.devices.empty() ? "" : a.devices[0]), a.truth, dataFolder() + "/heads/head_female.obj",
@@ -153,7 +153,7 @@ void printMethods(const Json& device) {
                     e.at("ms").at("4K").get<double>(), e.at("error").get<double>());
 }
 
-void measure(const Arguments& a) {
+void measure(const BenchArguments& a) {
     if (!a.truth.empty()) return makeTruth(a);
     if (!a.events.empty()) return measureWithEvents(a);
     if (a.firstUse) {
@@ -280,7 +280,7 @@ Json readReport(std::string path) {
     return report;
 }
 
-void compare(const Arguments& a) {
+void compare(const BenchArguments& a) {
     const auto limit = [](const std::string& text, const char* option) {
         return text.empty() ? INFINITY : 1 + numberOf(text, "%", option) / 100;
     };
@@ -332,7 +332,7 @@ void compare(const Arguments& a) {
 void addBench(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("bench", "Measure every operation: time, share of the device's limits, error");
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<BenchArguments>();
     option(*command, "-o,--output", a->output, "folder for bench.json and the page bench.html");
     option(*command, "--device", a->devices,
            "number, name or type; may be given several times (default: all but simulators)", Word{deviceWord},

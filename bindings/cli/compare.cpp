@@ -11,7 +11,7 @@
 namespace pellucid::cli {
 namespace {
 
-struct Arguments {
+struct CompareArguments {
     std::string a, b, secondHalf, channelsA, channelsB, gbuffer, scene, picture;
     float scaleA = 1, scaleB = 1, exposure = 1, maxRmse = INFINITY, unit = 0;
     uint32_t light = 0;
@@ -85,7 +85,8 @@ void requireSameSize(const std::string& pathA, const Rgb& a, const std::string& 
 }
 
 // The sub-sets of each pixel, with regard to the light that --light names. Clears `mask` off materials.
-std::vector<uint8_t> subsets(const Arguments& a, const Rgb& one, const Rgb& two, std::vector<uint8_t>& mask) {
+std::vector<uint8_t> subsets(const CompareArguments& a, const Rgb& one, const Rgb& two,
+                             std::vector<uint8_t>& mask) {
     const io::SceneFile scene = io::readScene(a.scene);
     const io::Image gbuffer = io::readImage(a.gbuffer);
     if (gbuffer.width != one.width || gbuffer.height != one.height)
@@ -156,7 +157,7 @@ void print(const std::string& name, const io::ImageDifference& d) {
 }
 
 // Both pictures, and the largest difference of a pixel's channels on a scale.
-void writePicture(const Arguments& a, const Rgb& one, const Rgb& two, const std::vector<uint8_t>& mask,
+void writePicture(const CompareArguments& a, const Rgb& one, const Rgb& two, const std::vector<uint8_t>& mask,
                   double p99) {
     std::vector<float> error(mask.size()), shown(mask.begin(), mask.end());
     for (size_t i = 0; i < mask.size(); ++i)
@@ -176,7 +177,7 @@ void writePicture(const Arguments& a, const Rgb& one, const Rgb& two, const std:
     io::writeImage8(a.picture, sheet.width, sheet.height, 3, sheet.rgb);
 }
 
-void run(const Arguments& a) {
+void runCompare(const CompareArguments& a) {
     if (a.gbuffer.empty() != a.scene.empty())
         throw UsageError(
             "--gbuffer and --scene go together: the scene file names the channels of the G-buffer");
@@ -245,8 +246,8 @@ void run(const Arguments& a) {
 }  // namespace
 
 void addCompare(CLI::App& app) {
-    auto [command, a] = subcommand<Arguments>(
-        app, "compare", "How far two pictures are apart: RMSE, PSNR, P99, CIEDE2000, FLIP", run);
+    auto [command, a] = subcommand<CompareArguments>(
+        app, "compare", "How far two pictures are apart: RMSE, PSNR, P99, CIEDE2000, FLIP", runCompare);
     option(command, "a", a.a, "EXR, NPY, or an 8-bit picture, which is decoded from sRGB", required);
     option(command, "b", a.b, "reference to compare A with", required);
     option(command, "--second-half", a.secondHalf,

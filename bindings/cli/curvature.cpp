@@ -8,7 +8,7 @@
 namespace pellucid::cli {
 namespace {
 
-struct Arguments {
+struct CurvatureArguments {
     Run::Options run;
     std::string mesh, output, picture, weld = "none", up = "z", estimator = "quadric", quantity = "absolute",
                                        smoothingWeights = "cotangent";
@@ -31,7 +31,7 @@ MeshWeldChoice weldChoice(const std::string& text) {
     return {PEL_WELD_TOLERANCE, tolerance};
 }
 
-void run(const Arguments& a) {
+void runCurvature(const CurvatureArguments& a) {
     checkOutput(a.output, {"npy", "ply"});
     if (!a.picture.empty()) checkOutput(a.picture, {"png"});
     if (!(a.params.scale >= 0 && std::isfinite(a.params.scale)))
@@ -92,7 +92,8 @@ void run(const Arguments& a) {
 }  // namespace
 
 void addCurvature(CLI::App& app) {
-    auto [command, a] = subcommand<Arguments>(app, "curvature", "Curvature at each vertex of a mesh", run);
+    auto [command, a] =
+        subcommand<CurvatureArguments>(app, "curvature", "Curvature at each vertex of a mesh", runCurvature);
     option(command, "mesh", a.mesh, "OFF, OBJ, PLY or STL file", required);
     option(command, "-o,--output", a.output,
            "file to write: .npy (one float32 per vertex) or .ply (with colours)", required);

@@ -54,7 +54,7 @@ constexpr struct {
                      {"paraffin", {1.15f, 1.35f, 1.1f}},  {"cream", {1.2f, 1.5f, 1.5f}}};
 constexpr float headHeight = 240;  // mm, chin to crown of an adult with some neck
 
-struct Arguments {
+struct DemoArguments {
     Run::Options run;
     std::string mesh, output = "out/demo", size = "1280x720", up = "auto";
     uint32_t smoothing = 2;
@@ -64,12 +64,12 @@ struct Arguments {
 };
 
 // Most OBJ files have y up, most scans in the other formats z.
-bool yIsUp(const Arguments& a) {
+bool yIsUp(const DemoArguments& a) {
     return a.up == "y" || (a.up == "auto" && std::filesystem::path(a.mesh).extension() == ".obj");
 }
 
 // Somebody's mesh: all of it is skin.
-DemoHead loadMeshAsHead(Run& run, const Arguments& a) {
+DemoHead loadMeshAsHead(Run& run, const DemoArguments& a) {
     DemoHead head;
     io::MeshLoadOptions load;
     load.orient = a.orient;
@@ -92,13 +92,13 @@ DemoHead loadMeshAsHead(Run& run, const Arguments& a) {
     return head;
 }
 
-DemoHead loadHead(Run& run, const Arguments& a) {
+DemoHead loadHead(Run& run, const DemoArguments& a) {
     return demo::hasHeadParts(a.mesh) ? demo::loadDemoHead(a.mesh, a.subdivide.value_or(2))
                                       : loadMeshAsHead(run, a);
 }
 
 // A portrait with key, fill and rim light, and one with the key light behind an ear.
-std::vector<DemoViewRequest> requests(const Arguments& a) {
+std::vector<DemoViewRequest> requests(const DemoArguments& a) {
     DemoViewRequest key, back;
     parseSize(a.size, key.width, key.height);
     key.name = "key";
@@ -184,7 +184,7 @@ void addFinePictures(Run& run, Stages& stages, io::LutStore& luts, const DemoBod
     });
 }
 
-void run(Arguments a) {
+void runDemo(DemoArguments a) {
     if (a.mesh.empty()) a.mesh = standardHead();
     const std::vector<DemoViewRequest> wanted = requests(a);  // refuses a wrong size before any work
     Run run(a.run);
@@ -266,8 +266,8 @@ void run(Arguments a) {
 }  // namespace
 
 void addDemo(CLI::App& app) {
-    auto [command, a] = subcommand<Arguments>(
-        app, "demo", "The whole chain on a mesh: curvature, tables, G-buffer, shading, pictures", run);
+    auto [command, a] = subcommand<DemoArguments>(
+        app, "demo", "The whole chain on a mesh: curvature, tables, G-buffer, shading, pictures", runDemo);
     option(command, "mesh", a.mesh,
            "OFF, OBJ, PLY or STL file (default: a head that comes with pellucid, or $PELLUCID_DEMO_MESH)");
     option(command, "-o,--output", a.output, "folder for the pictures", shown);

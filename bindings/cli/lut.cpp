@@ -12,7 +12,7 @@
 namespace pellucid::cli {
 namespace {
 
-struct Arguments {
+struct LutArguments {
     Run::Options run;
     std::string output, size, encoding, irisProfile, form, axis, profile = "skin", preset = "material";
     bool openEnds = false;
@@ -24,7 +24,7 @@ struct Arguments {
 
 // The description of a preset with what the command line gives in the place of its own.
 template <class Desc>
-void applyPreset(Arguments& a, Desc& given, Desc preset, const CLI::App& command,
+void applyPreset(LutArguments& a, Desc& given, Desc preset, const CLI::App& command,
                  const std::vector<std::pair<const char*, float Desc::*>>& lengths) {
     for (const auto& [option, field] : lengths)
         if (command.count(option) > 0) preset.*field = given.*field;
@@ -72,7 +72,7 @@ void describe(const PelLutInfo& info, nlohmann::ordered_json& report) {
 }
 
 template <class Desc>
-void integrate(Arguments& arguments, Desc& desc) {
+void integrate(LutArguments& arguments, Desc& desc) {
     if constexpr (std::is_same_v<Desc, PelEyeLutDesc>) {
         if (!arguments.size.empty()) parseEyeSize(arguments.size, desc);
     } else if (!arguments.size.empty()) {
@@ -114,7 +114,7 @@ std::string sizeHelp(const Desc& material, const Desc& faceworks) {
     return "texels, WxH (default: " + size(material) + "; " + size(faceworks) + " with --preset faceworks)";
 }
 
-void addCommon(CLI::App& command, Arguments& a, const std::string& size) {
+void addCommon(CLI::App& command, LutArguments& a, const std::string& size) {
     option(command, "-o,--output", a.output, "file to write: .exr, .png, .bmp, .tga, .npy, .dds or .ktx2",
            required);
     option(command, "--size", a.size, size, Word{"SIZE"});
@@ -125,18 +125,18 @@ void addCommon(CLI::App& command, Arguments& a, const std::string& size) {
     addRunOptions(command, a.run);
 }
 
-void addProfileOptions(CLI::App& command, Arguments& a, float& diffusionRadius) {
+void addProfileOptions(CLI::App& command, LutArguments& a, float& diffusionRadius) {
     option(command, "--profile", a.profile, "a material (pellucid profile list) or a .toml file",
            Word{profileWord}, shown);
     option(command, "--diffusion-radius", diffusionRadius,
            "sigma of the widest Gaussian, mm (default: the profile's own)", isPositive());
 }
 
-io::LutPreset presetOf(const Arguments& a) {
+io::LutPreset presetOf(const LutArguments& a) {
     return chosen<io::LutPreset>(io::lutPresets, a.preset);
 }
 
-void addPreset(CLI::App& command, Arguments& a) {
+void addPreset(CLI::App& command, LutArguments& a) {
     option(command, "--preset", a.preset,
            "material: as a material makes it of its profile; faceworks: as FaceWorks does",
            isOneOf(io::lutPresets), shown);
@@ -151,7 +151,7 @@ void addPreset(CLI::App& command, Arguments& a) {
 void addLut(CLI::App& app) {
     CLI::App* lut = app.add_subcommand("lut", "Integrate a look-up table");
     lut->require_subcommand(1);
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<LutArguments>();
 
     CLI::App* curvature =
         lut->add_subcommand("curvature", "Light scattered round a curved surface, over N.L and curvature");

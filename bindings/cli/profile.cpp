@@ -12,7 +12,7 @@ namespace {
 
 constexpr int nameWidth = 14;  // of what is printed
 
-struct Arguments {
+struct ProfileArguments {
     std::string name, output;
     int gaussians = 6;
     bool json = false;
@@ -32,7 +32,7 @@ nlohmann::ordered_json described(const io::ProfileFile& file) {
     return out;
 }
 
-void list(const Arguments& a) {
+void list(const ProfileArguments& a) {
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
     for (const std::string& name : Profile::libraryNames()) all.push_back(described(io::findProfile(name)));
     if (a.json) {
@@ -47,7 +47,7 @@ void list(const Arguments& a) {
                     p["width_mm"][2].get<double>(), p["source"].get<std::string>().c_str());
 }
 
-void show(const Arguments& a) {
+void show(const ProfileArguments& a) {
     const io::ProfileFile file = io::findProfile(a.name);
     nlohmann::ordered_json report = described(file);
     const double radius = report["radius_mm"].get<double>();
@@ -74,7 +74,7 @@ void show(const Arguments& a) {
 }
 
 // Six decades of R and P against distance up to four radii, with a logarithmic vertical axis.
-void plot(const Arguments& a) {
+void plot(const ProfileArguments& a) {
     if (io::requireExtension(a.output, {"png"}).empty()) return;
     io::checkWritable(a.output);
     const io::ProfileFile file = io::findProfile(a.name);
@@ -117,7 +117,7 @@ void plot(const Arguments& a) {
     printReport({{"name", file.name}, {"output", a.output}}, a.json, nameWidth);
 }
 
-void fit(const Arguments& a) {
+void fit(const ProfileArguments& a) {
     if (!a.output.empty()) {
         io::requireExtension(a.output, {"toml"});
         io::checkWritable(a.output);
@@ -148,8 +148,8 @@ void addProfile(CLI::App& app) {
     CLI::App* profile =
         app.add_subcommand("profile", "Diffusion profiles: what materials there are and how they scatter");
     profile->require_subcommand(1);
-    auto a = std::make_shared<Arguments>();
-    auto add = [&](const char* name, const char* what, void (*run)(const Arguments&), bool named) {
+    auto a = std::make_shared<ProfileArguments>();
+    auto add = [&](const char* name, const char* what, void (*run)(const ProfileArguments&), bool named) {
         CLI::App* command = profile->add_subcommand(name, what);
         if (named)
             option(*command, "name", a->name, "a material of the library or a .toml file", Word{profileWord},

@@ -262,7 +262,7 @@ ReferenceMesh loadReferenceMesh(const std::string& path, int subdivide,
     return out;
 }
 
-struct Arguments {
+struct ReferenceArguments {
     Run::Options run;
     std::string mesh, scene, gbuffer, output, profile;
     std::vector<std::string> parts;
@@ -273,11 +273,12 @@ struct Arguments {
     WalkArguments walk;
 };
 
-float unitOf(const Arguments& a, const io::SceneFile& scene) {
+float unitOf(const ReferenceArguments& a, const io::SceneFile& scene) {
     return a.unit > 0 ? a.unit : scene.options.millimetresPerUnit;
 }
 
-Diffusion diffusionOf(const Arguments& a, const io::SceneFile& scene, const io::SceneMaterial* material) {
+Diffusion diffusionOf(const ReferenceArguments& a, const io::SceneFile& scene,
+                      const io::SceneMaterial* material) {
     Diffusion d;
     std::string name = a.profile;
     d.radius = a.diffusionRadius;
@@ -331,8 +332,8 @@ Points pointsOf(Run& run, const sample::WalkBody& body, const std::vector<float>
     return points;
 }
 
-std::vector<float> integrate(Run& run, const Arguments& a, const Diffusion& d, const sample::LitMesh& lit,
-                             const std::vector<float>& positions) {
+std::vector<float> integrate(Run& run, const ReferenceArguments& a, const Diffusion& d,
+                             const sample::LitMesh& lit, const std::vector<float>& positions) {
     PelSurfaceIntegralDesc desc = pelSurfaceIntegralDescDefaults();
     desc.profile = d.profile.get();
     desc.diffusionRadius = d.radius;
@@ -372,7 +373,7 @@ struct Layers {
 
 class Reference {
   public:
-    Reference(Run& run, const Arguments& a)
+    Reference(Run& run, const ReferenceArguments& a)
         : run_(run),
           a_(a),
           file_(io::readScene(a.scene)),
@@ -533,7 +534,7 @@ class Reference {
     }
 
     Run& run_;
-    const Arguments& a_;
+    const ReferenceArguments& a_;
     io::SceneFile file_;
     ReferenceMesh mesh_;
     sample::Scene scene_;
@@ -541,7 +542,7 @@ class Reference {
     WalkMedium medium_;  // of the material that was walked last
 };
 
-void run(const Arguments& a) {
+void runReference(const ReferenceArguments& a) {
     checkOutput(a.output, {"exr", "npy"});
     const bool picture = io::extensionOf(a.output) == "exr";
     if (picture == a.gbuffer.empty())
@@ -570,10 +571,10 @@ void run(const Arguments& a) {
 
 void addReference(CLI::App& app) {
     auto [command, a] =
-        subcommand<Arguments>(app, "reference",
-                              "What a picture should be: the surface integral over the mesh, or "
-                              "a random walk in its volume, with ray-traced shadows",
-                              run);
+        subcommand<ReferenceArguments>(app, "reference",
+                                       "What a picture should be: the surface integral over the mesh, or "
+                                       "a random walk in its volume, with ray-traced shadows",
+                                       runReference);
     option(command, "mesh", a.mesh, "OFF, OBJ, PLY or STL file, in the unit of the scene", required);
     option(command, "--scene", a.scene,
            "scene file (TOML), as for shade: lights, materials, which channel is what", required);

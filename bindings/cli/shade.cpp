@@ -81,7 +81,7 @@ void addToneOptions(CLI::App& command, io::ToneMap& tone) {
         ->check(isOneOf(io::toneCurves));
 }
 
-struct Arguments {
+struct ShadeArguments {
     Run::Options run;
     std::string gbuffer, scene, output, picture;
     std::vector<std::string> parts, show{"final"};
@@ -92,7 +92,7 @@ struct Arguments {
 };
 
 // The files to write beside radiance: those of the scene, and those of --outputs, named after -o.
-std::vector<std::pair<PelImageSlot, std::string>> outputFiles(const Arguments& a,
+std::vector<std::pair<PelImageSlot, std::string>> outputFiles(const ShadeArguments& a,
                                                               const io::SceneFile& scene) {
     std::vector<std::pair<PelImageSlot, std::string>> files;
     const std::string stem = a.output.substr(0, a.output.rfind('.'));
@@ -212,7 +212,7 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
             {"tuned", s.tuned != 0}};
 }
 
-void reportSize(Run& run, const Arguments& a, const io::Image& gbuffer, uint64_t invalid) {
+void reportSize(Run& run, const ShadeArguments& a, const io::Image& gbuffer, uint64_t invalid) {
     run.report["output"] = a.output;
     if (!a.picture.empty()) run.report["picture"] = a.picture;
     run.report["width"] = gbuffer.width;
@@ -222,7 +222,7 @@ void reportSize(Run& run, const Arguments& a, const io::Image& gbuffer, uint64_t
 }
 
 // A scene that scatters irradiance alone.
-void scatter(Run& run, const Arguments& a, const io::SceneFile& scene, const std::string& picture,
+void scatter(Run& run, const ShadeArguments& a, const io::SceneFile& scene, const std::string& picture,
              bool hasParts) {
     if (hasParts || a.stats || a.scratchMib || a.timeBudget > 0)
         throw UsageError("--outputs, --show, --stats, --scratch-mib, --time-budget: " + a.scene +
@@ -237,7 +237,7 @@ void scatter(Run& run, const Arguments& a, const io::SceneFile& scene, const std
     reportSize(run, a, gbuffer, frame.stats.pixelsInvalid);
 }
 
-void run(Arguments a) {
+void runShade(ShadeArguments a) {
     checkOutput(a.output, {"exr", "png", "jpg", "jpeg", "bmp", "tga"});
     if (!a.picture.empty()) checkOutput(a.picture, {"png", "jpg", "jpeg", "bmp", "tga"});
     const std::string picture = io::isPicture(a.output) ? a.output : a.picture;
@@ -328,7 +328,7 @@ void run(Arguments a) {
 }  // namespace
 
 void addShade(CLI::App& app) {
-    auto [command, a] = subcommand<Arguments>(app, "shade", "Shade a G-buffer", run);
+    auto [command, a] = subcommand<ShadeArguments>(app, "shade", "Shade a G-buffer", runShade);
     option(command, "gbuffer", a.gbuffer, "multi-layer EXR; or a scene file that names one", required);
     option(command, "--scene", a.scene, "scene file (TOML): lights, materials, which channel is what");
     option(command, "-o,--output", a.output,

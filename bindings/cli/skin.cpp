@@ -10,7 +10,7 @@
 namespace pellucid::cli {
 namespace {
 
-constexpr int nameWidth = 26;  // of what is printed
+constexpr int skinNameWidth = 26;  // of what is printed
 
 struct SkinArguments {
     PelSkin skin = pelSkinDefaults();
@@ -116,7 +116,7 @@ void skin(const SkinArguments& a) {
         io::writeWholeFile(a.output, fileText(a));
         out["output"] = a.output;
     }
-    printReport(out, a.json, nameWidth);
+    printReport(out, a.json, skinNameWidth);
 }
 
 void pigments(const SkinArguments& a) {
@@ -154,7 +154,7 @@ void pigments(const SkinArguments& a) {
                  {"delta_e_p99", at(0.99)},
                  {"delta_e_max", at(1)},
                  {"share_above_1", double(above) / double(count)}},
-                a.json, nameWidth);
+                a.json, skinNameWidth);
 }
 
 }  // namespace

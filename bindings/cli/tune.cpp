@@ -7,7 +7,7 @@
 namespace pellucid::cli {
 namespace {
 
-struct Arguments {
+struct TuneArguments {
     Run::Options run;
     std::string output;
     bool show = false, quick = false;
@@ -26,7 +26,7 @@ void show(Run& run) {
     run.finish();
 }
 
-void tune(const Arguments& a) {
+void tune(const TuneArguments& a) {
     Run run(a.run);
     const PelDeviceInfo info = run.device().info();
     if (a.show) return show(run);
@@ -61,7 +61,7 @@ void tune(const Arguments& a) {
 }  // namespace
 
 void addTune(CLI::App& app) {
-    auto [command, a] = subcommand<Arguments>(
+    auto [command, a] = subcommand<TuneArguments>(
         app, "tune", "Measure which sizes of work-groups are fastest on a device, and keep them in a file",
         tune);
     option(command, "--show", a.show, "only say which sizes are in force, and why");

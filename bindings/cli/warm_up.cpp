@@ -7,14 +7,14 @@
 namespace pellucid::cli {
 namespace {
 
-struct Arguments {
+struct WarmUpArguments {
     Run::Options run;
     std::vector<std::string> scenes;
     bool luts = false, tableLuts = false, curvature = false;
     uint32_t threads = 0;
 };
 
-void run(const Arguments& a) {
+void runWarmUp(const WarmUpArguments& a) {
     // Binaries as well: they load in a fraction of the time that PoCL takes to find its own.
     if (!std::getenv("PELLUCID_CACHE")) pel::system::setVariable("PELLUCID_CACHE", "on");
     Run run(a.run);
@@ -45,9 +45,9 @@ void run(const Arguments& a) {
 }  // namespace
 
 void addWarmUp(CLI::App& app) {
-    auto [command, a] = subcommand<Arguments>(
+    auto [command, a] = subcommand<WarmUpArguments>(
         app, "warm-up",
-        "Build OpenCL programs before their first use, for the driver's cache and as binaries", run);
+        "Build OpenCL programs before their first use, for the driver's cache and as binaries", runWarmUp);
     command.alias("prefill");  // its first name
     option(command, "scene", a.scenes, "scene files (TOML) that `pellucid shade` will be given");
     option(command, "--luts", a.luts, "look-up tables of sums of Gaussians");

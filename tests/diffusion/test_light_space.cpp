@@ -463,6 +463,31 @@ TEST(LightSpace, NothingIsLitBetweenSurfaces) {
     }
 }
 
+// What is exchanged between the channels of lights and profile is exchanged in the result, to the bit.
+TEST(LightSpace, ChannelsAreTreatedAlike) {
+    for (const PelScattering method : {byLight, byAuto}) {
+        Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{0.9, 0, -0.4}), sized(256u, 64u)),
+                           makeBall(Form::perspective, normalized(Vec3{-0.8, 0.5, 0.2}), sized(256u, 64u))},
+                          sized(96u, 24u), method);
+        f.giveIrradiance = false;
+        const auto shaded = [&](int first) {
+            float distance[3];
+            for (int c = 0; c < 3; ++c) {
+                const int to = (c + first) % 3;
+                f.lamps[0].light.color[to] = 0.2f + 0.4f * float(c);
+                f.lamps[1].light.color[to] = 1 - 0.3f * float(c);
+                distance[to] = 1.2f / float(1 + c);
+            }
+            f.profile = Profile::burleyDistance(distance);
+            return f.shade().light;
+        };
+        const std::vector<float> as = shaded(0), turned = shaded(1);
+        for (size_t k = 0; k < as.size(); ++k)
+            ASSERT_EQ(turned[k / 3 * 3 + (k + 1) % 3], as[k]) << "method " << int(method) << ", " << k;
+        EXPECT_GT(*std::ranges::max_element(as), 0.1f);
+    }
+}
+
 // A camera that sees all that is lit needs no map.
 TEST(LightSpace, TexelsThatTheCameraSeesCountOnce) {
     Frame f = frameOf({makeBall(Form::parallel, {0, 0, 1}, sized(256u, 64u))}, sized(96u, 24u), byAuto, 0.4f);

@@ -249,6 +249,31 @@ TEST(Scatter, AProfileAsWideAsThePicture) {
     EXPECT_LT(d.most, tolerance::scatterWideMost);
 }
 
+// What is exchanged between the channels of light and profile is exchanged in the result, to the bit.
+TEST(Scatter, ChannelsAreTreatedAlike) {
+    Picture p = scene();
+    for (size_t i = 0; i < p.pixels(); ++i) {
+        const size_t x = i % p.width, y = i / p.width;
+        p.irradiance[3 * i + 1] *= 0.2f + float(x) / float(p.width);
+        p.irradiance[3 * i + 2] *= y % 12 < 6 ? 1 : 0.3f;
+    }
+    Picture turned = p;
+    for (size_t k = 0; k < p.irradiance.size(); ++k)
+        turned.irradiance[k] = p.irradiance[k / 3 * 3 + (k + 1) % 3];
+    const Profile profile = Profile::burleyDistance({1.2f, 0.8f, 0.4f}),
+                  turnedProfile = Profile::burleyDistance({0.8f, 0.4f, 1.2f});
+    Extra extra;
+    for (size_t i = 0; i < p.pixels(); ++i)
+        for (int c = 0; c < 3; ++c) extra.normals.push_back(p.positions[3 * i + c] / 10);
+    for (const auto& [method, taps] : ways) {
+        const PelScatterControls controls = controlsOf(method, taps);
+        const std::vector<float> first = run(p, alike(profile, 1, controls), extra).scattered,
+                                 second = run(turned, alike(turnedProfile, 1, controls), extra).scattered;
+        for (size_t k = 0; k < first.size(); ++k)
+            ASSERT_EQ(second[k], first[k / 3 * 3 + (k + 1) % 3]) << int(method) << " " << taps << ", " << k;
+    }
+}
+
 TEST(Scatter, NothingFlowsBetweenIdsUnlessAsked) {
     Picture flat = plane(64, 64, 0.2, [](double, double) { return Vec3{}; });
     for (size_t i = 0; i < flat.pixels(); ++i) {

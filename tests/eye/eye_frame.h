@@ -10,8 +10,13 @@ class EyeFrame {
 
     // `pixel`: its side in mm. The axis of the ball passes through (centerX, centerY).
     explicit EyeFrame(uint32_t frameWidth = 512, uint32_t frameHeight = 256, float pixel = 0.25f,
-                      float centerX = 400, float centerY = 128)
-        : width(frameWidth), height(frameHeight), pixel_(pixel), centerX_(centerX), centerY_(centerY) {
+                      float centerX = 400, float centerY = 128, const pellucid::Device& on = sharedDevice())
+        : width(frameWidth),
+          height(frameHeight),
+          device(on),
+          pixel_(pixel),
+          centerX_(centerX),
+          centerY_(centerY) {
         std::vector<float> position, normal;
         std::vector<uint8_t> id;
         for (uint32_t y = 0; y < height; ++y)
@@ -72,7 +77,7 @@ class EyeFrame {
     size_t pixels() const { return size_t(width) * height; }
 
     const uint32_t width, height;
-    const pellucid::Device device = sharedDevice();
+    const pellucid::Device device;
     PelShaderStats stats{};
 
   private:

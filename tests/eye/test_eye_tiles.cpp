@@ -1,6 +1,7 @@
 // Eyes cost nothing where there are none, and bad input of them and around them is an error by name or a
 // finite picture.
 #include "cl/cl_spy.h"
+#include "device_lanes.h"
 #include "eye/eye_frame.h"
 
 using namespace pellucid;
@@ -50,6 +51,17 @@ TEST(EyeTiles, TilesWithoutAnEyeHaveNoCodeForEyes) {
     EXPECT_EQ(frame.shade(withEye, PEL_TILES_PER_VARIANT), eye);
     EXPECT_EQ(frame.shade(withEye, PEL_TILES_NO_LIST), eye);
     EXPECT_EQ(frame.shade([&](Shader& s) { withEye(s), s.clearEye(2); }), plain);
+}
+
+// Among others the footprints of pixels on the iris, which a lane finds from its neighbour's position.
+TEST(EyeTiles, OneLaneShowsWhatSixteenDo) {
+    const auto shown = [](int lanes) {
+        EyeFrame frame(512, 256, 0.25f, 400, 128, lanes::deviceOf(lanes));
+        return frame.shade([](Shader& s) { s.setEye(2, pelEyeDefaults()); });
+    };
+    const std::vector<float> one = shown(1), sixteen = shown(16);
+    for (size_t i = 0; i < one.size(); ++i)
+        ASSERT_NEAR(one[i], sixteen[i], 1e-4) << i / 3 % 512 << ", " << i / 3 / 512;
 }
 
 // The table of a small iris takes long; only a caller who waits for a table may cancel it meanwhile.

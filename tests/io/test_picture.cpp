@@ -138,6 +138,16 @@ TEST(Picture, TextIsWrittenInsideItsBox) {
                                                       y < (11 + textHeight(1)) * scale))
                     << x << ", " << y << " at scale " << scale;
     }
+    // A capital stands seven rows below the top.
+    for (const int scale : {1, 2, 4}) {
+        Picture p(40 * scale, 40 * scale);
+        p.write(10 * scale, 10 * scale, "H", white, scale);
+        int last = 0;
+        for (int y = 0; y < p.height; ++y)
+            for (int x = 0; x < p.width; ++x)
+                if (at(p, x, y)[0] > 128) last = y;
+        EXPECT_EQ(last, 17 * scale - 1) << "at scale " << scale;
+    }
     EXPECT_NE(textWidth("abcdefg"), textWidth("ABCDEFG")) << "letters keep their case";
     Picture clipped(10, 10);
     clipped.write(-3, -3, "XXXX", white, 4);  // sticks out on all sides

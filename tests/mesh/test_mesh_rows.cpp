@@ -102,8 +102,12 @@ TEST(MeshRows, RunsGiveTheBitsOfSingleLoads) {
     const std::vector<float> alone = everything(grid, grid.vertices());
     EXPECT_EQ(alone, everything(both, grid.vertices()));
 
+    const auto allocated = [] { return device().stats().bytesAllocated; };
+    const uint64_t before = allocated();
     const std::vector<char> bytes = MeshTopology(device(), topologyDesc(grid)).save();
+    const uint64_t between = allocated();
     const MeshTopology loaded = MeshTopology::load(device(), bytes.data(), bytes.size());
+    EXPECT_EQ(allocated() - between, between - before) << "the same lists, with runs";
     const Buffer positions(device(), grid.positions), normals(device(), grid.normals);
     EXPECT_EQ(everything(loaded, positions, normals, grid.vertices(), grid.vertices()), alone);
 }

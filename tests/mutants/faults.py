@@ -167,7 +167,7 @@ def candidates(path, text, m):
         # A loop ends one too early: one too late would be undefined, and often unseen.
         early = match[1] == "<" and re.search(r"\bfor \([^;]*;[^;]*$", line(match, match.start()))
         yield *match.span(1), "+ 1 <" if early else COMPARISON[match[1]], "comparison"
-    for match in re.finditer(r" (\+=|-=|\*=|/=|\|=|&=|&&|\|\||and|or|%|&|\||<<|>>)(?=\s)", m):
+    for match in re.finditer(r" (\+=|-=|\*=|/=|\|=|&=|&&|\|\||and|or|%|&|\|(?! None)|<<|>>)(?=\s)", m):
         around = line(match, m.find("\n", match.end()))
         if match[1] not in ("<<", ">>") or not (around.count(match[1]) > 1 or '"' in around):
             yield *match.span(1), OPERATOR[match[1]], "operator"

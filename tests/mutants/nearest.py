@@ -58,7 +58,8 @@ class Tests:
         self.programs |= {name: TREE / name for name in CHECKS}
         self.scripts = {str(p.relative_to(TREE)): p for folder in ("bindings/python", "apps/*")
                         for p in TREE.glob(f"{folder}/tests/test_*.py")}
-        self.words = {name: {*words_of(f"{p.stem} {p.parent.name} {p.read_text()}")}
+        self.texts = {name: p.read_text() for name, p in {**self.programs, **self.scripts}.items()}
+        self.words = {name: {*words_of(f"{p.stem} {p.parent.name} {self.texts[name]}")}
                       for name, p in {**self.programs, **self.scripts}.items()}
         self.subjects = {name: subjects_of(p.relative_to(TREE))
                          for name, p in {**self.programs, **self.scripts}.items()}
@@ -96,14 +97,19 @@ class Tests:
                     continue
                 unmeasured -= self.measure(name)["seconds"]
             test = self.measured[name]
-            if test["good"] and (kernels is None or kernels & set(test["kernels"])):
+            runs = kernels is None or self.includes(name, fault) or kernels & set(test["kernels"])
+            if test["good"] and runs:
                 names.append(name)
                 seconds -= test["seconds"]
         return names
 
+    def includes(self, name, fault):
+        """Whether a test has kernels of its own that include the fault's file."""
+        return fault.path.endswith(".clh") and fault.path.removeprefix("kernels/lib/") in self.texts[name]
+
     def nearest_first(self, fault, kernels):
-        """All tests: first those that share most rare words with the fault's file, and launch few kernels
-        but `kernels`."""
+        """All tests: first those that include the fault's file, then those that share most rare words with
+        it, and launch few kernels but `kernels`."""
         path = Path(fault.path)
         subjects = subjects_of(path)
         own = subjects | {*words_of((TREE / path).read_text())}
@@ -118,7 +124,7 @@ class Tests:
                 inside = len(kernels & set(measured["kernels"]))
                 near *= inside / len(measured["kernels"])
                 seconds += COMPILED * inside
-            return -near / (1 + seconds) ** 0.5, name
+            return not self.includes(name, fault), -near / (1 + seconds) ** 0.5, name
 
         names = self.scripts if fault.is_python() else self.programs
         if path.is_relative_to("bindings/cli"):  # what does not run the command cannot notice

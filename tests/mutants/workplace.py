@@ -87,7 +87,8 @@ class Workplace:
             launcher = [f"-DCMAKE_{language}_COMPILER_LAUNCHER=ccache" for language in ("C", "CXX")
                         if shutil.which("ccache")]
             status, _ = command(["cmake", "-G", "Ninja", "-S", TREE, "-B", BUILD,
-                                 "-DCMAKE_BUILD_TYPE=Release", *launcher], 600, WORK / "build.log")
+                                 "-DCMAKE_BUILD_TYPE=Release", "-DPELLUCID_UNITY=OFF", *launcher],
+                                600, WORK / "build.log")
             if status:
                 sys.exit((WORK / "build.log").read_text())
         targets = ["pellucid_cli" if target in CHECKS else target for target in targets]

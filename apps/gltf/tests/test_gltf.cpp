@@ -366,6 +366,11 @@ TEST(Gltf, DecodedAccessorsCountTowardsTheLimitOfInput) {
     scene["meshes"][0]["primitives"] =
         json::array_t(100, R"({"attributes": {"POSITION": 0}, "mode": 5})"_json);
     expectError(gltf::glb(scene.dump(), squareBuffer()), {"makes the scene too large"});
+    // So does a mesh that is decoded once, each time that it is placed.
+    scene["meshes"][0]["primitives"] = json::array({scene["meshes"][0]["primitives"][0]});
+    scene["nodes"] = json::array_t(3, json{{"mesh", 0}});
+    scene["scenes"][0]["nodes"] = {0, 1, 2};
+    expectError(gltf::glb(scene.dump(), squareBuffer()), {"makes the scene too large"});
     ::unsetenv("PELLUCID_INPUT_LIMIT_MIB");
 }
 #endif
