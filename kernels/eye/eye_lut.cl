@@ -87,9 +87,11 @@ static inline void spread(__global uint* sums, const PelEyeLutGrid grid, float x
     }
 }
 
-// PEL_WIDTH cells of a row, for a slice's direction of the light.
-static PEL_OUT_OF_LINE void castCells(const PelEyeShape shape, const PelEyeLutGrid grid, __global uint* sums,
-                                      uint first, uint row, uint slice) {
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void eye_lut(const PelEyeShape shape,
+                                                                             const PelEyeLutGrid grid,
+                                                                             __global uint* restrict sums) {
+    const uint first = get_global_id(0) * PEL_WIDTH, row = get_global_id(1),
+               slice = grid.firstSlice + get_global_id(2);
     const float turn = HALF_PI / (float)grid.rows, a = ((float)row + 0.5f) * turn;
     const float across = shape.limbus * cos(a), y = shape.limbus * sin(a);
     // All rows have cells of the same length.
@@ -126,13 +128,6 @@ static PEL_OUT_OF_LINE void castCells(const PelEyeShape shape, const PelEyeLutGr
     for (uint i = 0; i < PEL_WIDTH; ++i)
         if (amount[i] > 0.0f && x1[i] > 0.0f && x0[i] < (float)grid.width && y0[i] < texelsY)
             spread(sums, grid, x0[i], x1[i], y0[i], y1[i], amount[i]);
-}
-
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void eye_lut(const PelEyeShape shape,
-                                                                             const PelEyeLutGrid grid,
-                                                                             __global uint* restrict sums) {
-    castCells(shape, grid, sums, get_global_id(0) * PEL_WIDTH, get_global_id(1),
-              grid.firstSlice + get_global_id(2));
 }
 
 // Mean irradiance of a texel; `texel` counts through the slices without copied columns.

@@ -85,7 +85,7 @@ static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMat
 }
 
 // The pixels of a tile that fall to one of PEL_PASS_GROUP items. Returns how many were lit, if counted.
-static PEL_OUT_OF_LINE uint lightTile(const Scene* scene, __global const PelShadeMaterial* materials,
+static PEL_OUT_OF_LINE uint lightTile(const Scene* restrict scene, __global const PelShadeMaterial* materials,
                                       __global float* out, uint plane, uint2 origin, uint item) {
     __global const PelShadeFrame* frame = scene->frame;
     uint lit = 0;

@@ -169,7 +169,8 @@ static inline __attribute__((always_inline)) void shadePixels(const Scene* scene
 }
 
 // Shades the pixels of a tile that fall to one of PEL_SHADE_GROUP items.
-static PEL_OUT_OF_LINE void shadeTile(const Scene* scene, uint tileX, uint tileY, uint item, Counts* counts) {
+static PEL_OUT_OF_LINE void shadeTile(const Scene* restrict scene, uint tileX, uint tileY, uint item,
+                                      Counts* restrict counts) {
     __global const PelShadeFrame* frame = scene->frame;
     for (uint pixel = item * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_SHADE_GROUP * PEL_WIDTH) {
         const uint x = tileX + pixel % PEL_TILE_WIDTH, y = tileY + pixel / PEL_TILE_WIDTH;
