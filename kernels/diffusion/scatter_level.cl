@@ -80,7 +80,7 @@ static inline void storeSums(Sums s, uint stride, __global float* to) {
 }
 
 #if PEL_WIDTH > 1
-// Returns how many blocks there are something to sum for.
+// Sums for PEL_WIDTH blocks from (x, y) on. Returns for how many of them.
 static PEL_OUT_OF_LINE uint sumBlocks(__global const PelDiffusionFrame* frame, __global const float* pyramid,
                                       __global const PelProfileTable* tables, __global const float* nodes,
                                       __global const uint* tiles, uint level, __global float* sums, uint x,
