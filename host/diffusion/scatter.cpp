@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/image_substitutes.h"
 #include "diffusion/scatter_material.h"
 #include "shading/capture.h"
 #include "shading/check_settings.h"
@@ -307,25 +308,17 @@ void Scatter::run(const PelScatterParams& params, const ScatterImages& images,
 
 void Scatter::addBuildJobs(const PelScatterParams& params, const ScatterImages& images,
                            BuildJobs& jobs) const {
-    const auto small = [&](const ImageView& like) {
-        ImageView view = like;
-        if (!like) return view;
-        view.buffer = {};  // memory of its own
-        view.width = std::min(like.width, 16u);
-        view.height = std::min(like.height, 2u);
-        view.byteOffset = 0;
-        view.rowStride = view.width * (like.info().planar ? like.info().componentBytes : like.pixelStride);
-        view.planeStride = view.height * view.rowStride;
-        resize(view.buffer, device_, size_t(view.planeStride * (like.info().planar ? 3 : 1)));
-        return view;
-    };
     const Ref<Scatter> copy = make<Scatter>(device_);
     copy->materials_ = materials_;
     copy->controls_ = controls_;
     copy->captureAsked_ = true;
-    for (const auto& [slot, view] : images_) copy->images_[slot] = small(view);
-    const ScatterImages all{small(images.irradiance), small(images.positions), small(images.depth),
-                            small(images.ids), small(images.out)};
+    copy->images_ = images_;
+    ScatterImages all = images;
+    ImageSubstitutes substitutes;
+    for (auto& [slot, view] : copy->images_) substitutes.add(view);
+    for (ImageView* view : {&all.irradiance, &all.positions, &all.depth, &all.ids, &all.out})
+        substitutes.add(*view);
+    substitutes.place(device_);
     std::vector<cl::ProgramKey> keys;
     copy->run(params, all, &keys);
     addProgramJobs(device_, std::move(keys), jobs);

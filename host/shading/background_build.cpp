@@ -33,9 +33,9 @@ Running& running() {
 
 }  // namespace
 
-BackgroundBuild::BackgroundBuild(Ref<Shader> shader, std::shared_ptr<cl::BuildHelpers> helpers,
-                                 unsigned threads)
-    : shader_(std::move(shader)), helpers_(std::move(helpers)), threads_(threads) {
+BackgroundBuild::BackgroundBuild(Ref<Shader> shader, uint64_t autoPixels,
+                                 std::shared_ptr<cl::BuildHelpers> helpers, unsigned threads)
+    : shader_(std::move(shader)), autoPixels_(autoPixels), helpers_(std::move(helpers)), threads_(threads) {
     const std::lock_guard lock(running().mutex);
     thread_ = std::jthread([this] { run(); });
     running().threads.insert(&thread_);
@@ -59,7 +59,7 @@ void BackgroundBuild::run() {
         BuildJobs jobs;
         {
             const cl::HelpScope scope(*helpers_);
-            shader_->addBuildJobs(jobs);
+            shader_->addBuildJobs(jobs, autoPixels_);
         }
         runJobs(shader_->device(), jobs, threads_, *helpers_, [&](size_t) { helpers_->checkCancelled(); });
     } catch (...) {

@@ -9,8 +9,10 @@ namespace pel {
 
 class BackgroundBuild {
   public:
-    // Begins. `shader`: nobody else uses it until the end.
-    BackgroundBuild(Ref<Shader> shader, std::shared_ptr<cl::BuildHelpers> helpers, unsigned threads);
+    // Begins. `shader`: nobody else uses it until the end; its images may go meanwhile. `autoPixels`: as a
+    // commit counted them.
+    BackgroundBuild(Ref<Shader> shader, uint64_t autoPixels, std::shared_ptr<cl::BuildHelpers> helpers,
+                    unsigned threads);
     // Stops what has not been built by then.
     ~BackgroundBuild();
 
@@ -22,6 +24,7 @@ class BackgroundBuild {
     void run();
 
     Ref<Shader> shader_;
+    uint64_t autoPixels_;
     std::shared_ptr<cl::BuildHelpers> helpers_;
     unsigned threads_;
     std::exception_ptr failure_;

@@ -3,32 +3,60 @@
 
 #include <algorithm>
 
+#include "core/image_substitutes.h"
 #include "core/sized_memory.h"
 #include "shading/background_build.h"
 #include "shading/capture.h"
 #include "shading/features.h"
 #include "shading/image_slots.h"
 #include "shading/shade_variants.h"
+#include "shading/tap_cells.h"
 
 namespace pel {
 namespace {
 
-// `tooMany`: see chooseMethods().
+void countTiles(ShaderPlan& plan) {
+    const ImageView& frame = plan.state.images[PEL_SLOT_RADIANCE];
+    plan.tilesX = (frame.width + PEL_TILE_WIDTH - 1) / PEL_TILE_WIDTH;
+    plan.tileRows = (frame.height + PEL_TILE_HEIGHT - 1) / PEL_TILE_HEIGHT;
+}
+
+// `tooMany`: see chooseMethods(); `pixels`: keepToBudget().
 ShaderPlan planOf(const ShaderState& given, uint32_t methods, uint64_t tooMany, const Ref<Device>& device,
-                  ProfileTables& tables) {
+                  uint64_t& pixels, ProfileTables& tables) {
     ShaderPlan plan;
     plan.state = inRegion(given);
     plan.warnings = chooseMethods(plan.state, methods, tooMany);
-    if (given.options.timeBudget > 0) plan.taken = keepToBudget(plan.state, methods, *device, plan.warnings);
+    if (given.options.timeBudget > 0)
+        plan.taken = keepToBudget(plan.state, methods, *device, pixels, plan.warnings);
     withTables(plan.state, device, tables);
     const ShaderState& state = plan.state;
     plan.features = deriveFeatures(state);
     plan.variants = variantFeatures(state, plan.features);
-    const ImageView& frame = state.images[PEL_SLOT_RADIANCE];
-    plan.tilesX = (frame.width + PEL_TILE_WIDTH - 1) / PEL_TILE_WIDTH;
-    plan.tileRows = (frame.height + PEL_TILE_HEIGHT - 1) / PEL_TILE_HEIGHT;
+    countTiles(plan);
     for (uint32_t i = 0; i < state.lights.size(); ++i)
         if (filtersShadow(state, state.lights[i])) plan.filteredLights.push_back(i);
+    return plan;
+}
+
+// The plan of a frame with the same programs, on images of the library's own.
+ShaderPlan onSubstitutes(ShaderPlan plan, const Ref<Device>& device) {
+    ShaderState& state = plan.state;
+    if (!mapCells(state).empty())  // coarse enough for a small frame
+        for (auto& [id, material] : state.materials)
+            material.params.thicknessFilterRadius = std::max(material.params.thicknessFilterRadius, 1.0f);
+    ImageSubstitutes images;
+    for (ImageView& view : state.images) images.add(view);
+    for (ImageView* view : {&state.ambientCube, &state.reflectionCube, &state.environment}) images.add(*view);
+    for (ShaderLight& light : state.lights)
+        for (ImageView& view : light.images) images.add(view);
+    for (auto& [id, material] : state.materials) {
+        for (ImageView& level : material.normalMap) images.add(level);
+        images.add(material.scatteredTexture);
+        if (material.eye) images.add(material.eye->iris);
+    }
+    images.place(device);
+    countTiles(plan);
     return plan;
 }
 
@@ -40,6 +68,7 @@ Shader::Shader(Ref<Device> device, std::span<const PassKind> passes)
 Shader::~Shader() = default;
 
 void Shader::commit() {
+    uint64_t autoPixels = 0;
     const unsigned builders = buildersFor(*device_, 0);
     if (!state_.options.buildInBackground || builders < 2) background_.reset();
     if (background_ && !background_->done()) return commitStandIn();
@@ -49,12 +78,12 @@ void Shader::commit() {
     }
     if (!state_.options.buildInBackground || builders < 2) {
         prepareEyes(device_, state_.materials);
-        return commitState(state_);
+        return commitState(state_, autoPixels);
     }
     try {
         const cl::ReadyScope ready;
         prepareEyes(device_, state_.materials);
-        return commitState(state_);
+        return commitState(state_, autoPixels);
     } catch (const cl::NotBuilt&) {
     }
     // The programs of the stand-in first: the caller waits for them.
@@ -64,21 +93,22 @@ void Shader::commit() {
     standIn->addBuildJobs(jobs);
     runJobs(*device_, jobs, builders, *helpers, [](size_t) {});
     commitStandIn();
-    background_ = std::make_unique<BackgroundBuild>(copy(state_), helpers, builders);
+    background_ = std::make_unique<BackgroundBuild>(copy(state_), autoPixels, helpers, builders);
 }
 
 // By programs that take little time to build, while others build those of the state.
 void Shader::commitStandIn() {
-    commitState(standInOf(state_));
+    uint64_t autoPixels = 0;
+    commitState(standInOf(state_), autoPixels);
     standsIn_ = true;
     warnings_ = text("materials shade by \"none\" while the programs of their methods are built",
                      warnings_.empty() ? "" : "\n", warnings_);
 }
 
-void Shader::commitState(const ShaderState& state) {
+void Shader::commitState(const ShaderState& state, uint64_t& autoPixels) {
     standsIn_ = false;
     const KeepsLarger keeps(state.options.regionWidth > 0);
-    allocate(state, UINT32_MAX);
+    allocate(plan(state, autoPixels), UINT32_MAX);
     finishPlan();
 }
 
@@ -89,15 +119,19 @@ Ref<Shader> Shader::copy(const ShaderState& state) const {
     return shader;
 }
 
-// Makes a plan and the memory of its passes, in bands of at most this many rows of tiles.
-void Shader::allocate(const ShaderState& given, uint32_t mostRows) {
-    ShaderPlan plan = planOf(given, methods(), 0, device_, profileTables_);
+ShaderPlan Shader::plan(const ShaderState& given, uint64_t& autoPixels) {
+    ShaderPlan plan = planOf(given, methods(), 0, device_, autoPixels, profileTables_);
     // What scatters on the screen because it was chosen to must fit.
     const uint64_t budget = given.options.scratchBudget,
                    bytes = budget ? PassList(passKinds_).bytesOfWholeFrame(plan) : 0;
-    if (bytes > budget) plan = planOf(given, methods(), bytes, device_, profileTables_);
+    if (bytes > budget) plan = planOf(given, methods(), bytes, device_, autoPixels, profileTables_);
     checkMethods(plan.state);
     checkScattering(plan.state);
+    return plan;
+}
+
+// Makes the memory of the plan's passes, in bands of at most this many rows of tiles.
+void Shader::allocate(ShaderPlan plan, uint32_t mostRows) {
     // Old images go before new ones are made: both together would not keep to a budget. After a failure
     // nothing is held.
     committed_ = false;
@@ -259,12 +293,13 @@ void Shader::runBand(PassWork& work) {
     runPasses(work, &Pass::enqueue);
 }
 
-void Shader::addBuildJobs(BuildJobs& jobs) {
+void Shader::addBuildJobs(BuildJobs& jobs, uint64_t autoPixels) {
     const Ref<Shader> self(this), shader = copy(state_);
     if (pretendEyes(device_, shader->state_.materials))
         jobs.push_back([self] { prepareEyes(self->device_, self->state_.materials); });
-    shader->allocate(shader->state_, 1);
+    ShaderPlan plan = shader->plan(shader->state_, autoPixels);
     profileTables_ = shader->profileTables_;
+    shader->allocate(onSubstitutes(std::move(plan), device_), 1);
     std::vector<cl::ProgramKey> keys;
     shader->passes_.each([&](const Pass& pass) {
         std::ranges::move(pass.programs(*device_, shader->plan_), std::back_inserter(keys));
@@ -356,11 +391,12 @@ uint64_t Shader::ownBytes() const {
 
 std::vector<PelPassMemory> Shader::memory() {
     prepareEyes(device_, state_.materials);
-    planOf(state_, methods(), 0, device_, profileTables_);  // makes the tables
+    uint64_t autoPixels = 0;
+    plan(state_, autoPixels);  // makes the tables
     const Ref<Shader> planned = copy(state_);
     {
         const CountedRun counted;
-        planned->allocate(planned->state_, UINT32_MAX);
+        planned->allocate(planned->plan(state_, autoPixels), UINT32_MAX);
         planned->send();
     }
     std::vector<PelPassMemory> all;

@@ -47,16 +47,19 @@ class Shader final : public Object {
     // Warnings of the last commit, one sentence a line.
     const std::string& warnings() const { return warnings_; }
     // Jobs for a warm-up: they build what a commit would, and launch each kernel on no tile. Tables of
-    // profiles are made here, those of eyes by a job, and kept. Throws what a commit would.
-    void addBuildJobs(BuildJobs& jobs);
+    // profiles are made here, those of eyes by a job, and kept. The caller's images are not read, except to
+    // count `autoPixels` (keepToBudget()) if it is 0. Throws what a commit would.
+    void addBuildJobs(BuildJobs& jobs, uint64_t autoPixels = 0);
     Device& device() const { return *device_; }
 
   private:
     ~Shader() override;
-    void commitState(const ShaderState& state);
+    void commitState(const ShaderState& state, uint64_t& autoPixels);
     void commitStandIn();
     Ref<Shader> copy(const ShaderState& state) const;
-    void allocate(const ShaderState& state, uint32_t mostRows);
+    // `autoPixels`: see keepToBudget().
+    ShaderPlan plan(const ShaderState& state, uint64_t& autoPixels);
+    void allocate(ShaderPlan plan, uint32_t mostRows);
     ShaderMaterial& materialFor(uint32_t id, const char* what);
     template <class Check>
     void setView(ImageView& to, const PelImageDesc* image, const char* name, const Check& check);

@@ -1,6 +1,7 @@
 #include "shading/time_budget.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -97,6 +98,21 @@ Tuning tuningOf(const PelDeviceInfo& device) {
 
 namespace {
 
+// As kernels read it (lib/image/image.clh, loadId): 0 for what is no id.
+uint32_t idOf(const unsigned char* pixel, const FormatInfo& format) {
+    uint32_t bits = 0;
+    for (uint32_t b = 0; b < format.componentBytes; ++b) bits |= uint32_t(pixel[b]) << 8 * b;
+    if (format.kind != FormatKind::FLOAT) return bits;
+    double value;
+    if (format.componentBytes == sizeof(float)) {
+        value = std::bit_cast<float>(bits);
+    } else {
+        const int exponent = int(bits >> 10);  // with the sign
+        value = exponent ? std::ldexp(1024 + (bits & 1023), exponent - 25) : 0;
+    }
+    return value >= 0 && value <= 255 ? uint32_t(value) : 0;
+}
+
 // Of these materials; all of the frame where the image shows none of them yet.
 uint64_t pixelsOf(const std::vector<uint32_t>& ids, const ShaderState& state, Device& device) {
     const ImageView& frame = state.images[PEL_SLOT_RADIANCE];
@@ -109,16 +125,15 @@ uint64_t pixelsOf(const std::vector<uint32_t>& ids, const ShaderState& state, De
     for (uint32_t y = 0; y < image.height; ++y)
         for (uint32_t x = 0; x < image.width; ++x) {
             const unsigned char* const pixel = &bytes[y * image.rowStride + x * image.pixelStride];
-            uint32_t id = 0;
-            for (uint32_t b = 0; b < image.info().componentBytes; ++b) id |= uint32_t(pixel[b]) << 8 * b;
-            count += std::ranges::binary_search(ids, id);
+            count += std::ranges::binary_search(ids, idOf(pixel, image.info()));
         }
     return count ? count : all;
 }
 
 }  // namespace
 
-TakenSetting keepToBudget(ShaderState& state, uint32_t methods, Device& device, std::string& warnings) {
+TakenSetting keepToBudget(ShaderState& state, uint32_t methods, Device& device, uint64_t& pixels,
+                          std::string& warnings) {
     std::vector<uint32_t> ids;
     bool thin = false, full = false;  // materials whose method is given as light keep their rate
     for (const auto& [id, m] : state.materials) {
@@ -137,9 +152,11 @@ TakenSetting keepToBudget(ShaderState& state, uint32_t methods, Device& device, 
                    (s.halfRate ? !full || state.options.halfRate : !state.options.halfRate);
         return s.method != PEL_SCATTERING_PREINTEGRATED || (!thin && !given);
     };
-    const double pixels = double(pixelsOf(ids, state, device)),
-                 all = double(frame.width) * double(frame.height), budget = state.options.timeBudget;
-    const auto time = [&](const TunedSetting& s) { return 1e-6 * (s.perPixel * pixels + s.perFrame * all); };
+    if (!pixels) pixels = pixelsOf(ids, state, device);
+    const double all = double(frame.width) * double(frame.height), budget = state.options.timeBudget;
+    const auto time = [&](const TunedSetting& s) {
+        return 1e-6 * (s.perPixel * double(pixels) + s.perFrame * all);
+    };
     const auto faster = [&](const TunedSetting& a, const TunedSetting& b) { return time(a) < time(b); };
     std::vector<TunedSetting> open;
     std::ranges::copy_if(tuning.settings, std::back_inserter(open), possible);

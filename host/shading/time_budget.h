@@ -30,7 +30,9 @@ struct TakenSetting {
 };
 
 // After chooseMethods(): where materials came to scatter on the screen, they get the method and the state the
-// targetError that are nearest to light within options.timeBudget. `warnings`: more of them, one a line.
-TakenSetting keepToBudget(ShaderState& state, uint32_t methods, Device& device, std::string& warnings);
+// targetError that are nearest to light within options.timeBudget. `pixels`: of those materials; counted in
+// the material image, and set, if it is 0. `warnings`: more of them, one a line.
+TakenSetting keepToBudget(ShaderState& state, uint32_t methods, Device& device, uint64_t& pixels,
+                          std::string& warnings);
 
 }  // namespace pel

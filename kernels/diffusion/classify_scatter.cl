@@ -33,8 +33,8 @@
 
 // The largest second difference between blocks of level k in and around a tile, of those that are this
 // work-item's.
-static inline float maxDifference2(__global const PelDiffusionFrame* frame, __global const float* pyramid,
-                                   uint tileX, uint tileY, int k) {
+static PEL_OUT_OF_LINE float maxDifference2(__global const PelDiffusionFrame* frame,
+                                            __global const float* pyramid, uint tileX, uint tileY, int k) {
     __global const PelPyramidLevel* level = &frame->level[k + 1];
     const int shift = PEL_TILE_LEVEL - (k + 1), dilate = 2;  // as far as the ring of level k reaches
     const int x0 = (shift >= 0 ? (int)tileX << shift : (int)(tileX >> -shift)) - dilate,

@@ -92,11 +92,12 @@ static inline int wholeBlock(__global const PelDiffusionFrame* frame, __global c
 
 // The most light that occluded texels can add to a tile. The block of a tile stands for one surface. Parts
 // of the tile that lie further away, such as an ear in front of a neck, are tested by themselves.
-static inline float changeByLight(__global const PelDiffusionFrame* frame, __global const float* pyramid,
-                                  uint tileX, uint tileY, __global const PelProfileTable* tables,
-                                  __global const float* nodes, __global const PelLightMap* maps,
-                                  uint mapCount, __global const float* lights, uint* texels,
-                                  __local float3* partial, __local uint* partsOfGroup) {
+static PEL_OUT_OF_LINE float changeByLight(__global const PelDiffusionFrame* frame,
+                                           __global const float* pyramid, uint tileX, uint tileY,
+                                           __global const PelProfileTable* tables,
+                                           __global const float* nodes, __global const PelLightMap* maps,
+                                           uint mapCount, __global const float* lights, uint* texels,
+                                           __local float3* partial, __local uint* partsOfGroup) {
     const uint side = PEL_DIFFUSION_TILE >> PEL_PART_LEVEL;
     Receiver receiver;
     receiver.rho = 0.0f;
@@ -138,11 +139,11 @@ static inline float curvatureOfBlock(__global const PelDiffusionFrame* frame, __
                    PEL_PLANE_CURVATURE * pixels->stride];
 }
 
-static inline bool lightMatters(__global const PelDiffusionFrame* frame, __global const float* block,
-                                uint stride, __global const PelProfileTable* tables,
-                                __global const float* nodes, __global const PelLightMap* maps, uint mapCount,
-                                __global const float* lights, bool tapped, float curvature, uint* texels,
-                                __local float3* partial) {
+static PEL_OUT_OF_LINE bool lightMatters(__global const PelDiffusionFrame* frame, __global const float* block,
+                                         uint stride, __global const PelProfileTable* tables,
+                                         __global const float* nodes, __global const PelLightMap* maps,
+                                         uint mapCount, __global const float* lights, bool tapped,
+                                         float curvature, uint* texels, __local float3* partial) {
     Receiver receiver;
     const int number = receiverOf(frame, block, stride, &receiver);
     if (number < 0) return false;

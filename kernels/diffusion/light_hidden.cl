@@ -11,9 +11,10 @@
 
 #define WINDOW 1.5f
 // Adds the light of all lights, and takes the largest weight of any light.
-static inline void addHidden(__global const PelLightMap* maps, uint mapCount, __global const float* lights,
-                             __global const float* nodes, const PelProfileTable table, Receiver* receiver,
-                             float3* light, float3* weight, float3* far, uint* texels) {
+static PEL_OUT_OF_LINE void addHidden(__global const PelLightMap* maps, uint mapCount,
+                                      __global const float* lights, __global const float* nodes,
+                                      const PelProfileTable table, Receiver* receiver, float3* light,
+                                      float3* weight, float3* far, uint* texels) {
     for (uint k = 0; k < mapCount;) {
         Windowed sums;
         clearWindowed(&sums);

@@ -119,9 +119,10 @@ static inline bool cellsMatter(__global const PelLightMap* map, __global const u
 #define MOST_CELLS 4
 
 // PEL_WIDTH blocks of level `to`.
-static inline void reduceLight(__global const PelLightMap* map, uint to, uint x, uint y, uint frameNumber,
-                               __global const uchar* before, __global const uchar* now, __global uchar* seen,
-                               __global float* pyramid) {
+static PEL_OUT_OF_LINE void reduceLight(__global const PelLightMap* map, uint to, uint x, uint y,
+                                        uint frameNumber, __global const uchar* before,
+                                        __global const uchar* now, __global uchar* seen,
+                                        __global float* pyramid) {
     __global const PelPyramidLevel *fine = &map->level[to - 1], *coarse = &map->level[to];
     const uint points = to == 1 ? 1 : 2, stride = fine->stride;
     if (to == 1) clearMarks(map, seen, x, y);

@@ -98,9 +98,10 @@ static inline void mergeMarks(volatile __global uint* word, uint mask, uint id) 
     }
 }
 
-static inline void markPatch(__global const PelLightMap* map, __global const uchar* first,
-                             volatile __global uint* seen, float column, float row, float depth,
-                             float acrossX, float acrossY, float slopeX, float slopeY, float most, uint id) {
+static PEL_OUT_OF_LINE void markPatch(__global const PelLightMap* map, __global const uchar* first,
+                                      volatile __global uint* seen, float column, float row, float depth,
+                                      float acrossX, float acrossY, float slopeX, float slopeY, float most,
+                                      uint id) {
     const int left = max((int)ceil(column - acrossX), 0),
               right = min((int)floor(column + acrossX), (int)map->level[0].width - 1);
     const int top = max((int)ceil(row - acrossY), 0),
@@ -171,28 +172,13 @@ static inline void widenRegion(__global const PelLightMap* map, __global const f
     atomic_max(region + 3, 1 + (uint)clamp(-floor(minLane(-at.y - around, on)), 0.0f, height - 1.0f));
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_seen(
-    __global const PelDiffusionFrame* restrict frame, __global uchar* position, __global uchar* ids,
-    __global const PelLightMap* restrict maps, __global const float* restrict pyramid,
-    volatile __global uint* seen, volatile __global uint* counters PEL_LIGHT_BUFFER_ARGUMENTS) {
-    const uint across = (frame->width + STEP - 1) / STEP, y = itemOfFolded() / across * EVERY;
-    __global const PelLightMap* map = maps + get_global_id(2);
-    const uint from = itemOfFolded() % across * STEP, x = vectorStart(from, frame->width);
-    __global const PelPyramidLevel* level = &frame->level[0];
-    __global const float* own = pyramid + pyramidRow(level, (int)y) + x;
-    const uint stride = level->stride;
-    // That of the group first.
-    __local uint region[4];
-    for (uint k = get_local_id(0); k < 4; k += PEL_GROUP) region[k] = 0;
-    barrier(CLK_LOCAL_MEM_FENCE);
-    // Columns beyond the picture have no id.
-    PEL_ROLL for (uint down = 0; down < EVERY && y + down < frame->height; ++down)
-        PEL_ROLL for (uint right = 0; right < STEP; right += PEL_WIDTH)
-            widenRegion(map, own + down * PEL_PYRAMID_PLANES * stride + right, stride, region);
-    barrier(CLK_LOCAL_MEM_FENCE);
-    for (uint k = get_local_id(0); k < 4; k += PEL_GROUP)
-        if (region[k]) atomic_max(&counters[PEL_LIGHT_REGION(get_global_id(2)) + k], region[k]);
-    if (y >= frame->height) return;
+// Marks the patches of PEL_WIDTH pixels, those from column `from` on. `own`: level 0 of the pyramid there.
+static PEL_OUT_OF_LINE void markPatches(__global const PelDiffusionFrame* frame,
+                                        __global const PelLightMap* map, __global const uchar* first,
+                                        __global uchar* position, __global uchar* ids,
+                                        __global const float* own, uint x, uint y, uint from,
+                                        volatile __global uint* seen) {
+    const uint stride = frame->level[0].stride;
     const intw column = lanesw() + (int)x;
     const maskw mine = (column >= (int)from) & (column < (int)frame->width) & (column % EVERY == 0);
     const Vec3w p = loadPositions(frame, position, x, y);
@@ -226,7 +212,6 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_seen(
                        (loadw(PEL_PLANE_BLUE * stride, own) == 0.0f);
     on &= notw(dark & (as_uintw(loadw(PEL_PLANE_ID * stride, own)) != (uintw)(0)));
     if (!anyw(on)) return;
-    __global const uchar* first = firstTexel(PEL_LIGHT_BUFFER_OF(map->buffer), &map->map);
 #define FETCH(k, s) \
     if (on s) fetchDepths(map, first, patch.column s, patch.row s);
     PEL_EACH_LANE(FETCH)
@@ -239,4 +224,30 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_seen(
                                                                           : PEL_SEEN_OTHER);
     PEL_EACH_LANE(MARK)
 #undef MARK
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_seen(
+    __global const PelDiffusionFrame* restrict frame, __global uchar* position, __global uchar* ids,
+    __global const PelLightMap* restrict maps, __global const float* restrict pyramid,
+    volatile __global uint* seen, volatile __global uint* counters PEL_LIGHT_BUFFER_ARGUMENTS) {
+    const uint across = (frame->width + STEP - 1) / STEP, y = itemOfFolded() / across * EVERY;
+    __global const PelLightMap* map = maps + get_global_id(2);
+    const uint from = itemOfFolded() % across * STEP, x = vectorStart(from, frame->width);
+    __global const PelPyramidLevel* level = &frame->level[0];
+    __global const float* own = pyramid + pyramidRow(level, (int)y) + x;
+    const uint stride = level->stride;
+    // That of the group first.
+    __local uint region[4];
+    for (uint k = get_local_id(0); k < 4; k += PEL_GROUP) region[k] = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    // Columns beyond the picture have no id.
+    PEL_ROLL for (uint down = 0; down < EVERY && y + down < frame->height; ++down)
+        PEL_ROLL for (uint right = 0; right < STEP; right += PEL_WIDTH)
+            widenRegion(map, own + down * PEL_PYRAMID_PLANES * stride + right, stride, region);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint k = get_local_id(0); k < 4; k += PEL_GROUP)
+        if (region[k]) atomic_max(&counters[PEL_LIGHT_REGION(get_global_id(2)) + k], region[k]);
+    if (y < frame->height)
+        markPatches(frame, map, firstTexel(PEL_LIGHT_BUFFER_OF(map->buffer), &map->map), position, ids, own,
+                    x, y, from, seen);
 }

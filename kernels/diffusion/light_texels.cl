@@ -73,24 +73,19 @@ static inline Vec3w stepAlong(__global const PelLightMap* map, __global const uc
     return stepOf(p, before, after);
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_texels(
-    __global const PelLightMap* restrict maps, __global const uchar* restrict seen,
-    __global const uint* restrict counters, __global const uchar* restrict before, __global uchar* now,
-    uint frameNumber, __global float* pyramid PEL_LIGHT_BUFFER_ARGUMENTS) {
-    __global const PelLightMap* map = maps + get_global_id(2);
+// `region`: what the profiles reach; `first`: the map's first texel.
+static PEL_OUT_OF_LINE void makeTexels(__global const PelLightMap* map, __global const uchar* first,
+                                       __global const uchar* seen, __global const uint* region,
+                                       __global const uchar* before, __global uchar* now, uint frameNumber,
+                                       __global float* pyramid, uint x, uint y) {
     __global const PelPyramidLevel* level = &map->level[0];
-    const uint across = (level->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
-    if (y >= level->height) return;
-    const uint x = itemOfFolded() % across * PEL_WIDTH;
     const uint cell = map->cells + y / PEL_LIGHT_CELL * cellsAcross(map) + x / PEL_LIGHT_CELL;
     const bool had = cellOfFrame(before[cell], frameNumber - 1);
-    __global const uint* region = counters + PEL_LIGHT_REGION(get_global_id(2));
     const bool reached = x + PEL_WIDTH > level->width - region[0] && x < region[1] &&
                          y + region[2] >= level->height && y < region[3];
     if (!reached && !had) return;
     const size_t at = lightRow(level, 1, (int)y) + x;
     const uint stride = level->stride;
-    __global const uchar* first = firstTexel(PEL_LIGHT_BUFFER_OF(map->buffer), &map->map);
     const intw column = lanesw() + (int)x;
     const uintw id = idsOfTexels(seen + map->seen + (size_t)y * level->width + x);
     maskw there = (maskw)(reached ? -1 : 0) & (column < (int)level->width) &
@@ -151,4 +146,17 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_texel
     else if (!had)
         return;
     storew(flux, at + PEL_LIGHT_FLUX * stride, pyramid);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_texels(
+    __global const PelLightMap* restrict maps, __global const uchar* restrict seen,
+    __global const uint* restrict counters, __global const uchar* restrict before, __global uchar* now,
+    uint frameNumber, __global float* pyramid PEL_LIGHT_BUFFER_ARGUMENTS) {
+    __global const PelLightMap* map = maps + get_global_id(2);
+    __global const PelPyramidLevel* level = &map->level[0];
+    const uint across = (level->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
+    if (y < level->height)
+        makeTexels(map, firstTexel(PEL_LIGHT_BUFFER_OF(map->buffer), &map->map), seen,
+                   counters + PEL_LIGHT_REGION(get_global_id(2)), before, now, frameNumber, pyramid,
+                   itemOfFolded() % across * PEL_WIDTH, y);
 }

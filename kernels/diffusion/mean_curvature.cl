@@ -145,6 +145,27 @@ static inline floatw curvatureOf(const Images* in, const Point* here, uint x, ui
     return value;
 }
 
+// Of the pixels from x on, each by the window of its id.
+static PEL_OUT_OF_LINE floatw curvatureFrom(const Images* in, uint x, uint y) {
+    floatw value = 0.0f;
+    const uintw id = idAt(in, x, y);
+#define MEASURED(i, s) (id s < PEL_CURVATURE_IDS && in->frame->window[id s] > 0.0f ? id s : 0)
+    const uintw wanted = PEL_UINT_LANES(MEASURED);
+#undef MEASURED
+    maskw left = wanted != (uintw)(0);
+    if (anyw(left)) {
+        const Point here = pointAt(in, x, y);
+        left &= finite3(here.p) & finite3(here.n);
+        while (anyw(left)) {
+            const uint current = greatestId(wanted, left);
+            const maskw mine = left & (wanted == current);
+            value = selectw(value, curvatureOf(in, &here, x, y, in->frame->window[current], mine), mine);
+            left &= notw(mine);
+        }
+    }
+    return value;
+}
+
 // `firstRow`: of the launch; `outRow`: that the output begins with.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void mean_curvature(
     __global const PelMeanCurvature* restrict frame, __global uchar* normal, __global uchar* position,
@@ -154,22 +175,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void mean_curvat
     if (row >= rows || y >= frame->height) return;
     const uint x = vectorStart(itemOfFolded() % across * PEL_WIDTH, frame->width);
     const Images in = {frame, normal, position, ids};
-    floatw value = 0.0f;
-    const uintw id = idAt(&in, x, y);
-#define MEASURED(i, s) (id s < PEL_CURVATURE_IDS && frame->window[id s] > 0.0f ? id s : 0)
-    const uintw wanted = PEL_UINT_LANES(MEASURED);
-#undef MEASURED
-    maskw left = wanted != (uintw)(0);
-    if (anyw(left)) {
-        const Point here = pointAt(&in, x, y);
-        left &= finite3(here.p) & finite3(here.n);
-        while (anyw(left)) {
-            const uint current = greatestId(wanted, left);
-            const maskw mine = left & (wanted == current);
-            value = selectw(value, curvatureOf(&in, &here, x, y, frame->window[current], mine), mine);
-            left &= notw(mine);
-        }
-    }
+    const floatw value = curvatureFrom(&in, x, y);
     storeScalar(PEL_FORMAT_OUT, imageSpan(out, &frame->out, x, y - outRow), value,
                 lanesw() + (int)x < (intw)((int)frame->width));
 }

@@ -133,8 +133,8 @@ static inline floatw differences(__global const PelDiffusionFrame* frame, __glob
 }
 
 // PEL_WIDTH blocks of level `to`.
-static inline void reduceBlocks(__global const PelDiffusionFrame* frame, __global float* pyramid, uint to,
-                                uint x, uint y) {
+static PEL_OUT_OF_LINE void reduceBlocks(__global const PelDiffusionFrame* frame, __global float* pyramid,
+                                         uint to, uint x, uint y) {
     __global const PelPyramidLevel *fine = &frame->level[to - 1], *coarse = &frame->level[to];
     const uint stride = fine->stride;
     __global const float* upper = pyramid + pyramidRow(fine, 2 * (int)y) + 2 * x;

@@ -80,14 +80,12 @@ static inline void storeSums(Sums s, uint stride, __global float* to) {
 }
 
 #if PEL_WIDTH > 1
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_level(
-    __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
-    __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
-    __global const uint* restrict tiles, uint level, __global float* sums, __global uint* restrict counters) {
+// Returns how many blocks there are something to sum for.
+static PEL_OUT_OF_LINE uint sumBlocks(__global const PelDiffusionFrame* frame, __global const float* pyramid,
+                                      __global const PelProfileTable* tables, __global const float* nodes,
+                                      __global const uint* tiles, uint level, __global float* sums, uint x,
+                                      uint y) {
     __global const PelPyramidLevel* blocks = &frame->level[level];
-    const uint across = (blocks->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
-    if (y >= blocks->height) return;
-    const uint x = itemOfFolded() % across * PEL_WIDTH;
     const uint stride = blocks->stride;
     __global float* to = sums + sumRow(frame, level, (int)y) + x;
     if (!levelMatters(frame, tiles, level, x, min(x + PEL_WIDTH, blocks->width), y)) {
@@ -95,13 +93,13 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_lev
         // All tiles that scatter need PEL_MIN_LEVELS.
         for (uint plane = 0; level >= PEL_MIN_LEVELS && plane < PEL_SUM_PLANES; ++plane)
             storew((floatw)(0.0f), plane * stride, to);
-        return;
+        return 0;
     }
     __global const float* at = pyramid + pyramidRow(blocks, (int)y) + x;
     fetchNextBlocks(at, stride);
     const Blocks here = loadBlocks(at, stride);
     const maskw on = here.area > 0.0f;
-    if (!anyw(on)) return;
+    if (!anyw(on)) return 0;
     const Slope slope = slopeOfBlocks(frame, at, stride, &here, on);
     Sums result = noSums();
     if (level + 1 < frame->levels) {
@@ -111,8 +109,19 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_lev
     }
     result = addOwnLevel(frame, pyramid, tables, nodes, at, stride, level, x, y, &here, slope, on, result);
     storeSums(result, stride, to);
-    const uint taps = PEL_BAND_OF_BLOCKS * countw(on);
-    if (taps) atomic_add(&counters[PEL_COUNT_TAPS], taps);
+    return countw(on);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_level(
+    __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
+    __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
+    __global const uint* restrict tiles, uint level, __global float* sums, __global uint* restrict counters) {
+    __global const PelPyramidLevel* blocks = &frame->level[level];
+    const uint across = (blocks->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
+    if (y >= blocks->height) return;
+    const uint summed =
+        sumBlocks(frame, pyramid, tables, nodes, tiles, level, sums, itemOfFolded() % across * PEL_WIDTH, y);
+    if (summed) atomic_add(&counters[PEL_COUNT_TAPS], PEL_BAND_OF_BLOCKS * summed);
 }
 
 #else

@@ -111,11 +111,12 @@ static inline float3 trustInPixels(float3 byPixels, float3 byTexels, float3 weig
 }
 
 // Scattered light of a pixel. Returns false if the pixel keeps its irradiance.
-static inline __attribute__((always_inline)) bool scatterPixel(
-    __global const PelDiffusionFrame* frame, __global const float* pyramid,
-    __global const PelProfileTable* tables, __global const float* nodes, __global const PelLightMap* maps,
-    uint mapCount, __global const float* lights, int x, int y, const Pixel* here, uint* blocks, uint* texels,
-    float3* result) {
+static PEL_OUT_OF_LINE bool scatterPixel(__global const PelDiffusionFrame* frame,
+                                         __global const float* pyramid,
+                                         __global const PelProfileTable* tables, __global const float* nodes,
+                                         __global const PelLightMap* maps, uint mapCount,
+                                         __global const float* lights, int x, int y, const Pixel* here,
+                                         uint* blocks, uint* texels, float3* result) {
     const uint stride = frame->level[0].stride;
     __global const float* at = pyramid + pyramidRow(&frame->level[0], y) + x;
     const PelProfileTable table = tableAt(tables + frame->tableOf[here->id] - 1, at, stride);

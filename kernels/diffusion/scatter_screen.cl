@@ -74,10 +74,12 @@ static inline bool pixelsMatter(__global const PelDiffusionFrame* frame, __globa
 }
 
 // PEL_WIDTH pixels from (x, y) on, all of one tile.
-static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __global const float* pyramid,
-                                  __global const PelProfileTable* tables, __global const float* nodes,
-                                  __global const float* sums, __global const float* hidden, uint x, uint y,
-                                  bool near, float weight, const Blocks* here, maskw active) {
+static PEL_OUT_OF_LINE Vec3w scatterPixels(__global const PelDiffusionFrame* frame,
+                                           __global const float* pyramid,
+                                           __global const PelProfileTable* tables,
+                                           __global const float* nodes, __global const float* sums,
+                                           __global const float* hidden, uint x, uint y, bool near,
+                                           float weight, const Blocks* here, maskw active) {
     const uint stride = frame->level[0].stride;
     __global const float* at = pyramid + pyramidRow(&frame->level[0], (int)y) + x;
     const Vec3w e = loadPlanes3(at + PEL_PLANE_RED * stride, stride);

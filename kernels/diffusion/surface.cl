@@ -19,10 +19,11 @@
 #define MIN_FACING 0.25f
 
 // PEL_WIDTH pixels from (`from`, y) on.
-static inline void copyPoints(__global const PelDiffusionFrame* frame, __global uchar* irradiance,
-                              __global uchar* position, __global uchar* ids, __global uchar* curvature,
-                              __global uchar* radii, __global float* pyramid, uint from, uint y,
-                              uint* covered, uint* invalid) {
+static PEL_OUT_OF_LINE void copyPoints(__global const PelDiffusionFrame* frame, __global uchar* irradiance,
+                                       __global uchar* position, __global uchar* ids,
+                                       __global uchar* curvature, __global uchar* radii,
+                                       __global float* pyramid, uint from, uint y, uint* covered,
+                                       uint* invalid) {
     const uint x = vectorStart(from, frame->width);
     const intw column = lanesw() + (int)x;
     const maskw mine = (column >= (int)from) & (column < (int)frame->width);

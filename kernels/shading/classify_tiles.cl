@@ -78,9 +78,9 @@ static inline uint onlyId(__global const PelShadeFrame* frame, __global uchar* m
 
 // 0: no pixel of a material; otherwise 1 + the last variant that has all features that its materials need
 // (later ones are cheaper).
-static inline uint classOfTile(__global const PelShadeFrame* frame,
-                               __global const PelShadeMaterial* materials, __global uchar* material,
-                               uint tile, uint variants) {
+static PEL_OUT_OF_LINE uint classOfTile(__global const PelShadeFrame* frame,
+                                        __global const PelShadeMaterial* materials, __global uchar* material,
+                                        uint tile, uint variants) {
     const uint x0 = tile % frame->tilesX * PEL_TILE_WIDTH, y0 = tile / frame->tilesX * PEL_TILE_HEIGHT;
     const uint x1 = min(x0 + PEL_TILE_WIDTH, frame->width), y1 = min(y0 + PEL_TILE_HEIGHT, frame->height);
     uint found = PEL_FEATURES & PEL_BIT_NO_SKIPPING, able = (1u << variants) - 1u, known = ~0u;

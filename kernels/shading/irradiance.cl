@@ -84,31 +84,37 @@ static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMat
     return select3(vec3(none, none, none), e, valid);
 }
 
+// The pixels of a tile that fall to one of PEL_PASS_GROUP items. Returns how many were lit, if counted.
+static PEL_OUT_OF_LINE uint lightTile(const Scene* restrict scene, __global const PelShadeMaterial* materials,
+                                      __global float* out, uint plane, uint2 origin, uint item) {
+    __global const PelShadeFrame* frame = scene->frame;
+    uint lit = 0;
+    for (uint pixel = item * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_PASS_GROUP * PEL_WIDTH) {
+        const uint x = origin.x + pixel % PEL_TILE_WIDTH, y = origin.y + pixel / PEL_TILE_WIDTH;
+        if (x >= frame->width || y >= frame->height) continue;
+        const uint first = vectorStart(x, frame->width);
+        const intw column = lanesw() + (int)first;
+        const uintw id = loadIds(frame, scene->images.MATERIAL, first, y);
+        const maskw active = (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id);
+        if (!anyw(active)) continue;
+#define PEL_SCATTERS_(k, s) \
+    (active s && materials[id s].scattering != PEL_SCATTER_PREINTEGRATED ? 1.0f : 0.0f)
+        const maskw wanted = PEL_LANES(PEL_SCATTERS_) > 0.0f;
+#undef PEL_SCATTERS_
+        if (!anyw(wanted)) continue;
+        storePlanes(out, plane, scratchIndex(frame, first, y),
+                    arrivingLight(scene, materials, id, wanted, first, y), wanted);
+        if (HAS(PEL_BIT_COUNT)) lit += countw(wanted);
+    }
+    return lit;
+}
+
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void make_irradiance(
     SCENE_ARGUMENTS __global float* restrict out, uint plane) {
     const Scene scene = SCENE_VALUE;
     const TileRun run = tileRun(frame, list);
     uint lit = 0;
-    for (uint i = run.begin; i < run.end; ++i) {
-        const uint2 origin = tileOrigin(frame, list, i);
-        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS;
-             pixel += PEL_PASS_GROUP * PEL_WIDTH) {
-            const uint x = origin.x + pixel % PEL_TILE_WIDTH, y = origin.y + pixel / PEL_TILE_WIDTH;
-            if (x >= frame->width || y >= frame->height) continue;
-            const uint first = vectorStart(x, frame->width);
-            const intw column = lanesw() + (int)first;
-            const uintw id = loadIds(frame, MATERIAL, first, y);
-            const maskw active = (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id);
-            if (!anyw(active)) continue;
-#define PEL_SCATTERS_(k, s) \
-    (active s && materials[id s].scattering != PEL_SCATTER_PREINTEGRATED ? 1.0f : 0.0f)
-            const maskw wanted = PEL_LANES(PEL_SCATTERS_) > 0.0f;
-#undef PEL_SCATTERS_
-            if (!anyw(wanted)) continue;
-            storePlanes(out, plane, scratchIndex(frame, first, y),
-                        arrivingLight(&scene, materials, id, wanted, first, y), wanted);
-            if (HAS(PEL_BIT_COUNT)) lit += countw(wanted);
-        }
-    }
+    for (uint i = run.begin; i < run.end; ++i)
+        lit += lightTile(&scene, materials, out, plane, tileOrigin(frame, list, i), get_local_id(0));
     if (HAS(PEL_BIT_COUNT) && lit) atomic_add(&counters[PEL_COUNT_IRRADIANCE], lit);
 }

@@ -168,6 +168,27 @@ static inline __attribute__((always_inline)) void shadePixels(const Scene* scene
                     selectw((floatw)(0.0f), parts.thickness, valid & finitew(parts.thickness)), active);
 }
 
+// Shades the pixels of a tile that fall to one of PEL_SHADE_GROUP items.
+static PEL_OUT_OF_LINE void shadeTile(const Scene* restrict scene, uint tileX, uint tileY, uint item,
+                                      Counts* restrict counts) {
+    __global const PelShadeFrame* frame = scene->frame;
+    for (uint pixel = item * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_SHADE_GROUP * PEL_WIDTH) {
+        const uint x = tileX + pixel % PEL_TILE_WIDTH, y = tileY + pixel / PEL_TILE_WIDTH;
+        if (x >= frame->width || y >= frame->height) continue;
+        // At the right edge vectors begin earlier; lanes before x belong to the previous tile or vector.
+        const uint first = vectorStart(x, frame->width);
+        const intw column = lanesw() + (int)first;
+        maskw active = (column >= (int)x) & (column < (int)frame->width);
+        uintw id = 1;
+        if (PEL_FORMAT_MATERIAL) {
+            id = loadId(PEL_FORMAT_MATERIAL,
+                        imageSpan(scene->images.MATERIAL, &frame->images[PEL_IMAGE_MATERIAL], first, y));
+            active &= hasMaterial(frame, id);
+        }
+        if (anyw(active)) shadePixels(scene, first, y, id, active, counts);
+    }
+}
+
 __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade(SCENE_ARGUMENTS uint part,
                                                                                  uint parts, uint which) {
     Scene scene = SCENE_VALUE;
@@ -186,22 +207,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
         const uint next = listed && i + 1 < end ? list[listStart + i + 1] : tile + 1;
         scene.aheadColumns = (int)(next % frame->tilesX * PEL_TILE_WIDTH - tileX);
         scene.aheadRows = (int)(next / frame->tilesX * PEL_TILE_HEIGHT - tileY);
-        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS;
-             pixel += PEL_SHADE_GROUP * PEL_WIDTH) {
-            const uint x = tileX + pixel % PEL_TILE_WIDTH, y = tileY + pixel / PEL_TILE_WIDTH;
-            if (x >= frame->width || y >= frame->height) continue;
-            // At the right edge vectors begin earlier; lanes before x belong to the previous tile or vector.
-            const uint first = vectorStart(x, frame->width);
-            const intw column = lanesw() + (int)first;
-            maskw active = (column >= (int)x) & (column < (int)frame->width);
-            uintw id = 1;
-            if (PEL_FORMAT_MATERIAL) {
-                id = loadId(PEL_FORMAT_MATERIAL,
-                            imageSpan(MATERIAL, &frame->images[PEL_IMAGE_MATERIAL], first, y));
-                active &= hasMaterial(frame, id);
-            }
-            if (anyw(active)) shadePixels(&scene, first, y, id, active, &counts);
-        }
+        shadeTile(&scene, tileX, tileY, get_local_id(0), &counts);
     }
     addCounts(&counts, counters);
 }

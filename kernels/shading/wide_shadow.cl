@@ -194,16 +194,16 @@ static inline void loadSurface(__global const PelShadeFrame* frame, __global uch
         *n, loadNormal(PEL_FORMAT_NORMAL, imageSpan(normal, &frame->images[PEL_NORMAL_SLOT], end, y)));
 }
 
-__kernel PEL_WORK_GROUP(PEL_PASS_GROUP) void wide_shadow(
-    __global const PelShadeFrame* restrict frame, __global const PelShadeMaterial* restrict materials,
-    __global const PelShadeLight* restrict lights, __global const uint* restrict list,
-    __global uint* counters, __global uchar* restrict material, __global uchar* restrict normal,
-    __global uchar* restrict position, __global uchar* restrict depth,
-    __global const PelWideShadow* restrict wideShadows, uint firstLight,
-    __global const float* restrict bounds, __global uchar* restrict out,
-    uint pixels PEL_LIGHT_BUFFER_ARGUMENTS) {
-    const TileRun run = tileRun(frame, list);
-    __global const PelWideShadow* wideShadow = wideShadows + (firstLight + get_global_id(2)) * PEL_CASCADES;
+// A light's shadow at the pixels of a tile that fall to one of PEL_PASS_GROUP items. Returns how many had
+// their shadow filtered, and how many filters read the map.
+static PEL_OUT_OF_LINE uint2 shadowTile(__global const PelShadeFrame* frame,
+                                        __global const PelShadeMaterial* materials,
+                                        __global const PelShadeLight* lights, __global const uint* list,
+                                        __global uchar* material, __global uchar* normal,
+                                        __global uchar* position, __global uchar* depth,
+                                        __global const PelWideShadow* wideShadow,
+                                        __global const float* bounds, __global uchar* out, uint pixels,
+                                        uint2 origin, uint item PEL_LIGHT_BUFFER_ARGUMENTS) {
     __global const PelShadeLight* from = &lights[wideShadow->light];
     const WideContent content = {wideShadow->perExponent, wideShadow->minDeviation * wideShadow->minDeviation,
                                  wideShadow->bleeding};
@@ -215,123 +215,136 @@ __kernel PEL_WORK_GROUP(PEL_PASS_GROUP) void wide_shadow(
 #endif
     const uint apart = pixels == PEL_PIXELS_SECOND ? 2 : 1,
                end = apart == 2 ? PEL_TILE_WIDTH : PEL_TILE_PIXELS;
-    uint filtered = 0, texels = 0;  // pixels whose shadow was filtered, and whose filter read the map
-    for (uint i = run.begin; i < run.end; ++i) {
-        const uint2 origin = tileOrigin(frame, list, i);
-        for (uint pixel = get_local_id(0) * PEL_WIDTH * apart; pixel < end;
-             pixel += PEL_PASS_GROUP * PEL_WIDTH * apart) {
-            const uint x = origin.x + pixel % PEL_TILE_WIDTH, y = origin.y + pixel / PEL_TILE_WIDTH;
-            if (x >= frame->width || y >= frame->height) continue;
-            const uint first = apart == 2 ? everySecondStart(x, frame->width) : vectorStart(x, frame->width);
-            const intw column = lanesw() * (int)apart + (int)first;
-            uintw id = loadIds(frame, material, first, y);
-            if (PEL_WIDTH > 1 && apart == 2)
-                id = (uintw)PEL_EVERY_SECOND(id, loadIds(frame, material, first + PEL_WIDTH - 1, y));
-            maskw active = (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id);
-            if (!anyw(active)) continue;
-            Vec3w p, n;
-            loadSurface(frame, normal, position, depth, first, y, apart, &p, &n);
-            const Span target = imageSpan(out, &wideShadow->out, first, y);
-            floatw between = 1.0f;
-            maskw known = 0;
+    uint filtered = 0, texels = 0;
+    for (uint pixel = item * PEL_WIDTH * apart; pixel < end; pixel += PEL_PASS_GROUP * PEL_WIDTH * apart) {
+        const uint x = origin.x + pixel % PEL_TILE_WIDTH, y = origin.y + pixel / PEL_TILE_WIDTH;
+        if (x >= frame->width || y >= frame->height) continue;
+        const uint first = apart == 2 ? everySecondStart(x, frame->width) : vectorStart(x, frame->width);
+        const intw column = lanesw() * (int)apart + (int)first;
+        uintw id = loadIds(frame, material, first, y);
+        if (PEL_WIDTH > 1 && apart == 2)
+            id = (uintw)PEL_EVERY_SECOND(id, loadIds(frame, material, first + PEL_WIDTH - 1, y));
+        maskw active = (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id);
+        if (!anyw(active)) continue;
+        Vec3w p, n;
+        loadSurface(frame, normal, position, depth, first, y, apart, &p, &n);
+        const Span target = imageSpan(out, &wideShadow->out, first, y);
+        floatw between = 1.0f;
+        maskw known = 0;
 #if PEL_FILTERS_WIDE
-            if (pixels == PEL_PIXELS_BETWEEN) {
-                // Computed pixels keep their value.
-                active &= ((column & 1) != 0) | (int)(y & 1 ? -1 : 0);
-                known = valueBetween(&images, (__global const float*)target.first, id, p, first, y,
-                                     active & notw(takesSharp(materials, id, active)), &between);
-            }
+        if (pixels == PEL_PIXELS_BETWEEN) {
+            // Computed pixels keep their value.
+            active &= ((column & 1) != 0) | (int)(y & 1 ? -1 : 0);
+            known = valueBetween(&images, (__global const float*)target.first, id, p, first, y,
+                                 active & notw(takesSharp(materials, id, active)), &between);
+        }
 #endif
 #if PEL_THIN
-            // Of a sheet that is lit from its other side that side's plane is the same.
+        // Of a sheet that is lit from its other side that side's plane is the same.
 #define PEL_SHEET_(k, s) (active s && materials[id s].through[0] > 0.0f ? 1.0f : 0.0f)
-            const maskw sheet = PEL_LANES(PEL_SHEET_) > 0.0f;
+        const maskw sheet = PEL_LANES(PEL_SHEET_) > 0.0f;
 #undef PEL_SHEET_
-            const floatw facing = dot3(n, sampleLight(from, p).direction);
-            n = scale3(n, selectw((floatw)(1.0f), (floatw)(-1.0f), sheet & (facing < 0.0f)));
+        const floatw facing = dot3(n, sampleLight(from, p).direction);
+        n = scale3(n, selectw((floatw)(1.0f), (floatw)(-1.0f), sheet & (facing < 0.0f)));
 #endif
-            FilterShape shape = filterShape(wideShadow, materials, id, active);
-            maskw left = active & notw(known);
-            const LightSample sample = sampleLight(from, p);
-            // Others interpolate between these, so they are the same with skipping and without it.
-            if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING) || apart == 2) left &= sample.strength > 0.0f;
+        FilterShape shape = filterShape(wideShadow, materials, id, active);
+        maskw left = active & notw(known);
+        const LightSample sample = sampleLight(from, p);
+        // Others interpolate between these, so they are the same with skipping and without it.
+        if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING) || apart == 2) left &= sample.strength > 0.0f;
 #if PEL_AREA_LIGHTS
-            // Where the centre is below the horizon its map shows nothing of what is before the rest. Where
-            // all of the light is, normals of a map may turn towards it.
-            const floatw cosine = dot3(n, sample.direction);
-            if (isArea(from)) left &= (cosine > 0.0f) | (cosine * cosine > sample.sin2);
-            const floatw penumbra = penumbraOfLight(wideShadow, from, PEL_LIGHT_BUFFER_OF(from->mapBuffer), p,
-                                                    n, shape.bias, left);
-            shape.width = sqrt(fma(shape.width, shape.width, penumbra * penumbra));
+        // Where the centre is below the horizon its map shows nothing of what is before the rest. Where
+        // all of the light is, normals of a map may turn towards it.
+        const floatw cosine = dot3(n, sample.direction);
+        if (isArea(from)) left &= (cosine > 0.0f) | (cosine * cosine > sample.sin2);
+        const floatw penumbra =
+            penumbraOfLight(wideShadow, from, PEL_LIGHT_BUFFER_OF(from->mapBuffer), p, n, shape.bias, left);
+        shape.width = sqrt(fma(shape.width, shape.width, penumbra * penumbra));
 #endif
-            maskw sharp = left & (shape.width == 0.0f);
-            float shown[PEL_WIDTH];
-            storew(selectw((floatw)(1.0f), between, known), 0, shown);
-            if (!(wideShadow->maxTexels > 0.0f)) left = sharp;  // only sharp shadows are made of this light
-            if ((PEL_FEATURES & PEL_BIT_SHADOW_CUBE) && wideShadow->projection >= PEL_MAP_CUBE) {
-                CubeFilters f;
-                __global const uchar* map =
-                    firstTexel(PEL_LIGHT_BUFFER_OF(from->mapBuffer), &wideShadow->map);
-                __global const float* m = wideShadow->worldToShadow;
-                // In cubes the sharp shadow is the smallest disk, two texels in radius.
-                const Vec3w q = cubePosition(m, p);
-                shape.width =
-                    selectw(shape.width, sqrt(dot3(q, q)) * (8.0f / (float)wideShadow->map.width), sharp);
-                left &= makeCubeFilters(wideShadow, &shape, q, cubeTurned(m, n), flattest, &f);
-                if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(left), texels += countw(left);
-                int wanted[PEL_WIDTH];
-                storew(left, 0, wanted);
-                // unrolled, a compiler would copy the whole filter for each lane
-                for (int k = 0; k < PEL_WIDTH; ++k)
-                    if (wanted[k])
-                        shown[k] = wideShadowInCube(PEL_FORMAT_SHADOW_MAP, map, wideShadow, &f, k, &content);
-            } else {
-                left &= notw(sharp);
-                for (uint cascade = 0; cascade < maps && anyw(left | sharp); ++cascade) {
-                    Filters f;
-                    __global const PelWideShadow* light = wideShadow + cascade;
-                    __global uchar* map = PEL_LIGHT_BUFFER_OF(
-                        from->cascades ? from->cascade[cascade].mapBuffer : from->mapBuffer);
-                    if (anyw(sharp)) {
-                        const maskw before = sharp;
-                        storew(sharpInMap(light, firstTexel(map, &light->map), p, n, content.perExponent,
-                                          loadw(0, shown), &sharp),
-                               0, shown);
-                        if (PEL_FEATURES & PEL_BIT_COUNT)
-                            filtered += countw(before & notw(sharp)), texels += countw(before & notw(sharp));
-                        if (!anyw(left)) continue;
-                    }
-#if PEL_FILTERS_WIDE
-                    const maskw held = makeFilters(light, &shape, p, n, flattest, &f) & left;
-                    if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(held);
-                    left &= notw(held);
-                    float decided[PEL_WIDTH];
-                    storew((floatw)(-1.0f), 0, decided);
-                    if (PEL_BOUNDS && boundsPay(frame, list, &light->map))
-                        uniformShadows(bounds + light->bounds, &light->map, &f, held, decided);
-                    int wanted[PEL_WIDTH];
-                    storew(held, 0, wanted);
-                    for (int k = 0; k < PEL_WIDTH; ++k) {
-                        if (!wanted[k]) continue;
-                        shown[k] = decided[k];
-                        if (shown[k] >= 0.0f) continue;
-                        const WideFilter one = {f.x[k],     f.y[k],        f.z[k],       f.dzdx[k],
-                                                f.dzdy[k],  f.radiusX[k],  f.radiusY[k], f.cone[k],
-                                                f.scale[k], (int)f.step[k]};
-                        ++texels;
-                        shown[k] = wideShadowOfPixel(PEL_FORMAT_SHADOW_MAP, map, &light->map, &one, &content);
-                    }
-#endif
+        maskw sharp = left & (shape.width == 0.0f);
+        float shown[PEL_WIDTH];
+        storew(selectw((floatw)(1.0f), between, known), 0, shown);
+        if (!(wideShadow->maxTexels > 0.0f)) left = sharp;  // only sharp shadows are made of this light
+        if ((PEL_FEATURES & PEL_BIT_SHADOW_CUBE) && wideShadow->projection >= PEL_MAP_CUBE) {
+            CubeFilters f;
+            __global const uchar* map = firstTexel(PEL_LIGHT_BUFFER_OF(from->mapBuffer), &wideShadow->map);
+            __global const float* m = wideShadow->worldToShadow;
+            // In cubes the sharp shadow is the smallest disk, two texels in radius.
+            const Vec3w q = cubePosition(m, p);
+            shape.width =
+                selectw(shape.width, sqrt(dot3(q, q)) * (8.0f / (float)wideShadow->map.width), sharp);
+            left &= makeCubeFilters(wideShadow, &shape, q, cubeTurned(m, n), flattest, &f);
+            if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(left), texels += countw(left);
+            int wanted[PEL_WIDTH];
+            storew(left, 0, wanted);
+            // unrolled, a compiler would copy the whole filter for each lane
+            for (int k = 0; k < PEL_WIDTH; ++k)
+                if (wanted[k])
+                    shown[k] = wideShadowInCube(PEL_FORMAT_SHADOW_MAP, map, wideShadow, &f, k, &content);
+        } else {
+            left &= notw(sharp);
+            for (uint cascade = 0; cascade < maps && anyw(left | sharp); ++cascade) {
+                Filters f;
+                __global const PelWideShadow* light = wideShadow + cascade;
+                __global uchar* map =
+                    PEL_LIGHT_BUFFER_OF(from->cascades ? from->cascade[cascade].mapBuffer : from->mapBuffer);
+                if (anyw(sharp)) {
+                    const maskw before = sharp;
+                    storew(sharpInMap(light, firstTexel(map, &light->map), p, n, content.perExponent,
+                                      loadw(0, shown), &sharp),
+                           0, shown);
+                    if (PEL_FEATURES & PEL_BIT_COUNT)
+                        filtered += countw(before & notw(sharp)), texels += countw(before & notw(sharp));
+                    if (!anyw(left)) continue;
                 }
+#if PEL_FILTERS_WIDE
+                const maskw held = makeFilters(light, &shape, p, n, flattest, &f) & left;
+                if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(held);
+                left &= notw(held);
+                float decided[PEL_WIDTH];
+                storew((floatw)(-1.0f), 0, decided);
+                if (PEL_BOUNDS && boundsPay(frame, list, &light->map))
+                    uniformShadows(bounds + light->bounds, &light->map, &f, held, decided);
+                int wanted[PEL_WIDTH];
+                storew(held, 0, wanted);
+                for (int k = 0; k < PEL_WIDTH; ++k) {
+                    if (!wanted[k]) continue;
+                    shown[k] = decided[k];
+                    if (shown[k] >= 0.0f) continue;
+                    const WideFilter one = {f.x[k],     f.y[k],        f.z[k],       f.dzdx[k],
+                                            f.dzdy[k],  f.radiusX[k],  f.radiusY[k], f.cone[k],
+                                            f.scale[k], (int)f.step[k]};
+                    ++texels;
+                    shown[k] = wideShadowOfPixel(PEL_FORMAT_SHADOW_MAP, map, &light->map, &one, &content);
+                }
+#endif
             }
+        }
 #define PEL_STORE_(k, s) \
     if (active s) *(__global float*)(target.first + (k)*apart * target.stride) = shown[k];
-            PEL_EACH_LANE(PEL_STORE_)
+        PEL_EACH_LANE(PEL_STORE_)
 #undef PEL_STORE_
-        }
     }
-    if ((PEL_FEATURES & PEL_BIT_COUNT) && filtered) {
-        atomic_add(&counters[PEL_COUNT_WIDE_SHADOW], filtered);
-        if (texels) atomic_add(&counters[PEL_COUNT_SHADOW_TEXELS], texels);
+    return (uint2)(filtered, texels);
+}
+
+__kernel PEL_WORK_GROUP(PEL_PASS_GROUP) void wide_shadow(
+    __global const PelShadeFrame* restrict frame, __global const PelShadeMaterial* restrict materials,
+    __global const PelShadeLight* restrict lights, __global const uint* restrict list,
+    __global uint* counters, __global uchar* restrict material, __global uchar* restrict normal,
+    __global uchar* restrict position, __global uchar* restrict depth,
+    __global const PelWideShadow* restrict wideShadows, uint firstLight,
+    __global const float* restrict bounds, __global uchar* restrict out,
+    uint pixels PEL_LIGHT_BUFFER_ARGUMENTS) {
+    const TileRun run = tileRun(frame, list);
+    __global const PelWideShadow* wideShadow = wideShadows + (firstLight + get_global_id(2)) * PEL_CASCADES;
+    uint2 counts = 0;
+    for (uint i = run.begin; i < run.end; ++i)
+        counts +=
+            shadowTile(frame, materials, lights, list, material, normal, position, depth, wideShadow, bounds,
+                       out, pixels, tileOrigin(frame, list, i), get_local_id(0) PEL_LIGHT_BUFFER_VALUES);
+    if ((PEL_FEATURES & PEL_BIT_COUNT) && counts.x) {
+        atomic_add(&counters[PEL_COUNT_WIDE_SHADOW], counts.x);
+        if (counts.y) atomic_add(&counters[PEL_COUNT_SHADOW_TEXELS], counts.y);
     }
 }

@@ -1,5 +1,6 @@
 // Programs that are built while the caller goes on (PelShaderOptions.buildInBackground), by other processes
 // where the driver is PoCL: what stands in, what takes over and when, and what goes wrong.
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include "test.h"
@@ -124,6 +125,65 @@ TEST(Background, NoneStandsInUntilTheMethodTakesOver) {
     there.shader.commit();
     EXPECT_EQ(there.shader.stats().standsIn, 0u);
     EXPECT_EQ(there.picture(), truth);
+}
+
+// Host memory that faults where it is read or written once it is gone.
+class FaultingMemory {
+  public:
+    explicit FaultingMemory(const std::vector<float>& values) : bytes_(values.size() * sizeof(float)) {
+        void* const pages =
+            ::mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        if (pages == MAP_FAILED) throw std::bad_alloc();
+        values_ = static_cast<float*>(pages);
+        std::ranges::copy(values, values_);
+    }
+    FaultingMemory(FaultingMemory&& other) noexcept
+        : bytes_(other.bytes_), values_(std::exchange(other.values_, nullptr)) {}
+    ~FaultingMemory() {
+        if (values_) ::munmap(values_, bytes_);
+    }
+    void go() const { ::mprotect(values_, bytes_, PROT_NONE); }
+    pellucid::OwnedImage image(const Device& on, PelFormat format, uint32_t width, uint32_t height) const {
+        return imageDesc(Buffer::fromHost(on, values_, bytes_), format, width, height);
+    }
+
+  private:
+    size_t bytes_;
+    float* values_;
+};
+
+// Light space, which marks what the shadow map sees in launches over the whole frame; and a choice by the
+// pixels of the material image.
+TEST(Background, TheCallersImagesMayGoWhileProgramsAreBuilt) {
+    const Device own("");
+    if (!onPocl(own)) GTEST_SKIP() << "other drivers may copy host memory back when they release it";
+    Frame f = tableFrame();
+    f.lights[0].params.toLight[0] = 0, f.lights[0].params.toLight[2] = 1;
+    f.lights[0].mapSize = 32;
+    f.lights[0].map.values.assign(32 * 32, 0.2f);
+    f.lights[0].map.components = 1;
+    const float toMap[16] = {1 / 40.f, 0, 0, 0, 0, 1 / 20.f, 0, 0, 0, 0, -0.02f, 1, 0, 0, 0, 1};
+    std::copy_n(toMap, 16, f.lights[0].params.worldToShadow);
+    f.lights[0].params.shadowDepthRange = 50;
+    for (const bool chosen : {false, true}) {
+        SCOPED_TRACE(chosen);
+        for (auto& [id, m] : f.materials) m.scattering = chosen ? PEL_SCATTERING_AUTO : PEL_SCATTERING_LIGHT;
+        f.options.timeBudget = chosen ? 1e3f : 0.0f;
+        Running running(own, f);
+        std::vector<FaultingMemory> given;
+        for (const PelImageSlot slot : {PEL_SLOT_POSITION, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_MATERIAL}) {
+            const auto& values = f.slots[slot].values;
+            const uint32_t components = f.slots[slot].components;
+            given.emplace_back(values);
+            running.shader.set(slot, given.back().image(own, floatFormats[components], f.width, f.height));
+        }
+        running.shader.commit();
+        EXPECT_EQ(running.shader.stats().standsIn, 1u);
+        setFrame(own, running.shader, f, {});
+        for (const FaultingMemory& memory : given) memory.go();
+        running.shader.commit();
+        EXPECT_EQ(running.last(true), waitedFor(own, f));
+    }
 }
 
 // In these, PoCL has compiled the programs before, but this library kept none.

@@ -88,6 +88,22 @@ TEST_F(TimeBudget, TakesWhatIsNearestToLightOfWhatFits) {
     EXPECT_EQ(short_.stats.pixelsByChoice[PEL_SCATTERING_NONE], lit.places.size());
     EXPECT_NE(short_.shader.warnings().find("timeBudget is 1e-06"), std::string::npos)
         << short_.shader.warnings();
+    // Ids of every format are counted.
+    Shot by = shot(lit, PEL_SCATTERING_AUTO, 0.003f, 1e3f);
+    const auto& ids = lit.gbuffer.material;
+    const auto counts = [&](const auto& values, PelFormat format) {
+        by.shader.set(PEL_SLOT_MATERIAL, imageDesc(pellucid::Buffer(scatter_scene::device(), values), format,
+                                                   uint32_t(lit.width), uint32_t(lit.height)));
+        const double before = by.stats.expectedMilliseconds,
+                     now = by.shader.commit().stats().expectedMilliseconds;
+        EXPECT_EQ(now, before) << "format " << int(format);
+    };
+    std::vector<uint16_t> halves(ids.size());
+    std::ranges::transform(ids, halves.begin(), [](auto id) { return uint16_t(id ? 0x3C00 : 0); });
+    counts(halves, PEL_FORMAT_R16F);
+    counts(std::vector<float>(ids.begin(), ids.end()), PEL_FORMAT_R32F);
+    counts(std::vector<uint16_t>(ids.begin(), ids.end()), PEL_FORMAT_R16_UINT);
+    counts(std::vector<uint32_t>(ids.begin(), ids.end()), PEL_FORMAT_R32_UINT);
     // Errors below targetError are not aimed at; maps do not hold ambient light.
     const auto least = [&](const LitScene& s) { return shot(s, PEL_SCATTERING_AUTO, 0.05f, 1e3f).stats; };
     EXPECT_EQ(least(lit).expectedError, rows[6].error);
