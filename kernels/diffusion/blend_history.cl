@@ -173,6 +173,5 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void blend_histo
             storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->blended, p.x, p.y),
                        vec3(light.x, light.y, light.z), 1);
         }
-    __local uint sumOfGroup;
-    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_HISTORY], taken, &sumOfGroup);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_HISTORY], taken);
 }

@@ -71,13 +71,12 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void gather_poin
     __global const PelGatherFrame* restrict frame, __global uchar* irradiance, __global uchar* position,
     __global uchar* ids, __global uchar* weight, __global uchar* radii, __global float* points,
     __global uint* restrict counters) {
-    __local uint sums[2];
     const uint x = itemOfFolded() % frame->width, y = itemOfFolded() / frame->width;
     uint covered = 0, invalid = 0;
     if (y < frame->height)
         copyPoint(frame, irradiance, position, ids, weight, radii, points, x, y, &covered, &invalid);
-    addOfGroup(&counters[PEL_COUNT_PIXELS_COVERED], covered, &sums[0]);
-    addOfGroup(&counters[PEL_COUNT_IRRADIANCE_INVALID], invalid, &sums[1]);
+    PEL_ADD_OF_GROUP(&counters[PEL_COUNT_PIXELS_COVERED], covered);
+    PEL_ADD_OF_GROUP(&counters[PEL_COUNT_IRRADIANCE_INVALID], invalid);
 }
 
 typedef struct Step {

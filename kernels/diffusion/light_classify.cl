@@ -176,7 +176,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_SUM_GROUP, 1, 1))) void light_c
     const uint tile = itemOfFolded();
     if (tile >= frame->tilesX * frame->tilesY) return;
 #endif
-    __local uint texelsOfGroup, partsOfGroup;
+    __local uint partsOfGroup;
     const uint tileX = tile % frame->tilesX, tileY = tile / frame->tilesX;
     uint texels = 0;
 #if PEL_HIDDEN
@@ -207,5 +207,5 @@ __kernel __attribute__((reqd_work_group_size(PEL_SUM_GROUP, 1, 1))) void light_c
     if (LANE == 0) {  // not by &&: Clang warns where LANE is a constant
         if (reached) atomic_inc(&counters[PEL_COUNT_LIGHT_TILES]);
     }
-    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_TEXELS], texels, &texelsOfGroup);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_TEXELS], texels);
 }

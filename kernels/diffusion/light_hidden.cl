@@ -104,7 +104,6 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_hidde
             to[6 * stride] = far.x, to[7 * stride] = far.y, to[8 * stride] = far.z;
         }
     }
-    __local uint sumsOfGroup[2];
-    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_PIXELS], pixels, &sumsOfGroup[0]);
-    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_TEXELS], texels, &sumsOfGroup[1]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_PIXELS], pixels);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_TEXELS], texels);
 }

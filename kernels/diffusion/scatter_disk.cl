@@ -73,9 +73,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void sample_disk
             ++pixels;
         }
     }
-    __local uint sumsOfGroup[2];
-    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_TAPPED], pixels, &sumsOfGroup[0]);
-    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taken, &sumsOfGroup[1]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_TAPPED], pixels);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taken);
 }
 #endif
 
@@ -101,7 +100,6 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_dis
                           PEL_FORMAT_OUT, out);
         }
     }
-    __local uint sumsOfGroup[2];
-    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_TAPPED], pixels, &sumsOfGroup[0]);
-    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taken, &sumsOfGroup[1]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_TAPPED], pixels);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taken);
 }

@@ -155,9 +155,8 @@ __kernel PEL_WORK_GROUP(PEL_GROUP) void scatter_bands(
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global const uint* restrict tiles, __global float* restrict sums, __global uint* restrict counters) {
-    __local uint taps;
     const bool summed = storeBand(frame, pyramid, tables, nodes, tiles, sums);
-    addOfGroup(&counters[PEL_COUNT_TAPS], summed ? PEL_BAND_OF_BLOCKS : 0, &taps);
+    PEL_ADD_OF_GROUP(&counters[PEL_COUNT_TAPS], summed ? PEL_BAND_OF_BLOCKS : 0);
 }
 
 #define SUM_SIDE 16

@@ -271,9 +271,8 @@ __kernel PEL_WORK_GROUP(PEL_GROUP) void sample_light(
             vstore4(sample, tile * SAMPLES + sampleInTile(x, y), samples);
         }
     }
-    __local uint sumsOfGroup[2];
-    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_PIXELS], pixels, &sumsOfGroup[0]);
-    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_TEXELS], texels, &sumsOfGroup[1]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_PIXELS], pixels);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_TEXELS], texels);
 }
 #endif
 
@@ -316,7 +315,6 @@ __kernel PEL_WORK_GROUP(PEL_GROUP) void scatter_light(
                        vec3((floatw)(s.x), (floatw)(s.y), (floatw)(s.z)), mine);
         }
     }
-    __local uint sumsOfGroup[2];
-    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_PIXELS], pixels, &sumsOfGroup[0]);
-    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_TEXELS], texels, &sumsOfGroup[1]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_PIXELS], pixels);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_TEXELS], texels);
 }

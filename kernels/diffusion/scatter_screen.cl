@@ -196,7 +196,6 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_scr
             if (near) taps += PEL_BAND * covered;
         }
     }
-    __local uint sumsOfGroup[2];
-    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_TAPPED], pixels, &sumsOfGroup[0]);
-    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taps, &sumsOfGroup[1]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_TAPPED], pixels);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taps);
 }

@@ -128,8 +128,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void filter_rows
             PEL_STORE4(light, rows + 4 * at);
         }
     }
-    __local uint sumsOfGroup[1];
-    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taken, &sumsOfGroup[0]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taken);
 }
 
 #if PEL_HALF
@@ -151,9 +150,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void sample_colu
             ++pixels;
         }
     }
-    __local uint sumsOfGroup[2];
-    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_TAPPED], pixels, &sumsOfGroup[0]);
-    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taken, &sumsOfGroup[1]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_TAPPED], pixels);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taken);
 }
 #endif
 
@@ -181,7 +179,6 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void filter_colu
                           PEL_FORMAT_OUT, out);
         }
     }
-    __local uint sumsOfGroup[2];
-    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_TAPPED], pixels, &sumsOfGroup[0]);
-    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taken, &sumsOfGroup[1]);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_PIXELS_TAPPED], pixels);
+    PEL_ADD_COUNT(&counters[PEL_COUNT_TAPS], taken);
 }

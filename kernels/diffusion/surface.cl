@@ -78,14 +78,13 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void surface_poi
     __global const PelDiffusionFrame* restrict frame, __global uchar* irradiance, __global uchar* position,
     __global uchar* ids, __global uchar* curvature, __global uchar* radii, __global float* pyramid,
     __global uint* restrict counters) {
-    __local uint sums[2];
     const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
     uint covered = 0, invalid = 0;
     if (y < frame->height)
         copyPoints(frame, irradiance, position, ids, curvature, radii, pyramid,
                    itemOfFolded() % across * PEL_WIDTH, y, &covered, &invalid);
-    addOfGroup(&counters[PEL_COUNT_PIXELS_COVERED], covered, &sums[0]);
-    addOfGroup(&counters[PEL_COUNT_IRRADIANCE_INVALID], invalid, &sums[1]);
+    PEL_ADD_OF_GROUP(&counters[PEL_COUNT_PIXELS_COVERED], covered);
+    PEL_ADD_OF_GROUP(&counters[PEL_COUNT_IRRADIANCE_INVALID], invalid);
 }
 
 typedef struct Step {

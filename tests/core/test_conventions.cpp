@@ -90,9 +90,20 @@ class Conventions : public testing::TestWithParam<Case> {};
 TEST_P(Conventions, ALightMeasuresTheDistancesOfItsMap) {
     const Case& c = GetParam();
     PelLight given = pelLightDefaults();
-    given.color[1] = 7;
+    std::memset(&given.type, 0x5A, sizeof given - offsetof(PelLight, type));
     const PelLight light = lightFromViewProjection(matrixOf(c), c.convention, given);
-    EXPECT_EQ(light.color[1], 7);
+    PelLight rest = light;
+    const auto undo = [&](auto PelLight::*field) {
+        std::memcpy(&(rest.*field), &(given.*field), sizeof(rest.*field));
+    };
+    undo(&PelLight::type), undo(&PelLight::worldToShadow), undo(&PelLight::shadowProjection);
+    if (c.perspective) {
+        undo(&PelLight::position), undo(&PelLight::spotDirection);
+        undo(&PelLight::shadowDepthA), undo(&PelLight::shadowDepthB);
+    } else {
+        undo(&PelLight::toLight), undo(&PelLight::shadowDepthRange);
+    }
+    EXPECT_EQ(std::memcmp(&rest, &given, sizeof rest), 0) << "the other fields are left alone";
     double first = NAN;
     for (const Vec3& p : points()) {
         const auto q = times(light.worldToShadow, {p.x, p.y, p.z, 1}), k = clip(c, p);
@@ -105,9 +116,9 @@ TEST_P(Conventions, ALightMeasuresTheDistancesOfItsMap) {
         if (c.perspective) {
             EXPECT_NEAR(1 / (light.shadowDepthA * stored(c, z) + light.shadowDepthB) / along, 1, 2e-4);
         } else {
-            const double rest = light.shadowDepthRange * stored(c, z) - along;
-            if (std::isnan(first)) first = rest;
-            EXPECT_NEAR(rest, first, 1e-4);
+            const double beyond = light.shadowDepthRange * stored(c, z) - along;
+            if (std::isnan(first)) first = beyond;
+            EXPECT_NEAR(beyond, first, 1e-4);
         }
     }
     for (int k = 0; k < 3; ++k) {
