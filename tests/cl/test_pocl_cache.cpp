@@ -160,6 +160,19 @@ TEST_F(PoclCache, DamagedFilesAreCompiledAgain) {
         }
 }
 
+// Of a 32-bit library the table of sections is elsewhere.
+TEST_F(PoclCache, LibrariesOfOtherMachinesAreLeftAlone) {
+    for (const char width : {1, 2}) {
+        const fs::path program = fs::path(path("programs")) / "ab" / std::string(1, 'c' + width);
+        fs::create_directories(program);
+        std::string elf(64, '\x7f');
+        elf.replace(0, 5, {'\x7f', 'E', 'L', 'F', width});
+        std::ofstream(program / "kernel.so", std::ios::binary) << elf;
+    }
+    EXPECT_EQ(pel::cl::removeDamagedPrograms(path("programs")), 1u);
+    EXPECT_TRUE(fs::exists(path("programs") + "/ab/d/kernel.so"));
+}
+
 // A large cache is not walked: who damages a file used its program.
 TEST_F(PoclCache, ProgramsThatNobodyUsesAreNotRead) {
     ASSERT_EQ(table([] {}), 0);

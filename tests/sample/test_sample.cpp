@@ -281,6 +281,19 @@ TEST(SampleDetail, AlbedoVariesAboutItsMean) {
         EXPECT_GT(low, 0);
         EXPECT_LE(high, 1);
     }
+    // Blood takes 0.1, 0.9, 0.8 of the channels' logarithms and pigment 0.3, 0.6, 0.9: they span a plane.
+    double off = 0, pigment = 0, blood = 0;
+    for (size_t i = 0; i < g.albedo.planeSize(); ++i) {
+        if (g.coverage.data[i] == 0) continue;
+        double log[3];
+        for (int c = 0; c < 3; ++c)
+            log[c] = std::log(g.albedo.plane(c)[i] / double(sample::Look().albedo[size_t(c)]));
+        off = std::max(off, std::abs(0.33 * log[0] + 0.15 * log[1] - 0.21 * log[2]));
+        pigment = std::max(pigment, std::abs(8 * log[1] - 9 * log[2])),
+        blood = std::max(blood, std::abs(2 * log[1] - 6 * log[0]));
+    }
+    EXPECT_LT(off, 1e-6);
+    EXPECT_GT(std::min(pigment, blood), 0.1);
 }
 
 TEST(SampleDetail, WhitesOfEyesArePinkAtTheCorners) {
