@@ -107,6 +107,21 @@ TEST_P(DemoHeads, LipsAreRedderGlossierAndSmootherThanCheeks) {
     }
 }
 
+// But for the caruncles, which lie where the eyes' corners are.
+TEST_P(DemoHeads, ZonesAreTheSameOnBothSides) {
+    for (size_t i = 0; i + 2 < head.zones.size(); ++i) {
+        const sample::SkinZone& a = head.zones[i];
+        EXPECT_TRUE(std::ranges::any_of(head.zones,
+                                        [&](const sample::SkinZone& b) {
+                                            const Vec3 mirrored{-b.centre.x, b.centre.y, b.centre.z};
+                                            return length(a.centre - mirrored) < 0.5 &&
+                                                   length(a.radii - b.radii) < 1e-9 && a.color == b.color &&
+                                                   a.specular == b.specular && a.relief == b.relief;
+                                        }))
+            << "zone " << i << " round " << a.centre.x << ", " << a.centre.y;
+    }
+}
+
 // Seen from the front, a pink hillock of skin lies between the lids, on the eye's side next to the nose.
 TEST_P(DemoHeads, EachEyeHasACaruncle) {
     for (size_t i = 0; i < 2; ++i) {
