@@ -24,7 +24,7 @@ struct SkinZone {
 struct EyeLook {
     Vec3 centre;         // mm
     Vec3 gaze{0, 0, 1};  // unit
-    double radius = 12;  // mm
+    double radius{};     // mm
     LinearColor sclera{0.84, 0.79, 0.74};
     LinearColor at(Vec3 p) const;  // the albedo
 };

@@ -1,4 +1,11 @@
 // What the files in folders named `posix` and `windows` do: outputs, inputs, this process, libraries.
+#ifndef _WIN32
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#endif
+
 #include <thread>
 
 #include "io/atomic_file.h"
@@ -32,6 +39,23 @@ TEST_F(System, AConnectionEndsWithTheOtherProcess) {
     EXPECT_FALSE(echo.write(sent.data(), sent.size()));
     host::Child none({path("nothing")});
     EXPECT_FALSE(none.write(sent.data(), sent.size()));
+}
+
+// But for the one that looks.
+TEST_F(System, CountsTheFilesThatMayStillBeOpened) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        constexpr rlimit limit{64, 64};
+        for (int file = 3; file < 4096; ++file) ::close(file);
+        if (::setrlimit(RLIMIT_NOFILE, &limit) != 0) ::_exit(2);
+        const size_t left = host::filesLeft();
+        size_t opened = 0;
+        while (::open("/dev/null", O_RDONLY) >= 0) ++opened;
+        ::_exit(opened == left + 1 ? 0 : 1);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
 }
 #endif
 

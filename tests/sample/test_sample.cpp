@@ -297,7 +297,7 @@ TEST(SampleDetail, AlbedoVariesAboutItsMean) {
 }
 
 TEST(SampleDetail, WhitesOfEyesArePinkAtTheCorners) {
-    const sample::EyeLook eye;
+    const sample::EyeLook eye{.radius = 12};
     const Vec3 corner = eye.radius * normalize(Vec3{0.9, 0, 0.4}),
                above{0, 0.8 * eye.radius, 0.6 * eye.radius};
     EXPECT_LT(eye.at(corner)[1], 0.8 * eye.sclera[1]);

@@ -52,6 +52,21 @@ Frame areaFrame(uint32_t seed, PelLightType type, float size, uint32_t lights = 
     return f;
 }
 
+// Whether pixels below a light at this distance are lit.
+bool litAt(PelLightType type, float distance, float range) {
+    Frame f = areaFrame(1, type, 0.1f);
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        f.slots[PEL_SLOT_POSITION].set(i, {});
+        for (const int slot : {PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_GEOMETRIC})
+            f.slots[slot].set(i, {0, 0, 1});
+    }
+    PelLight& l = f.lights[0].params;
+    copyTo(l.position, {0, 0, distance});
+    copyTo(l.halfWidth, {0.1, 0, 0}), copyTo(l.halfHeight, {0, -0.1, 0});
+    l.range = range;
+    return std::ranges::any_of(shade(f), [](float v) { return v > 0; });
+}
+
 // Relative to the brightest pixel, to the RMS of all, and to their sum.
 struct Errors {
     double worst = 0, rms = 0, sum = 0;
@@ -273,6 +288,13 @@ TEST(AreaLights, OfMethodsOfScattering) {
         EXPECT_LE(largestDifference(shade(f), point), 0.05) << method;
         l.type = PEL_LIGHT_SPHERE, l.radius = 100;
         EXPECT_GE(largestDifference(shade(f), point), 0.01) << method;
+    }
+}
+
+TEST(AreaLights, ReachTheirRange) {
+    for (const PelLightType type : {PEL_LIGHT_POINT, PEL_LIGHT_SPHERE, PEL_LIGHT_RECTANGLE}) {
+        EXPECT_TRUE(litAt(type, 4, 4)) << int(type);
+        EXPECT_FALSE(litAt(type, 4, 3.999f)) << int(type);
     }
 }
 
