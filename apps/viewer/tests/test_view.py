@@ -1,5 +1,6 @@
 """The viewer without its page: OpenGL against geometry, pictures, what is counted."""
 import json
+import time
 import types
 
 import numpy as np
@@ -11,6 +12,7 @@ from view_session import reset  # noqa: E402
 
 from pellucid import Device  # noqa: E402
 from pellucid.view.camera import Orbit, direction  # noqa: E402
+from pellucid.view.history import PAUSE  # noqa: E402
 from pellucid.view.look import EYES, PRESETS, SKIN, Look  # noqa: E402
 from pellucid.view.pictures import TILE_COLORS, chosen_method, tiles  # noqa: E402
 from pellucid.view.server import SLOW_LIGHT, Pace, Viewer  # noqa: E402
@@ -345,6 +347,20 @@ def test_the_mouse_takes_the_object_along():
     state.apply({"kind": "light", "dx": 0.1, "dy": 0.0})
     assert state.undo() and state.redo()
     assert shown.look.lamps[0].azimuth == pytest.approx(azimuth + 24)
+    # One after the other, they come back one by one.
+    for roughness in (0.21, 0.41):
+        time.sleep(PAUSE)
+        shown.look.roughness = roughness
+        state.changed()
+    assert state.undo() and shown.look.roughness == 0.21
+
+
+def test_eyes_look_where_those_of_the_mesh_do(session):
+    reset(session)
+    eyes = session.eyes(session.look)
+    assert len(eyes) == 2
+    for eye, ball in zip(eyes.values(), session.mesh.eyes):
+        assert np.allclose(eye.gaze, ball["gaze"] / np.linalg.norm(ball["gaze"]), atol=1e-6)
 
 
 def test_presets_and_looks():

@@ -171,6 +171,7 @@ def test_skin_by_its_pigments_sets_profile_and_albedo_and_the_page_shows_them(fr
         assert fresh.profile(fresh.look).info.width[0] > dark.width[0]
         selects["profile"].set_value("jade")
         assert fresh.look.profile == "jade"
+        sliders["slider-albedo-0"].set_value(0.1)
         selects["profile"].set_value("pigments")  # as the sliders are
         assert selects["profile"].value == "pigments" and fresh.look.albedo[0] > 0.5
         selects["preset"].set_value("Skin, very dark")
