@@ -176,6 +176,8 @@ TEST(LiveMesh, NamesWhatIsWrong) {
     Pose pose(torus(8, 6));
     const MeshTopology topology(device(), topologyDesc(pose.mesh));
     const LiveMesh live(topology, pelCurvatureParamsDefaults());
+    const std::vector<PelVertexRange> whole{{0, 48}, {48, 0}, {47, 1}};
+    pose.update(live, &whole);
     for (PelVertexRange range :
          {PelVertexRange{48, 1}, PelVertexRange{40, 9}, PelVertexRange{1, UINT32_MAX}}) {
         const std::vector<PelVertexRange> changed{{0, 1}, range};

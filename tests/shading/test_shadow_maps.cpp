@@ -440,6 +440,33 @@ TEST(ShadowForms, MapsMayBeginInsideTheirBuffer) {
     EXPECT_EQ(shadeForms(f, {plain}).thickness, shadeForms(f, {second}, true).thickness);
 }
 
+// Halves of four components are as far apart as pairs of floats, and depths beside other floats, too.
+TEST(ShadowForms, TexelsOfOneSizeHaveTheirOwnFormat) {
+    Frame f = formFrame();
+    f.lights = {mapLight(3, false, false, slanted, {24, 10, 5}, 70, 131).light};
+    const uint32_t size = f.lights[0].mapSize;
+    std::vector<uint16_t> halves;
+    std::vector<float> pairs;
+    for (float& depth : f.lights[0].map.values) {
+        depth = std::ldexp(std::round(std::ldexp(depth, 10)), -10);  // a half
+        pairs.insert(pairs.end(), {depth, NAN});
+        halves.insert(halves.end(), {toHalf(depth), 0x7E00, 0x7E00, 0x7E00});
+    }
+    FrameShader shown = shaderOf(f);
+    const auto picture = [&] {
+        shown.shader.commit().execute();
+        return shown.target.readAll<float>();
+    };
+    const auto dense = picture();
+    const auto with = [&](const auto& values, PelFormat format) {
+        pellucid::OwnedImage image = imageDesc(Buffer(device(), values), format, size, size);
+        shown.shader.set(0, PEL_LIGHT_SHADOW_MAP, image);
+        return picture();
+    };
+    EXPECT_EQ(with(halves, PEL_FORMAT_RGBA16F), dense);
+    EXPECT_EQ(with(pairs, PEL_FORMAT_RG32F), dense);
+}
+
 // Places of NaN, far away or at the light are their own pixel's affair.
 TEST(ShadowForms, BadPlaces) {
     const Light lights[] = {mapLight(3, true, false, slanted, {24, 10, 5}, 70, 61).light,
