@@ -23,6 +23,7 @@ Change changeBy(const Device& device, const Work& work) {
     for (auto field : {&PelDeviceStats::launches, &PelDeviceStats::bytesToDevice,
                        &PelDeviceStats::bytesToHost, &PelDeviceStats::bytesAllocated})
         c.stats.*field -= before.stats.*field;
+    c.stats.kernelMilliseconds -= before.stats.kernelMilliseconds;
     for (auto field : {&spy::Counts::buffersMade, &spy::Counts::bytesCopied, &spy::Counts::transfers,
                        &spy::Counts::launches})
         c.asked.*field -= before.asked.*field;
@@ -99,6 +100,8 @@ TEST_F(Counters, NothingIsCopiedOfAHostsFrame) {
     EXPECT_GT(again.asked.launches, 0u);
     EXPECT_EQ(again.stats.launches, again.asked.launches);
     EXPECT_EQ(again.asked.transfers, 0u);
+    EXPECT_NEAR(again.stats.kernelMilliseconds, shader.stats().deviceMilliseconds, 1e-9);
+    EXPECT_GT(again.stats.kernelMilliseconds, 0);
     EXPECT_EQ(again.asked.buffersMade, 0u);
     EXPECT_EQ(again.stats.bytesToDevice + again.stats.bytesToHost + again.stats.bytesAllocated, 0u);
     EXPECT_EQ(frame[3 * pixels], 0.5f);

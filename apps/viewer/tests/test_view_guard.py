@@ -5,8 +5,16 @@ import socket
 import pytest
 
 pytest.importorskip("nicegui", reason="nicegui is not installed")
-from pellucid.view.__main__ import free_port  # noqa: E402
+from pellucid.view.__main__ import free_port, main  # noqa: E402
 from pellucid.view.guard import Guard, Keys, cookie_values  # noqa: E402
+
+
+@pytest.mark.parametrize("unit", ["0", "-1", "nan"])
+def test_a_unit_has_a_length(unit, monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["pellucid view", "--unit-mm", unit])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 2 and "--unit-mm must be above 0" in capsys.readouterr().err
 
 
 def ask(guard, path="/", query="", cookie=None, kind="http", **headers):
