@@ -405,8 +405,8 @@ TEST(ShadowForms, CubesHoldAllContents) {
             }
             EXPECT_LE(wide, tolerance::contentInCube) << "mean; content " << content << ", radial " << radial;
             if (!moments) continue;
-            // Texels whose distance varies let light through: as much in both kinds, where their 1 / distance along
-            // the face's axis deviates as much.
+            // Where distance varies within texels light comes through: as much in both kinds, where its
+            // inverse along the face's axis deviates as much.
             constexpr double deviation = 0.02;
             for (size_t i = 0; i < cube.map.depth.size(); ++i) {
                 const int size = cube.map.size, at = int(i) % (size * size);
