@@ -1,0 +1,140 @@
+// Frames with fields at random, by every method and form of shadow map, beside kept results: what changes in
+// any of them has to be meant. PELLUCID_KEEP_PICTURES=1 keeps new ones.
+#include "diffusion/lit_ball.h"
+#include "test.h"
+
+using namespace lit_ball;
+
+namespace {
+
+constexpr uint32_t frames = 63;
+constexpr int sums = 24;  // of each frame
+constexpr const char* keptFile = PELLUCID_SOURCE_DIR "/tests/diffusion/kept_results.txt";
+
+class Draw {
+  public:
+    explicit Draw(uint32_t seed) : random_(seed + 1) { random_.discard(20); }
+    uint32_t below(uint32_t n) { return uint32_t(random_() % n); }
+    float in(float low, float high) { return low + (high - low) * float(below(1000)) / 1000; }
+    bool oneOf(uint32_t n) { return below(n) == 0; }
+    Vec3 direction() {
+        return normalized(Vec3{double(in(-1, 1)), double(in(-1, 1)), double(in(-0.4f, 1)) + 0.05});
+    }
+
+  private:
+    std::minstd_rand random_;  // the same numbers everywhere
+};
+
+Profile profileOf(Draw& draw) {
+    switch (draw.below(3)) {
+        case 0:
+            return Profile::skin();
+        case 1:
+            return Profile::burleyDistance({draw.in(0.5f, 2), draw.in(0.2f, 1), draw.in(0.1f, 0.5f)});
+        default:
+            return Profile::gaussians({{draw.in(0.1f, 2), {0.8f, 0.6f, 0.3f}}, {0.05f, {0.2f, 0.4f, 0.7f}}});
+    }
+}
+
+std::vector<float> imageOf(Draw& draw, size_t values, float low, float high) {
+    std::vector<float> image(values);
+    for (size_t i = 0; i < values; ++i) image[i] = draw.in(low, high);
+    return image;
+}
+
+Frame frameOf(uint32_t index) {
+    Draw draw(index);
+    constexpr PelScattering methods[] = {PEL_SCATTERING_AUTO, PEL_SCATTERING_LIGHT, PEL_SCATTERING_SCREEN,
+                                         PEL_SCATTERING_AUTO, PEL_SCATTERING_LIGHT, PEL_SCATTERING_SEPARABLE,
+                                         PEL_SCATTERING_AUTO};
+    std::vector<LitBall> lights{evenBall(forms[index % std::size(forms)], draw.direction(), 48)};
+    if (draw.oneOf(3) && lights[0].components == 1)  // two components are one form's alone
+        lights.push_back(evenBall(forms[draw.below(7)], draw.direction(), 48));
+    Frame f = lit_ball::frameOf(lights, sized(40u, 16u), methods[index % std::size(methods)],
+                                draw.oneOf(4) ? 0 : draw.in(0.2f, 3), profileOf(draw));
+    const size_t pixels = f.picture.pixels();
+    PelMaterial& m = f.material;
+    const PelScattering method = m.scattering;
+    const bool screen = method == PEL_SCATTERING_SCREEN, separable = method == PEL_SCATTERING_SEPARABLE;
+    for (float& albedo : m.albedo) albedo = draw.in(0.2f, 1);
+    m.curvatureGain = draw.oneOf(3) ? draw.in(0, 1) : 1;
+    if ((screen || separable) && draw.oneOf(2)) m.scatterTaps = 8 + draw.below(20);
+    if (draw.oneOf(4)) m.albedoBefore = draw.in(0, 1);
+    if (draw.oneOf(2)) {
+        f.materials = 2;
+        for (size_t i = 0; i < pixels; ++i)
+            if (f.picture.ids[i] && i % 40 + i / 40 > 44) f.picture.ids[i] = 2;
+        for (float& color : m.borderColor)
+            if (m.scatterTaps > 0 || separable) color = draw.oneOf(2) ? draw.in(0, 1) : 0;
+    }
+    f.giveIrradiance = !draw.oneOf(3);
+    for (Lamp& lamp : f.lamps) {
+        for (float& color : lamp.light.color) color *= draw.in(0.3f, 1);
+        if (draw.oneOf(4)) lamp.light.range = draw.in(5, 12);
+        if (draw.oneOf(3)) lamp.light.shadowBias = draw.in(0.02f, 0.2f);
+    }
+    if (draw.oneOf(4))
+        f.images[PEL_SLOT_SCATTER_WEIGHT] = imageOf(draw, pixels, 0, 1);
+    else if (draw.oneOf(4))
+        f.images[PEL_SLOT_SCATTER_WEIGHT] = imageOf(draw, 2 * pixels, 0.3f, 1);
+    if (draw.oneOf(4)) f.images[PEL_SLOT_ALBEDO] = imageOf(draw, 3 * pixels, 0.1f, 1);
+    if (draw.oneOf(4)) f.images[PEL_SLOT_THICKNESS] = imageOf(draw, pixels, 0.2f, 5);
+    if (draw.oneOf(4)) f.images[PEL_SLOT_MEAN_CURVATURE] = imageOf(draw, pixels, -0.1f, 0.6f);
+    if (draw.oneOf(4)) f.images[PEL_SLOT_INDIRECT] = imageOf(draw, 3 * pixels, 0, 0.3f);
+    if (draw.oneOf(4)) {
+        m.thinThickness = draw.in(0.1f, 1);
+        if (f.giveIrradiance) f.images[PEL_SLOT_IRRADIANCE_BACK] = imageOf(draw, 3 * pixels, 0, 1);
+    }
+    PelShaderOptions& o = f.options;
+    o.targetError = draw.oneOf(6) ? o.targetError : draw.oneOf(10) ? 0.02f : 0;
+    o.frameIndex = draw.below(8);
+    o.rotateTaps = draw.oneOf(3);
+    o.halfRate = draw.oneOf(4);
+    o.everyPixel = draw.oneOf(5);
+    if (draw.oneOf(5)) o.regionX = 4, o.regionY = 3, o.regionWidth = 27, o.regionHeight = 30;
+    return f;
+}
+
+// Sums of a sixth of the values each, of either sign, as large as one value's: one that changed shows, and
+// many that changed a little.
+std::vector<double> sumsOf(const std::vector<float>& values) {
+    Draw draw(99);
+    std::vector<double> all(sums);
+    const double scale = std::sqrt(6.0 / double(values.size()));
+    for (double& sum : all)
+        for (float value : values)
+            if (draw.oneOf(6)) sum += (draw.oneOf(2) ? scale : -scale) * double(value);
+    return all;
+}
+
+}  // namespace
+
+TEST(KeptResults, OfFramesWithFieldsAtRandom) {
+    if (testsAreSmall()) GTEST_SKIP() << "for whole pictures";
+    const char* keep = std::getenv("PELLUCID_KEEP_PICTURES");
+    std::ofstream made;
+    if (keep) made.open(keptFile);
+    std::ifstream kept(keptFile);
+    double most = 0;
+    for (uint32_t index = 0; index < frames; ++index) {
+        const Frame f = frameOf(index);
+        const Shown shown = f.shade();
+        double off = 0;
+        for (double sum : sumsOf(shown.light)) {
+            char number[32];
+            std::snprintf(number, sizeof number, "%.8g ", sum);
+            if (keep) made << number;
+            double known = 0;
+            ASSERT_TRUE(keep || kept >> known) << keptFile;
+            if (!keep) off = std::max(off, std::abs(sum - known));
+        }
+        if (keep) made << "\n";
+        // Other widths leave other tiles alone.
+        const double allowed =
+            tolerance::keptResults + tolerance::scatterLeftOut * double(f.options.targetError);
+        EXPECT_LT(off, allowed) << "frame " << index << ", method " << int(f.material.scattering) << "; "
+                                << shown.warnings;
+        most = std::max(most, off / allowed);
+    }
+    std::printf("largest difference of a sum: %.2f of what is allowed\n", most);
+}
