@@ -125,7 +125,8 @@ void closeMouth(io::PartedMesh& head, double lipLine, double eyeDistance) {
     const double e = eyeDistance;
     const double z = foremost(head.mesh, 0, lipLine, 0.08 * e).z - 0.25 * e;
     const auto place = [&](double x, double width, double height, double depth) {
-        return sample::SkinZone{{x * e, lipLine, z}, Vec3{width, height, depth} * e, {1, 1, 1}, 0.6};
+        return sample::SkinZone{
+            .centre = {x * e, lipLine, z}, .radii = Vec3{width, height, depth} * e, .edge = 0.6};
     };
     // The corners gape most.
     const sample::SkinZone parts[] = {place(0, 0.45, 0.09, 0.4), place(0.35, 0.13, 0.09, 0.25),

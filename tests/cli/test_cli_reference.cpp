@@ -225,6 +225,11 @@ TEST_F(CliReference, WrongUseIsRefused) {
     refused("compare @a.npy @a.npy --gbuffer @g.exr", 2, "go together");
     refused("compare @a.npy @a.npy --gbuffer @g.exr --scene @s.toml", 3,
             "the pictures are 2 wide and 2 high");
+    for (const bool asWide : {false, true}) {  // one of two sides is the G-buffer's
+        const size_t side = gbuffer_.width, high = asWide ? 2 : side, wide = asWide ? side : 2;
+        npy("c.npy", {high, wide, 3}, std::vector<float>(3 * high * wide));
+        refused("compare @c.npy @c.npy --gbuffer @g.exr --scene @s.toml", 3, "the pictures are");
+    }
     refused("compare @a.npy @a.npy --picture @d.jpg", 2, "d.jpg");
 }
 

@@ -1,6 +1,6 @@
-// Frames with fields at random, by every method and form of shadow map, beside kept results: what changes in
-// any of them has to be meant. PELLUCID_KEEP_PICTURES=1 keeps new ones.
+// Frames with fields at random, by every method and form of shadow map, beside kept results.
 #include "diffusion/lit_ball.h"
+#include "kept_sums.h"
 #include "test.h"
 
 using namespace lit_ball;
@@ -8,22 +8,10 @@ using namespace lit_ball;
 namespace {
 
 constexpr uint32_t frames = 63;
-constexpr int sums = 24;  // of each frame
-constexpr const char* keptFile = PELLUCID_SOURCE_DIR "/tests/diffusion/kept_results.txt";
 
-class Draw {
-  public:
-    explicit Draw(uint32_t seed) : random_(seed + 1) { random_.discard(20); }
-    uint32_t below(uint32_t n) { return uint32_t(random_() % n); }
-    float in(float low, float high) { return low + (high - low) * float(below(1000)) / 1000; }
-    bool oneOf(uint32_t n) { return below(n) == 0; }
-    Vec3 direction() {
-        return normalized(Vec3{double(in(-1, 1)), double(in(-1, 1)), double(in(-0.4f, 1)) + 0.05});
-    }
-
-  private:
-    std::minstd_rand random_;  // the same numbers everywhere
-};
+Vec3 directionOf(Draw& draw) {
+    return normalized(Vec3{double(draw.in(-1, 1)), double(draw.in(-1, 1)), double(draw.in(-0.4f, 1)) + 0.05});
+}
 
 Profile profileOf(Draw& draw) {
     switch (draw.below(3)) {
@@ -47,9 +35,9 @@ Frame frameOf(uint32_t index) {
     constexpr PelScattering methods[] = {PEL_SCATTERING_AUTO, PEL_SCATTERING_LIGHT, PEL_SCATTERING_SCREEN,
                                          PEL_SCATTERING_AUTO, PEL_SCATTERING_LIGHT, PEL_SCATTERING_SEPARABLE,
                                          PEL_SCATTERING_AUTO};
-    std::vector<LitBall> lights{evenBall(forms[index % std::size(forms)], draw.direction(), 48)};
+    std::vector<LitBall> lights{evenBall(forms[index % std::size(forms)], directionOf(draw), 48)};
     if (draw.oneOf(3) && lights[0].components == 1)  // two components are one form's alone
-        lights.push_back(evenBall(forms[draw.below(7)], draw.direction(), 48));
+        lights.push_back(evenBall(forms[draw.below(7)], directionOf(draw), 48));
     Frame f = lit_ball::frameOf(lights, sized(40u, 16u), methods[index % std::size(methods)],
                                 draw.oneOf(4) ? 0 : draw.in(0.2f, 3), profileOf(draw));
     const size_t pixels = f.picture.pixels();
@@ -95,46 +83,18 @@ Frame frameOf(uint32_t index) {
     return f;
 }
 
-// Sums of a sixth of the values each, of either sign, as large as one value's: one that changed shows, and
-// many that changed a little.
-std::vector<double> sumsOf(const std::vector<float>& values) {
-    Draw draw(99);
-    std::vector<double> all(sums);
-    const double scale = std::sqrt(6.0 / double(values.size()));
-    for (double& sum : all)
-        for (float value : values)
-            if (draw.oneOf(6)) sum += (draw.oneOf(2) ? scale : -scale) * double(value);
-    return all;
-}
-
 }  // namespace
 
 TEST(KeptResults, OfFramesWithFieldsAtRandom) {
     if (testsAreSmall()) GTEST_SKIP() << "for whole pictures";
-    const char* keep = std::getenv("PELLUCID_KEEP_PICTURES");
-    std::ofstream made;
-    if (keep) made.open(keptFile);
-    std::ifstream kept(keptFile);
-    double most = 0;
+    KeptSums kept("frames.txt");
     for (uint32_t index = 0; index < frames; ++index) {
         const Frame f = frameOf(index);
         const Shown shown = f.shade();
-        double off = 0;
-        for (double sum : sumsOf(shown.light)) {
-            char number[32];
-            std::snprintf(number, sizeof number, "%.8g ", sum);
-            if (keep) made << number;
-            double known = 0;
-            ASSERT_TRUE(keep || kept >> known) << keptFile;
-            if (!keep) off = std::max(off, std::abs(sum - known));
-        }
-        if (keep) made << "\n";
         // Other widths leave other tiles alone.
-        const double allowed =
-            tolerance::keptResults + tolerance::scatterLeftOut * double(f.options.targetError);
-        EXPECT_LT(off, allowed) << "frame " << index << ", method " << int(f.material.scattering) << "; "
-                                << shown.warnings;
-        most = std::max(most, off / allowed);
+        kept.expect(shown.light,
+                    tolerance::keptResults + tolerance::scatterLeftOut * double(f.options.targetError),
+                    "frame " + std::to_string(index) + ", method " + std::to_string(f.material.scattering) +
+                        "; " + shown.warnings);
     }
-    std::printf("largest difference of a sum: %.2f of what is allowed\n", most);
 }

@@ -1,5 +1,6 @@
 // The whole picture of an eye against the tracer in double precision.
 #include "eye/eye_picture.h"
+#include "kept_sums.h"
 #include "test.h"
 
 using namespace pellucid;
@@ -203,4 +204,37 @@ TEST(EyePicture, SkippingChangesNothing) {
     EXPECT_GT(stats.pixelsCaustic, 0u);
     scene.skipping = false;
     EXPECT_EQ(EyePicture(scene).shade(), skipped);
+}
+
+// Fields at random, beside kept pictures.
+TEST(EyePicture, EyesWithFieldsAtRandomAreTheKeptOnes) {
+    if (testsAreSmall()) GTEST_SKIP() << "for whole pictures";
+    KeptSums kept("eyes.txt");
+    for (uint32_t index = 0; index < 12; ++index) {
+        Draw draw(index);
+        EyeScene scene;
+        scene.size = 48;
+        PelEye& eye = scene.eye;
+        eye.corneaRadius = draw.in(7.5f, 9), eye.corneaConic = draw.in(-0.8f, 0);
+        eye.scleraRadius = draw.in(11, 13), eye.limbusRadius = draw.in(5, 6);
+        eye.limbusWidth = draw.in(0, 2), eye.limbusDarkening = draw.in(0, 1);
+        eye.corneaIndex = draw.in(1.2f, 1.5f), eye.aqueousIndex = draw.in(1.2f, 1.45f);
+        eye.chamberDepth = draw.in(3.1f, 4), eye.irisConcavity = draw.in(0, 0.8f);
+        eye.pupilRadius = draw.in(0, 3.5f), eye.texturePupil = draw.in(0, 0.6f);
+        eye.tearRoughness = draw.in(0.02f, 0.3f), eye.tearIndex = draw.in(1, 1.5f);
+        eye.irisSeed = draw.below(9);
+        for (float& color : eye.irisColor) color = draw.oneOf(2) ? draw.in(0, 1) : 1;
+        if (draw.oneOf(2)) scene.makeTexture(24);
+        for (uint32_t light = 0; light <= draw.below(3); ++light)
+            scene.addLight({draw.in(-1, 1), draw.in(-1, 1), draw.in(0.1f, 1)},
+                           {draw.in(0, 2), draw.in(0, 2), draw.in(0, 2)});
+        for (float& color : scene.ambient.constant) color = draw.in(0, 0.5f);
+        const auto image = [&](std::vector<float>& values, size_t components) {
+            for (size_t i = 0; i < components * 48 * 48; ++i) values.push_back(draw.in(0, 1));
+        };
+        if (draw.oneOf(3)) image(scene.wetness, 1);
+        if (draw.oneOf(3)) image(scene.shadow, 1);
+        if (draw.oneOf(3)) image(scene.indirect, 3);
+        kept.expect(EyePicture(scene).shade(), tolerance::keptResults, "eye " + std::to_string(index));
+    }
 }

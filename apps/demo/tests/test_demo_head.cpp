@@ -1,6 +1,7 @@
 // The demo's heads: what is made of the meshes that come with the project, and how hair is drawn.
 #include "demo/demo_hair.h"
 #include "demo/dress_gbuffer.h"
+#include "kept_sums.h"
 #include "sample/scene.h"
 #include "test.h"
 
@@ -105,6 +106,49 @@ TEST_P(DemoHeads, LipsAreRedderGlossierAndSmootherThanCheeks) {
         EXPECT_EQ(weightAt(0, meeting + 12 * side), 0);
         EXPECT_EQ(weightAt(0.66 * length(left - right) * side, left.y - 40), 0);
     }
+}
+
+// Every length, colour and place.
+TEST_P(DemoHeads, AreTheKeptOnes) {
+    KeptSums kept(std::string(GetParam()) + ".txt");
+    const auto expect = [&](const auto& values, double size, const char* what) {
+        kept.expect(values, tolerance::keptHead * size, what);
+    };
+    std::vector<double> zones, eyes, strands;
+    const auto add = [](std::vector<double>& to, Vec3 v) { to.insert(to.end(), {v.x, v.y, v.z}); };
+    for (const sample::SkinZone& z : head.zones) {
+        add(zones, z.centre), add(zones, z.radii);
+        zones.insert(zones.end(), z.color.begin(), z.color.end());
+        zones.insert(zones.end(), {z.edge, z.specular, z.roughness, z.relief, z.furrows});
+    }
+    for (const sample::EyeLook& e : head.eyes) {
+        add(eyes, e.centre), add(eyes, e.gaze);
+        eyes.insert(eyes.end(), e.sclera.begin(), e.sclera.end());
+        eyes.push_back(e.radius);
+    }
+    for (const io::SceneEye& e : head.eyeModels) {
+        const PelEye& eye = e.eye;
+        for (const auto* three : {eye.center, eye.gaze, eye.up, eye.irisColor})
+            eyes.insert(eyes.end(), three, three + 3);
+        eyes.insert(eyes.end(), {eye.scleraRadius, eye.limbusRadius, eye.limbusWidth, eye.chamberDepth,
+                                 eye.irisRadius, eye.pupilRadius, double(eye.irisSeed), eye.tearRoughness});
+    }
+    for (const Strand& s : head.strands) {
+        for (const Vec3 point : s.points) add(strands, point);
+        add(strands, s.normal);
+        strands.push_back(100 * s.radius);
+    }
+    expect(head.mesh.positions, 100, "positions");
+    expect(head.mesh.normals, 1, "normals");
+    expect(head.cornerUvs, 1, "corners in the texture");
+    expect(head.materials, 1, "materials");
+    expect(zones, 1, "zones");
+    expect(eyes, 1, "eyes");
+    expect(strands, 1, "strands");
+    const sample::Vec3 frame[] = {head.frame.low, head.frame.high, head.pose.up, head.pose.front};
+    std::vector<double> bounds;
+    for (const Vec3 v : frame) add(bounds, v);
+    expect(bounds, 100, "the frame and the pose");
 }
 
 // But for the caruncles, which lie where the eyes' corners are.

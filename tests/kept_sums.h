@@ -1,0 +1,59 @@
+// Results beside kept ones: what changes in any of them has to be meant. PELLUCID_KEEP_PICTURES=1 keeps new
+// ones, in tests/kept.
+#pragma once
+#include <gtest/gtest.h>
+
+#include "tools.h"
+
+class Draw {  // the same numbers everywhere
+  public:
+    explicit Draw(uint32_t seed) : random_(seed + 1) { random_.discard(20); }
+    uint32_t below(uint32_t n) { return uint32_t(random_() % n); }
+    float in(float low, float high) { return low + (high - low) * float(below(1000)) / 1000; }
+    bool oneOf(uint32_t n) { return below(n) == 0; }
+
+  private:
+    std::minstd_rand random_;
+};
+
+class KeptSums {
+  public:
+    explicit KeptSums(const std::string& name) : name_(PELLUCID_SOURCE_DIR "/tests/kept/" + name) {
+        if (std::getenv("PELLUCID_KEEP_PICTURES"))
+            made_.open(name_);
+        else
+            kept_.open(name_);
+    }
+    ~KeptSums() { std::printf("largest difference of a sum: %.2f of what is allowed\n", most_); }
+
+    // Each of 24 sums takes a sixth of the values, of either sign, over the root of their number: one that
+    // changed shows, and many that changed a little. `within`: the largest difference of a sum.
+    template <class Values>
+    void expect(const Values& values, double within, const std::string& what) {
+        Draw draw(99);
+        const double scale = std::sqrt(6.0 / double(std::max<size_t>(values.size(), 6)));
+        double off = 0;
+        for (int k = 0; k < 24; ++k) {
+            double sum = 0, known = 0;
+            for (const auto value : values)
+                if (draw.oneOf(6)) sum += (draw.oneOf(2) ? scale : -scale) * double(value);
+            char number[32];
+            std::snprintf(number, sizeof number, "%.8g ", sum);
+            if (made_.is_open())
+                made_ << number;
+            else if (kept_ >> known)
+                off = std::max(off, std::abs(sum - known));
+            else
+                off = within * 99;
+        }
+        if (made_.is_open()) made_ << "\n";
+        EXPECT_LT(off, within) << what << ", in " << name_;
+        most_ = std::max(most_, off / within);
+    }
+
+  private:
+    std::string name_;
+    std::ofstream made_;
+    std::ifstream kept_;
+    double most_ = 0;
+};
