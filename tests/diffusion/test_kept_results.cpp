@@ -7,7 +7,7 @@ using namespace lit_ball;
 
 namespace {
 
-constexpr uint32_t frames = 63;
+constexpr uint32_t frames = 64;
 
 Vec3 directionOf(Draw& draw) {
     return normalized(Vec3{double(draw.in(-1, 1)), double(draw.in(-1, 1)), double(draw.in(-0.4f, 1)) + 0.05});
@@ -59,12 +59,16 @@ Frame frameOf(uint32_t index) {
     for (Lamp& lamp : f.lamps) {
         for (float& color : lamp.light.color) color *= draw.in(0.3f, 1);
         if (draw.oneOf(4)) lamp.light.range = draw.in(5, 12);
+        if (lamp.light.type == PEL_LIGHT_POINT && draw.oneOf(2))
+            lamp.light.type = PEL_LIGHT_SPHERE, lamp.light.radius = draw.in(0.3f, 3);
         if (draw.oneOf(3)) lamp.light.shadowBias = draw.in(0.02f, 0.2f);
     }
     if (draw.oneOf(4))
         f.images[PEL_SLOT_SCATTER_WEIGHT] = imageOf(draw, pixels, 0, 1);
     else if (draw.oneOf(4))
         f.images[PEL_SLOT_SCATTER_WEIGHT] = imageOf(draw, 2 * pixels, 0.3f, 1);
+    if (draw.oneOf(4) || method == PEL_SCATTERING_PREINTEGRATED)
+        f.images[PEL_SLOT_CURVATURE] = imageOf(draw, pixels, 0, 0.6f);
     if (draw.oneOf(4)) f.images[PEL_SLOT_ALBEDO] = imageOf(draw, 3 * pixels, 0.1f, 1);
     if (draw.oneOf(4)) f.images[PEL_SLOT_THICKNESS] = imageOf(draw, pixels, 0.2f, 5);
     if (draw.oneOf(4)) f.images[PEL_SLOT_MEAN_CURVATURE] = imageOf(draw, pixels, -0.1f, 0.6f);
