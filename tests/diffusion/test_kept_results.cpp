@@ -24,6 +24,33 @@ Profile profileOf(Draw& draw) {
     }
 }
 
+// Something before a part of what each map shows: 3 mm, or a third of the way from the light.
+void addOccluder(LitBall& ball, Form form, Draw& draw) {
+    const PelLight& l = ball.light;
+    const auto nearer = [&](float z) {
+        switch (form) {
+            case Form::perspective:
+            case Form::spot:
+            case Form::cube:
+                return (1.5f * (l.shadowDepthA * z + l.shadowDepthB) - l.shadowDepthB) / l.shadowDepthA;
+            case Form::radial:
+                return z / 1.5f;
+            case Form::exponential:
+                return z * std::exp(-0.15f * l.shadowExponent);
+            default:
+                return l.shadowDepthRange < 0 ? z + 0.15f : z - 0.15f;
+        }
+    };
+    const uint32_t left = draw.below(ball.width / 2), wide = ball.width / 4, period = 24 + draw.below(9);
+    for (std::vector<float>& map : ball.maps)
+        for (size_t i = 0; i < map.size(); i += ball.components) {
+            const size_t texel = i / ball.components, x = texel % ball.width, y = texel / ball.width;
+            if (x < left || x >= left + wide || y % period > period / 2) continue;
+            map[i] = nearer(map[i]);
+            if (ball.components == 2) map[i + 1] = map[i] * map[i];
+        }
+}
+
 std::vector<float> imageOf(Draw& draw, size_t values, float low, float high) {
     std::vector<float> image(values);
     for (size_t i = 0; i < values; ++i) image[i] = draw.in(low, high);
@@ -35,9 +62,14 @@ Frame frameOf(uint32_t index) {
     constexpr PelScattering methods[] = {PEL_SCATTERING_AUTO, PEL_SCATTERING_LIGHT, PEL_SCATTERING_SCREEN,
                                          PEL_SCATTERING_AUTO, PEL_SCATTERING_LIGHT, PEL_SCATTERING_SEPARABLE,
                                          PEL_SCATTERING_AUTO};
-    std::vector<LitBall> lights{evenBall(forms[index % std::size(forms)], directionOf(draw), 48)};
-    if (draw.oneOf(3) && lights[0].components == 1)  // two components are one form's alone
-        lights.push_back(evenBall(forms[draw.below(7)], directionOf(draw), 48));
+    std::vector<LitBall> lights;
+    const auto addLight = [&](Form form) {
+        lights.push_back(evenBall(form, directionOf(draw), 48));
+        if (!draw.oneOf(4)) addOccluder(lights.back(), form, draw);
+    };
+    addLight(forms[index % std::size(forms)]);
+    // What the maps of all lights hold has to be the same.
+    if (draw.oneOf(3) && index % std::size(forms) < 7) addLight(forms[draw.below(7)]);
     Frame f = lit_ball::frameOf(lights, sized(40u, 16u), methods[index % std::size(methods)],
                                 draw.oneOf(4) ? 0 : draw.in(0.2f, 3), profileOf(draw));
     const size_t pixels = f.picture.pixels();
@@ -55,11 +87,11 @@ Frame frameOf(uint32_t index) {
         for (float& color : m.borderColor)
             if (m.scatterTaps > 0 || separable) color = draw.oneOf(2) ? draw.in(0, 1) : 0;
     }
-    f.giveIrradiance = !draw.oneOf(3);
+    f.giveIrradiance = draw.oneOf(3);
     for (Lamp& lamp : f.lamps) {
         for (float& color : lamp.light.color) color *= draw.in(0.3f, 1);
         if (draw.oneOf(4)) lamp.light.range = draw.in(5, 12);
-        if (lamp.light.type == PEL_LIGHT_POINT && draw.oneOf(2))
+        if (lamp.light.type == PEL_LIGHT_POINT && !draw.oneOf(3))
             lamp.light.type = PEL_LIGHT_SPHERE, lamp.light.radius = draw.in(0.3f, 3);
         if (draw.oneOf(3)) lamp.light.shadowBias = draw.in(0.02f, 0.2f);
     }
