@@ -239,9 +239,10 @@ constexpr double tapsOfLargeError = 0.85;
 // of white, sums of many pixels' differences over the root of their number: at most 1.6e-6 between 1, 8 and
 // 16 lanes, whose order of additions differs
 constexpr double keptResults = 1e-5;
-constexpr double keptHead = 1e-5;      // the same of lengths, mm; a hundred times for places in float32
-constexpr double scatterLanes = 2e-6;  // of white, one lane beside sixteen: order of additions
-constexpr double scatterSeam = 1.6;    // the same, over the borders of tiles that took different ways
+constexpr double keptCurvature = 1e-5;  // of the same, 1/length, of meshes of a few units
+constexpr double keptHead = 1e-5;       // the same of lengths, mm; a hundred times for places in float32
+constexpr double scatterLanes = 2e-6;   // of white, one lane beside sixteen: order of additions
+constexpr double scatterSeam = 1.6;     // the same, over the borders of tiles that took different ways
 // of targetError: how much more a tile steps that begins to count; 0.03 measured
 constexpr double scatterFade = 0.1;
 // of white, in a dark gap: 0.006 in one pixel that few blocks round it are the same surface as

@@ -1,5 +1,6 @@
 // Texels of curvature and shadow tables against the oracle's adaptive quadrature: every form, kind of
 // profile, axis, size and range; and what holds for every table.
+#include "kept_sums.h"
 #include "lut_cases.h"
 
 using namespace pellucid;
@@ -343,5 +344,36 @@ TEST(LutProperties, WeightsAndVariancesAtTheEdgesOfFloat) {
                         tolerance::lutTexelGaussians)
                 << int(form);
         }
+    }
+}
+
+// Descriptions at random.
+TEST(LutKept, TexelsAreTheKeptOnes) {
+    const Device device("");
+    KeptSums kept("tables.txt");
+    for (uint32_t index = 0; index < 40; ++index) {
+        Draw draw(index);
+        const auto d = [&] { return draw.in(0.1f, 1.5f); };
+        const Profile gaussians = Profile::gaussians({{d(), {0.8f, 0.6f, 0.3f}}, {d(), {0.2f, 0.4f, 0.7f}}}),
+                      profile = index % 3 == 0   ? Profile::burleyDistance({d(), d(), d()})
+                                : index % 3 == 1 ? gaussians
+                                                 : Profile::named(draw.oneOf(2) ? "marble" : "skin");
+        const uint32_t width = 1 + draw.below(40), height = 1 + draw.below(12);
+        const double least = double(draw.in(0.1f, 1)), most = least * double(draw.in(2, 300));
+        PelCurvatureLutDesc curvature =
+            curvatureTable(profile, forms[draw.below(5)].first, width, height, least, most);
+        PelShadowLutDesc shadow = fixture::shadowTable(profile, width, height, least, most, draw.in(1, 12));
+        curvature.axis = shadow.axis = draw.oneOf(2) ? PEL_AXIS_ROOT : PEL_AXIS_LINEAR;
+        curvature.diffusionRadius = shadow.diffusionRadius = draw.oneOf(3) ? draw.in(0.5f, 5) : 0;
+        if (curvature.diffusionRadius > 0) {
+            const float scale = curvature.diffusionRadius / profile.info().radius;
+            for (float* length :
+                 {&curvature.radiusMin, &curvature.radiusMax, &shadow.widthMin, &shadow.widthMax})
+                *length *= scale;
+        }
+        shadow.closedEnds = draw.oneOf(3);
+        const std::string name = "table " + std::to_string(index);
+        kept.expect(Lut(device, curvature).read<float>(PEL_LUT_FLOAT), tolerance::keptResults, name);
+        kept.expect(Lut(device, shadow).read<float>(PEL_LUT_FLOAT), tolerance::keptResults, name);
     }
 }

@@ -1,5 +1,6 @@
 // What holds for any mesh: units and places, views, quantities of each other, welding. Broken meshes give a
 // clear error, or finite values and a count: never a crash, never a NaN that spreads.
+#include "kept_sums.h"
 #include "mesh_fixture.h"
 #include "reference_meshes.h"
 
@@ -420,5 +421,36 @@ TEST(MeshFuzz, EveryEstimatorStaysFiniteOnBrokenData) {
         const std::vector<float> values =
             curvature(mesh, desc, params, params.quantity == PEL_QUANTITY_FRAME ? 8 : 1).values;
         for (float value : values) ASSERT_TRUE(std::isfinite(value)) << "seed " << seed;
+    }
+}
+
+// Smooth meshes that were shaken, with parameters at random.
+TEST(MeshKept, CurvatureIsTheKeptOne) {
+    KeptSums kept("curvature.txt");
+    constexpr PelCurvatureQuantity quantities[] = {
+        PEL_QUANTITY_ABSOLUTE, PEL_QUANTITY_ABSOLUTE_MAX, PEL_QUANTITY_CURVEDNESS, PEL_QUANTITY_MEAN,
+        PEL_QUANTITY_GAUSSIAN, PEL_QUANTITY_FIRST,        PEL_QUANTITY_SECOND};
+    for (uint32_t index = 0; index < 24; ++index) {
+        Draw draw(index);
+        Mesh mesh = index % 2 ? torus(20, 12) : latLongSphere(14, 24, 2);
+        if (draw.oneOf(3)) mesh.append(grid(9, 7), 5);
+        if (draw.oneOf(4)) mesh = soupOf(mesh);
+        const float shake = draw.in(0, 0.05f);
+        for (float& p : mesh.positions) p += draw.in(-shake, shake);
+        const PelCurvatureEstimator estimator = allEstimators[index % 3];
+        PelCurvatureParams params =
+            paramsOf(estimator, draw.below(4),
+                     estimator == PEL_CURVATURE_EDGE ? PEL_QUANTITY_ABSOLUTE : quantities[draw.below(7)]);
+        params.scale = draw.in(0.5f, 2);
+        if (draw.oneOf(2)) {
+            params.smoothingRadius = draw.in(0.1f, 1);
+            params.smoothingCrease = draw.oneOf(2) ? draw.in(0.3f, 2) : 0;
+            params.smoothingStages = draw.oneOf(2) ? 6 + draw.below(9) : 0;
+            params.smoothingWeights = PelSmoothingWeights(draw.below(2));
+        }
+        const pellucid::MeshTopology topology(
+            device(), draw.oneOf(3) ? weldedDesc(mesh, draw.in(0.001f, 0.2f)) : topologyDesc(mesh));
+        kept.expect(OnDevice(mesh).curvature(topology, params, draw.oneOf(3)), tolerance::keptCurvature,
+                    "mesh " + std::to_string(index));
     }
 }
