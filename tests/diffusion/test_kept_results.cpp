@@ -51,17 +51,17 @@ void addOccluder(LitBall& ball, Form form, Draw& draw) {
         }
 }
 
-std::vector<float> imageOf(Draw& draw, size_t values, float low, float high) {
-    std::vector<float> image(values);
-    for (size_t i = 0; i < values; ++i) image[i] = draw.in(low, high);
-    return image;
+std::vector<float> valuesOf(Draw& draw, size_t count, float low, float high) {
+    std::vector<float> values(count);
+    for (float& value : values) value = draw.in(low, high);
+    return values;
 }
 
 Frame frameOf(uint32_t index) {
     Draw draw(index);
-    constexpr PelScattering methods[] = {PEL_SCATTERING_AUTO, PEL_SCATTERING_LIGHT, PEL_SCATTERING_SCREEN,
-                                         PEL_SCATTERING_AUTO, PEL_SCATTERING_LIGHT, PEL_SCATTERING_SEPARABLE,
-                                         PEL_SCATTERING_AUTO};
+    constexpr PelScattering methods[] = {
+        PEL_SCATTERING_AUTO,  PEL_SCATTERING_LIGHT,     PEL_SCATTERING_SCREEN, PEL_SCATTERING_AUTO,
+        PEL_SCATTERING_LIGHT, PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_AUTO,   PEL_SCATTERING_PREINTEGRATED};
     std::vector<LitBall> lights;
     const auto addLight = [&](Form form) {
         lights.push_back(evenBall(form, directionOf(draw), 48));
@@ -96,18 +96,18 @@ Frame frameOf(uint32_t index) {
         if (draw.oneOf(3)) lamp.light.shadowBias = draw.in(0.02f, 0.2f);
     }
     if (draw.oneOf(4))
-        f.images[PEL_SLOT_SCATTER_WEIGHT] = imageOf(draw, pixels, 0, 1);
+        f.images[PEL_SLOT_SCATTER_WEIGHT] = valuesOf(draw, pixels, 0, 1);
     else if (draw.oneOf(4))
-        f.images[PEL_SLOT_SCATTER_WEIGHT] = imageOf(draw, 2 * pixels, 0.3f, 1);
+        f.images[PEL_SLOT_SCATTER_WEIGHT] = valuesOf(draw, 2 * pixels, 0.3f, 1);
     if (draw.oneOf(4) || method == PEL_SCATTERING_PREINTEGRATED)
-        f.images[PEL_SLOT_CURVATURE] = imageOf(draw, pixels, 0, 0.6f);
-    if (draw.oneOf(4)) f.images[PEL_SLOT_ALBEDO] = imageOf(draw, 3 * pixels, 0.1f, 1);
-    if (draw.oneOf(4)) f.images[PEL_SLOT_THICKNESS] = imageOf(draw, pixels, 0.2f, 5);
-    if (draw.oneOf(4)) f.images[PEL_SLOT_MEAN_CURVATURE] = imageOf(draw, pixels, -0.1f, 0.6f);
-    if (draw.oneOf(4)) f.images[PEL_SLOT_INDIRECT] = imageOf(draw, 3 * pixels, 0, 0.3f);
-    if (draw.oneOf(4)) {
+        f.images[PEL_SLOT_CURVATURE] = valuesOf(draw, pixels, 0, 0.6f);
+    if (draw.oneOf(4)) f.images[PEL_SLOT_ALBEDO] = valuesOf(draw, 3 * pixels, 0.1f, 1);
+    if (draw.oneOf(4)) f.images[PEL_SLOT_THICKNESS] = valuesOf(draw, pixels, 0.2f, 5);
+    if (draw.oneOf(4)) f.images[PEL_SLOT_MEAN_CURVATURE] = valuesOf(draw, pixels, -0.1f, 0.6f);
+    if (draw.oneOf(4)) f.images[PEL_SLOT_INDIRECT] = valuesOf(draw, 3 * pixels, 0, 0.3f);
+    if (draw.oneOf(4) && method != PEL_SCATTERING_PREINTEGRATED) {
         m.thinThickness = draw.in(0.1f, 1);
-        if (f.giveIrradiance) f.images[PEL_SLOT_IRRADIANCE_BACK] = imageOf(draw, 3 * pixels, 0, 1);
+        if (f.giveIrradiance) f.images[PEL_SLOT_IRRADIANCE_BACK] = valuesOf(draw, 3 * pixels, 0, 1);
     }
     PelShaderOptions& o = f.options;
     o.targetError = draw.oneOf(6) ? o.targetError : draw.oneOf(10) ? 0.02f : 0;
