@@ -38,7 +38,7 @@ class KeptSums {
             for (const auto value : values)
                 if (draw.oneOf(6)) sum += (draw.oneOf(2) ? scale : -scale) * double(value);
             char number[32];
-            std::snprintf(number, sizeof number, "%.8g ", sum);
+            std::snprintf(number, sizeof number, "%.10g ", sum);
             if (made_.is_open())
                 made_ << number;
             else if (kept_ >> known)

@@ -133,7 +133,7 @@ TEST_P(DemoHeads, AreTheKeptOnes) {
         eyes.insert(eyes.end(), {eye.scleraRadius, eye.limbusRadius, eye.limbusWidth, eye.chamberDepth,
                                  eye.irisRadius, eye.pupilRadius, double(eye.irisSeed), eye.tearRoughness});
     }
-    for (const Strand& s : head.strands) {
+    for (const Strand& s : demo::strandsOf(scene, head)) {
         for (const Vec3 point : s.points) add(strands, point);
         add(strands, s.normal);
         strands.push_back(100 * s.radius);
@@ -144,7 +144,7 @@ TEST_P(DemoHeads, AreTheKeptOnes) {
     expect(head.materials, 1, "materials");
     expect(zones, 1, "zones");
     expect(eyes, 1, "eyes");
-    expect(strands, 1, "strands");
+    expect(strands, 10, "strands");  // which begin where rays hit
     const sample::Vec3 frame[] = {head.frame.low, head.frame.high, head.pose.up, head.pose.front};
     std::vector<double> bounds;
     for (const Vec3 v : frame) add(bounds, v);
