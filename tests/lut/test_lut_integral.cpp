@@ -350,14 +350,11 @@ TEST(LutProperties, WeightsAndVariancesAtTheEdgesOfFloat) {
 // Descriptions at random.
 TEST(LutKept, TexelsAreTheKeptOnes) {
     const Device device("");
+    const std::vector<ProfileCase> profiles = fixture::profiles();
     KeptSums kept("tables.txt");
     for (uint32_t index = 0; index < 40; ++index) {
         Draw draw(index);
-        const auto d = [&] { return draw.in(0.1f, 1.5f); };
-        const Profile gaussians = Profile::gaussians({{d(), {0.8f, 0.6f, 0.3f}}, {d(), {0.2f, 0.4f, 0.7f}}}),
-                      profile = index % 3 == 0   ? Profile::burleyDistance({d(), d(), d()})
-                                : index % 3 == 1 ? gaussians
-                                                 : Profile::named(draw.oneOf(2) ? "marble" : "skin");
+        const Profile& profile = profiles[index % profiles.size()].ours;
         const uint32_t width = 1 + draw.below(40), height = 1 + draw.below(12);
         const double least = double(draw.in(0.1f, 1)), most = least * double(draw.in(2, 300));
         PelCurvatureLutDesc curvature =
