@@ -24,7 +24,6 @@ static inline __global const PelBlendMaterial* materialAt(__global const PelBlen
 static inline Vec3w albedoPower(__global const PelBlendFrame* frame,
                                 __global const PelBlendMaterial* material, __global uchar* albedo, uint x,
                                 uint y, float power) {
-    if (power == 0.0f) return vec3(1.0f, 1.0f, 1.0f);
     Vec3w a = vec3(material->albedo[0], material->albedo[1], material->albedo[2]);
 #if PEL_FORMAT_ALBEDO
     a = loadColor(PEL_FORMAT_ALBEDO, imageSpan(albedo, &frame->albedo, x, y));

@@ -207,22 +207,25 @@ TEST(LightSpace, TexelsBeyondReachDoNotCount) {
 // dark, which would mark nothing.
 TEST(LightSpace, TexelsOfOtherObjectsDoNotCount) {
     constexpr uint32_t side = 32;
-    const auto lightBeside = [](uint8_t other) {
-        Frame f = frameOf({makeBall(Form::parallel, {0, 0, 1}, 128)}, side, byLight, 0.4f);
-        f.options.targetError = 0;
-        f.materials = 2;
-        for (size_t i = 0; i < f.picture.pixels(); ++i)
-            if (i % side >= side / 2 && f.picture.ids[i]) f.picture.ids[i] = other;
-        std::vector<float> light = f.shade().light;
-        for (size_t i = 0; i < light.size(); ++i)
-            if (i / 3 % side >= side / 2) light[i] = 0;
-        return light;
-    };
-    const auto beside = lightBeside(2), nothing = lightBeside(9), same = lightBeside(1);
-    const Picture p = pictureOf(makeBall(Form::parallel, {0, 0, 1}, 16), side);
-    std::printf("beside another object: %.4f, beside the same: %.4f\n", difference(p, beside, nothing).most,
-                difference(p, same, nothing).most);
-    EXPECT_LT(difference(p, beside, nothing).most, 0.01 * difference(p, same, nothing).most);
+    // Single texels of a narrow profile, clusters of texels of a wide one.
+    for (const float width : {0.4f, 2.7f}) {
+        const auto lightBeside = [width](uint8_t other) {
+            Frame f = frameOf({makeBall(Form::parallel, {0, 0, 1}, 128)}, side, byLight, width);
+            f.options.targetError = 0;
+            f.materials = 2;
+            for (size_t i = 0; i < f.picture.pixels(); ++i)
+                if (i % side >= side / 2 && f.picture.ids[i]) f.picture.ids[i] = other;
+            std::vector<float> light = f.shade().light;
+            for (size_t i = 0; i < light.size(); ++i)
+                if (i / 3 % side >= side / 2) light[i] = 0;
+            return light;
+        };
+        const auto beside = lightBeside(2), nothing = lightBeside(9), same = lightBeside(1);
+        const Picture p = pictureOf(makeBall(Form::parallel, {0, 0, 1}, 16), side);
+        std::printf("beside another object: %.4f, beside the same: %.4f\n",
+                    difference(p, beside, nothing).most, difference(p, same, nothing).most);
+        EXPECT_LT(difference(p, beside, nothing).most, 0.01 * difference(p, same, nothing).most);
+    }
 }
 
 // Light adds up: what two lights scatter is what each of them scatters alone.

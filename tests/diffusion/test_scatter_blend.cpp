@@ -68,6 +68,25 @@ TEST(ScatterBlend, AlbedoBeforeAndAfterAndWeights) {
     }
 }
 
+TEST(ScatterBlend, EachMaterialHasItsOwnShareOfAlbedo) {
+    const Picture p = stripes(true);
+    Extra extra;
+    for (size_t i = 0; i < 3 * p.pixels(); ++i) extra.albedo.push_back(0.25f + 0.5f * float(i / 30 % 2));
+    for (PelScattering method : {separable, screen}) {
+        const auto lightOf = [&](float one, float two) {
+            std::vector<Material> materials{{1, Profile::skin(), 1, controlsOf(method, 0)},
+                                            {2, Profile::skin(), 1, controlsOf(method, 0)}};
+            materials[0].controls.albedoBefore = one, materials[1].controls.albedoBefore = two;
+            return run(p, materials, extra).scattered;
+        };
+        for (const float share : {0.0f, 1.0f}) {
+            const auto one = lightOf(share, share), two = lightOf(0.5f, 0.5f);
+            expectNear(lightOf(share, 0.5f), 1e-6,
+                       [&](size_t i) { return (p.ids[i / 3] == 1 ? one : two)[i]; });
+        }
+    }
+}
+
 // A leaf with the light behind it: what a slab of its thickness lets through, however it scatters then.
 TEST(ScatterBlend, ThinSheetsLetLightThrough) {
     const double thickness = 0.4;

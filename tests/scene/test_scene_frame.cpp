@@ -179,6 +179,21 @@ TEST_F(SceneFrames, PreparedReadsAndMakesNothingTwice) {
     EXPECT_EQ(device.stats().programsBuilt, before.programsBuilt);
 }
 
+TEST_F(SceneFrames, PreparedLeavesProgramsToTheBackground) {
+    const Device device("");
+    io::SceneFile s = scene();
+    s.eyes.clear();  // whose table is made at once
+    io::LutStore luts(device);
+    PelShaderOptions options = pelShaderOptionsDefaults();
+    const uint32_t before = device.stats().programsBuilt;
+    options.buildInBackground = 1;
+    io::prepareFrame(device, s, luts, options);
+    EXPECT_EQ(device.stats().programsBuilt, before);
+    options.buildInBackground = 0;
+    io::prepareFrame(device, s, luts, options);
+    EXPECT_GT(device.stats().programsBuilt, before);
+}
+
 // After a move of lights, camera and eyes: the launches of a steady frame, and no new buffer. Pictures of
 // what is taken away and put back are those of a new frame.
 TEST_F(SceneFrames, UpdateSetsWhatChanged) {
