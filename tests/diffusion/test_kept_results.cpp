@@ -123,7 +123,7 @@ Frame frameOf(uint32_t index) {
 
 TEST(KeptResults, OfFramesWithFieldsAtRandom) {
     if (testsAreSmall()) GTEST_SKIP() << "for whole pictures";
-    KeptSums kept("frames.txt");
+    KeptSums kept("frames.dat");
     for (uint32_t index = 0; index < frames; ++index) {
         const Frame f = frameOf(index);
         const Shown shown = f.shade();

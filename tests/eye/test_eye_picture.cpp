@@ -209,7 +209,7 @@ TEST(EyePicture, SkippingChangesNothing) {
 // Fields at random, beside kept pictures.
 TEST(EyePicture, EyesWithFieldsAtRandomAreTheKeptOnes) {
     if (testsAreSmall()) GTEST_SKIP() << "for whole pictures";
-    KeptSums kept("eyes.txt");
+    KeptSums kept("eyes.dat");
     for (uint32_t index = 0; index < 12; ++index) {
         Draw draw(index);
         EyeScene scene;

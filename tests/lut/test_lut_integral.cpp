@@ -351,7 +351,7 @@ TEST(LutProperties, WeightsAndVariancesAtTheEdgesOfFloat) {
 TEST(LutKept, TexelsAreTheKeptOnes) {
     const Device device("");
     const std::vector<ProfileCase> profiles = fixture::profiles();
-    KeptSums kept("tables.txt");
+    KeptSums kept("tables.dat");
     for (uint32_t index = 0; index < 40; ++index) {
         Draw draw(index);
         const Profile& profile = profiles[index % profiles.size()].ours;

@@ -426,7 +426,7 @@ TEST(MeshFuzz, EveryEstimatorStaysFiniteOnBrokenData) {
 
 // Smooth meshes that were shaken, with parameters at random.
 TEST(MeshKept, CurvatureIsTheKeptOne) {
-    KeptSums kept("curvature.txt");
+    KeptSums kept("curvature.dat");
     constexpr PelCurvatureQuantity quantities[] = {
         PEL_QUANTITY_ABSOLUTE, PEL_QUANTITY_ABSOLUTE_MAX, PEL_QUANTITY_CURVEDNESS, PEL_QUANTITY_MEAN,
         PEL_QUANTITY_GAUSSIAN, PEL_QUANTITY_FIRST,        PEL_QUANTITY_SECOND};

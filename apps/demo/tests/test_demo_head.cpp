@@ -110,7 +110,7 @@ TEST_P(DemoHeads, LipsAreRedderGlossierAndSmootherThanCheeks) {
 
 // Every length, colour and place.
 TEST_P(DemoHeads, AreTheKeptOnes) {
-    KeptSums kept(std::string(GetParam()) + ".txt");
+    KeptSums kept(std::string(GetParam()) + ".dat");
     const auto expect = [&](const auto& values, double size, const char* what) {
         kept.expect(values, tolerance::keptHead * size, what);
     };
