@@ -7,7 +7,7 @@ using namespace lit_ball;
 
 namespace {
 
-constexpr uint32_t frames = 64;
+constexpr uint32_t frames = 64, side = 40;
 
 Vec3 directionOf(Draw& draw) {
     return normalized(Vec3{double(draw.in(-1, 1)), double(draw.in(-1, 1)), double(draw.in(-0.4f, 1)) + 0.05});
@@ -51,12 +51,6 @@ void addOccluder(LitBall& ball, Form form, Draw& draw) {
         }
 }
 
-std::vector<float> valuesOf(Draw& draw, size_t count, float low, float high) {
-    std::vector<float> values(count);
-    for (float& value : values) value = draw.in(low, high);
-    return values;
-}
-
 Frame frameOf(uint32_t index) {
     Draw draw(index);
     constexpr PelScattering methods[] = {
@@ -70,7 +64,7 @@ Frame frameOf(uint32_t index) {
     addLight(forms[index % std::size(forms)]);
     // What the maps of all lights hold has to be the same.
     if (draw.oneOf(3) && index % std::size(forms) < 7) addLight(forms[draw.below(7)]);
-    Frame f = lit_ball::frameOf(lights, sized(40u, 16u), methods[index % std::size(methods)],
+    Frame f = lit_ball::frameOf(lights, side, methods[index % std::size(methods)],
                                 draw.oneOf(4) ? 0 : draw.in(0.2f, 3), profileOf(draw));
     const size_t pixels = f.picture.pixels();
     PelMaterial& m = f.material;
@@ -83,7 +77,7 @@ Frame frameOf(uint32_t index) {
     if (draw.oneOf(2)) {
         f.materials = 2;
         for (size_t i = 0; i < pixels; ++i)
-            if (f.picture.ids[i] && i % 40 + i / 40 > 44) f.picture.ids[i] = 2;
+            if (f.picture.ids[i] && i % side + i / side > 44) f.picture.ids[i] = 2;
         for (float& color : m.borderColor)
             if (m.scatterTaps > 0 || separable) color = draw.oneOf(2) ? draw.in(0, 1) : 0;
     }
@@ -96,18 +90,18 @@ Frame frameOf(uint32_t index) {
         if (draw.oneOf(3)) lamp.light.shadowBias = draw.in(0.02f, 0.2f);
     }
     if (draw.oneOf(4))
-        f.images[PEL_SLOT_SCATTER_WEIGHT] = valuesOf(draw, pixels, 0, 1);
+        f.images[PEL_SLOT_SCATTER_WEIGHT] = draw.values(pixels, 0, 1);
     else if (draw.oneOf(4))
-        f.images[PEL_SLOT_SCATTER_WEIGHT] = valuesOf(draw, 2 * pixels, 0.3f, 1);
+        f.images[PEL_SLOT_SCATTER_WEIGHT] = draw.values(2 * pixels, 0.3f, 1);
     if (draw.oneOf(4) || method == PEL_SCATTERING_PREINTEGRATED)
-        f.images[PEL_SLOT_CURVATURE] = valuesOf(draw, pixels, 0, 0.6f);
-    if (draw.oneOf(4)) f.images[PEL_SLOT_ALBEDO] = valuesOf(draw, 3 * pixels, 0.1f, 1);
-    if (draw.oneOf(4)) f.images[PEL_SLOT_THICKNESS] = valuesOf(draw, pixels, 0.2f, 5);
-    if (draw.oneOf(4)) f.images[PEL_SLOT_MEAN_CURVATURE] = valuesOf(draw, pixels, -0.1f, 0.6f);
-    if (draw.oneOf(4)) f.images[PEL_SLOT_INDIRECT] = valuesOf(draw, 3 * pixels, 0, 0.3f);
+        f.images[PEL_SLOT_CURVATURE] = draw.values(pixels, 0, 0.6f);
+    if (draw.oneOf(4)) f.images[PEL_SLOT_ALBEDO] = draw.values(3 * pixels, 0.1f, 1);
+    if (draw.oneOf(4)) f.images[PEL_SLOT_THICKNESS] = draw.values(pixels, 0.2f, 5);
+    if (draw.oneOf(4)) f.images[PEL_SLOT_MEAN_CURVATURE] = draw.values(pixels, -0.1f, 0.6f);
+    if (draw.oneOf(4)) f.images[PEL_SLOT_INDIRECT] = draw.values(3 * pixels, 0, 0.3f);
     if (draw.oneOf(4) && method != PEL_SCATTERING_PREINTEGRATED) {
         m.thinThickness = draw.in(0.1f, 1);
-        if (f.giveIrradiance) f.images[PEL_SLOT_IRRADIANCE_BACK] = valuesOf(draw, 3 * pixels, 0, 1);
+        if (f.giveIrradiance) f.images[PEL_SLOT_IRRADIANCE_BACK] = draw.values(3 * pixels, 0, 1);
     }
     PelShaderOptions& o = f.options;
     o.targetError = draw.oneOf(6) ? o.targetError : draw.oneOf(10) ? 0.02f : 0;

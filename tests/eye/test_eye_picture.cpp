@@ -229,12 +229,9 @@ TEST(EyePicture, EyesWithFieldsAtRandomAreTheKeptOnes) {
             scene.addLight({draw.in(-1, 1), draw.in(-1, 1), draw.in(0.1f, 1)},
                            {draw.in(0, 2), draw.in(0, 2), draw.in(0, 2)});
         for (float& color : scene.ambient.constant) color = draw.in(0, 0.5f);
-        const auto image = [&](std::vector<float>& values, size_t components) {
-            for (size_t i = 0; i < components * 48 * 48; ++i) values.push_back(draw.in(0, 1));
-        };
-        if (draw.oneOf(3)) image(scene.wetness, 1);
-        if (draw.oneOf(3)) image(scene.shadow, 1);
-        if (draw.oneOf(3)) image(scene.indirect, 3);
+        if (draw.oneOf(3)) scene.wetness = draw.values(48 * 48, 0, 1);
+        if (draw.oneOf(3)) scene.shadow = draw.values(48 * 48, 0, 1);
+        if (draw.oneOf(3)) scene.indirect = draw.values(3 * 48 * 48, 0, 1);
         kept.expect(EyePicture(scene).shade(), tolerance::keptResults, "eye " + std::to_string(index));
     }
 }
