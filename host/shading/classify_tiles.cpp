@@ -1,9 +1,23 @@
 // Lists of the tiles with a material, and of the tiles of each variant of the shading kernel.
-#include "shading/shade_variants.h"
+#include <bit>
+
+#include "core/launch_policy.h"
+#include "shading/features.h"
+#include "shading/launch_ranges.h"
+#include "shading/pass.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
 namespace {
+
+// Tiles that a work-item classifies on a device of several lanes. On others a work-group classifies one tile.
+uint32_t classifyRun(const Device& device) {
+    // Long runs keep their order, which prefetchers follow; a few for each unit keep all units busy.
+    return std::bit_floor(std::clamp(4096 / std::max(device.info().computeUnits, 1u), 64u, 2048u));
+}
+uint32_t classifyGroup(const Device& device) {
+    return uint32_t(launchPolicy(device).group);
+}
 
 constexpr size_t countBytes = PEL_TILE_LISTS * sizeof(cl_uint),
                  countsAt = PEL_TILE_COUNT(0) * sizeof(cl_uint);
@@ -24,7 +38,14 @@ class ClassifyTiles final : public Pass {
     }
 
     std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
-        return {shadeKey(device, plan.state, plan.variants[0])};
+        // A program of its own, since all shaders with ids of this format share it.
+        const ShaderState& state = plan.state;
+        return {
+            {{"shading/classify_tiles.cl"},
+             {{"PEL_FORMAT_MATERIAL", formatCode(state.images[PEL_SLOT_MATERIAL], device.info().mathWidth)},
+              {"PEL_FEATURES", state.options.disableSkipping ? PEL_BIT_NO_SKIPPING : 0},
+              {"PEL_CLASSIFY_GROUP", classifyGroup(device)},
+              {"PEL_CLASSIFY_RUN", classifyRun(device)}}}};
     }
 
     void enqueueFrame(PassWork&) override { cleared_ = true; }
@@ -65,7 +86,9 @@ class ClassifyTiles final : public Pass {
         cl::Launch launch(program(), "classify_tiles", work.constants.frameMemory(),
                           work.constants.materials(), plan.state.images[PEL_SLOT_MATERIAL].buffer->memory(),
                           lists_->memory(), cl_uint(plan.variants.size()), cl_uint(listAll));
-        work.launch(launch, classifyRange(work.device, work.tiles()));
+        const size_t group = classifyGroup(work.device), run = classifyRun(work.device), tiles = work.tiles();
+        const size_t items = work.device.info().mathWidth == 1 ? tiles * group : (tiles + run - 1) / run;
+        work.launch(launch, {{items, 1, 1}, {group, 1, 1}});
     }
 
     // The next band starts counting again.

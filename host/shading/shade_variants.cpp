@@ -3,7 +3,6 @@
 #include <bit>
 #include <set>
 
-#include "core/launch_policy.h"
 #include "shading/features.h"
 #include "shading/image_slots.h"
 #include "shading/launch_ranges.h"
@@ -12,15 +11,6 @@
 
 namespace pel {
 namespace {
-
-// Tiles that a work-item classifies on a device of several lanes. On others a work-group classifies one tile.
-uint32_t classifyRun(const Device& device) {
-    // Long runs keep their order, which prefetchers follow; a few for each unit keep all units busy.
-    return std::bit_floor(std::clamp(4096 / std::max(device.info().computeUnits, 1u), 64u, 2048u));
-}
-uint32_t classifyGroup(const Device& device) {
-    return uint32_t(launchPolicy(device).group);
-}
 
 // Slots that no feature reads are left out: fewer variants, and unused inputs cannot matter.
 bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
@@ -73,21 +63,11 @@ cl::Defines sceneDefines(const Device& device, const ShaderState& state, uint32_
 cl::ProgramKey shadeKey(const Device& device, const ShaderState& state, uint32_t features) {
     cl::ProgramKey key{{"shading/shade.cl"}, sceneDefines(device, state, features & PEL_BITS_OF_KERNEL)};
     key.defines["PEL_SHADE_GROUP"] = tileGroup(device);
-    key.defines["PEL_CLASSIFY_GROUP"] = classifyGroup(device);
-    key.defines["PEL_CLASSIFY_RUN"] = classifyRun(device);
-    // One program, because a driver's cost per program is what a first frame waits for.
-    if (state.images[PEL_SLOT_MATERIAL]) key.files.push_back("shading/classify_tiles.cl");
     if (usesCells(state, features)) {
         key.files.push_back("shading/tap_cells.cl");
         key.defines["PEL_CELLS_RUN"] = cellsRun(device);
     }
     return key;
-}
-
-cl::Range classifyRange(const Device& device, size_t tiles) {
-    const size_t group = classifyGroup(device), run = classifyRun(device);
-    const size_t items = device.info().mathWidth == 1 ? tiles * group : (tiles + run - 1) / run;
-    return {{items, 1, 1}, {group, 1, 1}};
 }
 
 std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t features) {

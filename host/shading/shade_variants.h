@@ -9,11 +9,8 @@ std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t feature
 // The defines of kernels with a Scene (shading/scene.clh): features, and the formats of the images that these
 // features read.
 cl::Defines sceneDefines(const Device& device, const ShaderState& state, uint32_t features);
-// The program of a variant and its classification. Shaders with equal meaning have equal keys.
+// The program of a variant. Shaders with equal meaning have equal keys.
 cl::ProgramKey shadeKey(const Device& device, const ShaderState& state, uint32_t features);
-
-// Work-items of the classification of tiles.
-cl::Range classifyRange(const Device& device, size_t tiles);
 
 // The first arguments of kernels with a Scene: SCENE_ARGUMENTS of shading/scene.clh.
 void sceneArguments(cl::Launch& launch, const PassWork& work);

@@ -70,7 +70,7 @@ TEST(WarmUp, ACommitAndAnExecutionFindEverythingBuilt) {
     const PelWarmUp work = workOf(shaders);
     uint32_t built = 0;
     pellucid::check(pelWarmUpPrograms(own.get(), &work, &built));
-    EXPECT_EQ(built, 4u) << "two variants, blur, wide shadow";
+    EXPECT_EQ(built, 5u) << "two variants, classification, blur, wide shadow";
     EXPECT_EQ(built, buildsSince(before));
     ASSERT_GE(telling.fractions.size(), 2u);
     EXPECT_EQ(telling.fractions.front(), 0);

@@ -7,7 +7,7 @@ using namespace lit_ball;
 
 namespace {
 
-constexpr uint32_t frames = 64, side = 40;
+constexpr uint32_t structures = 12, copies = 5, side = 40;
 
 Vec3 directionOf(Draw& draw) {
     return normalized(Vec3{double(draw.in(-1, 1)), double(draw.in(-1, 1)), double(draw.in(-0.4f, 1)) + 0.05});
@@ -51,65 +51,67 @@ void addOccluder(LitBall& ball, Form form, Draw& draw) {
         }
 }
 
-Frame frameOf(uint32_t index) {
-    Draw draw(index);
+// Frames of one structure share their programs, which take most of the time.
+Frame frameOf(uint32_t structure, uint32_t copy) {
+    // Choices by `draw` may need another program; what `value` gives does not.
+    Draw draw(structure), value(structure + structures * copy + 1);
     constexpr PelScattering methods[] = {
         PEL_SCATTERING_AUTO,  PEL_SCATTERING_LIGHT,     PEL_SCATTERING_SCREEN, PEL_SCATTERING_AUTO,
         PEL_SCATTERING_LIGHT, PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_AUTO,   PEL_SCATTERING_PREINTEGRATED};
     std::vector<LitBall> lights;
     const auto addLight = [&](Form form) {
-        lights.push_back(evenBall(form, directionOf(draw), 48));
-        if (!draw.oneOf(4)) addOccluder(lights.back(), form, draw);
+        lights.push_back(evenBall(form, directionOf(value), 48));
+        if (!draw.oneOf(4)) addOccluder(lights.back(), form, value);
     };
-    addLight(forms[index % std::size(forms)]);
+    addLight(forms[structure % std::size(forms)]);
     // What the maps of all lights hold has to be the same.
-    if (draw.oneOf(3) && index % std::size(forms) < 7) addLight(forms[draw.below(7)]);
-    Frame f = lit_ball::frameOf(lights, side, methods[index % std::size(methods)],
-                                draw.oneOf(4) ? 0 : draw.in(0.2f, 3), profileOf(draw));
+    if (draw.oneOf(3) && structure % std::size(forms) < 7) addLight(forms[draw.below(7)]);
+    Frame f = lit_ball::frameOf(lights, side, methods[structure % std::size(methods)],
+                                draw.oneOf(4) ? 0 : value.in(0.2f, 3), profileOf(value));
     const size_t pixels = f.picture.pixels();
     PelMaterial& m = f.material;
     const PelScattering method = m.scattering;
     const bool screen = method == PEL_SCATTERING_SCREEN, separable = method == PEL_SCATTERING_SEPARABLE;
-    for (float& albedo : m.albedo) albedo = draw.in(0.2f, 1);
-    m.curvatureGain = draw.oneOf(3) ? draw.in(0, 1) : 1;
-    if ((screen || separable) && draw.oneOf(2)) m.scatterTaps = 8 + draw.below(20);
-    if (draw.oneOf(4)) m.albedoBefore = draw.in(0, 1);
+    for (float& albedo : m.albedo) albedo = value.in(0.2f, 1);
+    m.curvatureGain = value.oneOf(3) ? value.in(0, 1) : 1;
+    if ((screen || separable) && draw.oneOf(2)) m.scatterTaps = 8 + value.below(20);
+    if (draw.oneOf(4)) m.albedoBefore = value.in(0, 1);
     if (draw.oneOf(2)) {
         f.materials = 2;
         for (size_t i = 0; i < pixels; ++i)
             if (f.picture.ids[i] && i % side + i / side > 44) f.picture.ids[i] = 2;
         for (float& color : m.borderColor)
-            if (m.scatterTaps > 0 || separable) color = draw.oneOf(2) ? draw.in(0, 1) : 0;
+            if (m.scatterTaps > 0 || separable) color = value.oneOf(2) ? value.in(0, 1) : 0;
     }
     f.giveIrradiance = draw.oneOf(3);
     for (Lamp& lamp : f.lamps) {
-        for (float& color : lamp.light.color) color *= draw.in(0.3f, 1);
-        if (draw.oneOf(4)) lamp.light.range = draw.in(5, 12);
+        for (float& color : lamp.light.color) color *= value.in(0.3f, 1);
+        if (value.oneOf(4)) lamp.light.range = value.in(5, 12);
         if (lamp.light.type == PEL_LIGHT_POINT && !draw.oneOf(3))
-            lamp.light.type = PEL_LIGHT_SPHERE, lamp.light.radius = draw.in(0.3f, 3);
-        if (draw.oneOf(3)) lamp.light.shadowBias = draw.in(0.02f, 0.2f);
+            lamp.light.type = PEL_LIGHT_SPHERE, lamp.light.radius = value.in(0.3f, 3);
+        if (value.oneOf(3)) lamp.light.shadowBias = value.in(0.02f, 0.2f);
     }
     if (draw.oneOf(4))
-        f.images[PEL_SLOT_SCATTER_WEIGHT] = draw.values(pixels, 0, 1);
+        f.images[PEL_SLOT_SCATTER_WEIGHT] = value.values(pixels, 0, 1);
     else if (draw.oneOf(4))
-        f.images[PEL_SLOT_SCATTER_WEIGHT] = draw.values(2 * pixels, 0.3f, 1);
+        f.images[PEL_SLOT_SCATTER_WEIGHT] = value.values(2 * pixels, 0.3f, 1);
     if (draw.oneOf(4) || method == PEL_SCATTERING_PREINTEGRATED)
-        f.images[PEL_SLOT_CURVATURE] = draw.values(pixels, 0, 0.6f);
-    if (draw.oneOf(4)) f.images[PEL_SLOT_ALBEDO] = draw.values(3 * pixels, 0.1f, 1);
-    if (draw.oneOf(4)) f.images[PEL_SLOT_THICKNESS] = draw.values(pixels, 0.2f, 5);
-    if (draw.oneOf(4)) f.images[PEL_SLOT_MEAN_CURVATURE] = draw.values(pixels, -0.1f, 0.6f);
-    if (draw.oneOf(4)) f.images[PEL_SLOT_INDIRECT] = draw.values(3 * pixels, 0, 0.3f);
+        f.images[PEL_SLOT_CURVATURE] = value.values(pixels, 0, 0.6f);
+    if (draw.oneOf(4)) f.images[PEL_SLOT_ALBEDO] = value.values(3 * pixels, 0.1f, 1);
+    if (draw.oneOf(4)) f.images[PEL_SLOT_THICKNESS] = value.values(pixels, 0.2f, 5);
+    if (draw.oneOf(4)) f.images[PEL_SLOT_MEAN_CURVATURE] = value.values(pixels, -0.1f, 0.6f);
+    if (draw.oneOf(4)) f.images[PEL_SLOT_INDIRECT] = value.values(3 * pixels, 0, 0.3f);
     if (draw.oneOf(4) && method != PEL_SCATTERING_PREINTEGRATED) {
-        m.thinThickness = draw.in(0.1f, 1);
-        if (f.giveIrradiance) f.images[PEL_SLOT_IRRADIANCE_BACK] = draw.values(3 * pixels, 0, 1);
+        m.thinThickness = value.in(0.1f, 1);
+        if (f.giveIrradiance) f.images[PEL_SLOT_IRRADIANCE_BACK] = value.values(3 * pixels, 0, 1);
     }
     PelShaderOptions& o = f.options;
-    o.targetError = draw.oneOf(6) ? o.targetError : draw.oneOf(10) ? 0.02f : 0;
-    o.frameIndex = draw.below(8);
+    o.targetError = value.oneOf(6) ? o.targetError : value.oneOf(10) ? 0.02f : 0;
+    o.frameIndex = value.below(8);
     o.rotateTaps = draw.oneOf(3);
     o.halfRate = draw.oneOf(4);
     o.everyPixel = draw.oneOf(5);
-    if (draw.oneOf(5)) o.regionX = 4, o.regionY = 3, o.regionWidth = 27, o.regionHeight = 30;
+    if (value.oneOf(5)) o.regionX = 4, o.regionY = 3, o.regionWidth = 27, o.regionHeight = 30;
     return f;
 }
 
@@ -118,8 +120,8 @@ Frame frameOf(uint32_t index) {
 TEST(KeptResults, OfFramesWithFieldsAtRandom) {
     if (testsAreSmall()) GTEST_SKIP() << "for whole pictures";
     KeptSums kept("frames.dat");
-    for (uint32_t index = 0; index < frames; ++index) {
-        const Frame f = frameOf(index);
+    for (uint32_t index = 0; index < structures * copies; ++index) {
+        const Frame f = frameOf(index % structures, index / structures);
         const Shown shown = f.shade();
         // Other widths leave other tiles alone.
         kept.expect(shown.light,

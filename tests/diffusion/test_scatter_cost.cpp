@@ -201,7 +201,7 @@ TEST(ScatterCost, ScatteringOnTheScreenMakesNoTables) {
     const uint64_t before = tables();
     statsOf(fresh, PEL_SCATTERING_AUTO);
     EXPECT_EQ(tables(), before);
-    EXPECT_EQ(fresh.stats().programsBuilt, 5u) << "irradiance, three that scatter, shading";
+    EXPECT_EQ(fresh.stats().programsBuilt, 6u) << "irradiance, three that scatter, classification, shading";
     statsOf(fresh, PEL_SCATTERING_PREINTEGRATED);
     EXPECT_EQ(tables(), before + 3);
 }
