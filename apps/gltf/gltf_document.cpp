@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 namespace pellucid::io {
 
@@ -38,10 +37,7 @@ double GltfValue::anyNumber() const {
 double GltfValue::number(double low, double high) const {
     const double value = anyNumber();
     if (value >= low && value <= high) return value;
-    std::ostringstream text;
-    text.imbue(std::locale::classic());
-    text << "is " << value << "; " << low << " to " << high << " is possible";
-    fail(text.str());
+    fail(concat("is ", value, "; ", low, " to ", high, " is possible"));
 }
 
 uint64_t GltfValue::whole(uint64_t most) const {

@@ -1,5 +1,8 @@
 // Devices, buffers, errors, events: what every other object stands on.
 #include <CL/cl.h>
+
+#include <cstring>
+
 #include "variable.h"
 
 using namespace pellucid;
@@ -25,14 +28,18 @@ TEST(Device, UnknownSelectorListsWhatThereIs) {
 TEST(Device, EnvironmentSelects) {
     const Variable device("PELLUCID_DEVICE"), width("PELLUCID_MATH_WIDTH");
     device.set("no such device");
-    EXPECT_THROW(Device(std::string()), Error);
+    EXPECT_THROW(Device(""), Error);
     EXPECT_NO_THROW(Device("0")) << "a selector goes before the environment";
     device.set("0");
-    EXPECT_EQ(Device(std::string()).info().index, 0u);
+    EXPECT_EQ(Device("").info().index, 0u);
     width.set("1");
-    EXPECT_EQ(Device(std::string()).info().mathWidth, 1u);
+    const PelDeviceInfo oneLane = Device("").info();
+    EXPECT_EQ(oneLane.mathWidth, 1u);
+    EXPECT_FALSE(std::strstr(oneLane.quirks, "-wide arithmetic")) << oneLane.quirks;
+    width.set("8");
+    EXPECT_TRUE(std::strstr(Device("").info().quirks, "explicit 8-wide arithmetic"));
     width.set("7");
-    expectRefused("PELLUCID_MATH_WIDTH", [] { Device((std::string())); });
+    expectRefused("PELLUCID_MATH_WIDTH", [] { Device(""); });
 }
 
 TEST(Device, CallersContextAndQueue) {

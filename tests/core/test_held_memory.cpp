@@ -31,7 +31,7 @@ TEST(HeldMemory, OfAShaderByMethod) {
     const Buffer positions(device(), p.positions), shading(device(), normals),
         irradiance(device(), p.irradiance), ids(device(), p.ids), map(device(), lamp.maps[0]),
         out(device(), std::vector<float>(3 * p.pixels()));
-    // By method, with the host's irradiance and with the shader's own.
+    // By method, with the host's irradiance, and with the shader's own at half rate.
     for (int k = 2 * PEL_SCATTERING_PREINTEGRATED; k < 2 * PEL_SCATTERING_AUTO + 2; ++k) {
         const int scattering = k / 2;
         if (scattering == PEL_SCATTERING_TEXTURE) continue;
@@ -45,7 +45,12 @@ TEST(HeldMemory, OfAShaderByMethod) {
         image(PEL_SLOT_MATERIAL, ids, PEL_FORMAT_R8_UINT);
         image(PEL_SLOT_RADIANCE, out, PEL_FORMAT_RGB32F);
         const Profile skin = Profile::skin();
-        shader.setMaterial(1, whiteMaterial(skin, PelScattering(scattering)));
+        PelMaterial material = whiteMaterial(skin, PelScattering(scattering));
+        if (scattering == PEL_SCATTERING_SCREEN && k % 2) material.scatterTaps = 16;
+        shader.setMaterial(1, material);
+        PelShaderOptions options = pelShaderOptionsDefaults();
+        options.halfRate = k % 2;
+        shader.set(options);
         shader.set(std::vector{lamp.light});
         shader.set(0, PEL_LIGHT_SHADOW_MAP,
                    pellucid::imageDesc(map, PEL_FORMAT_R32F, lamp.width, lamp.height));

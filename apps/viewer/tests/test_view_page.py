@@ -309,6 +309,15 @@ def test_a_bad_mesh_is_shown_and_the_old_one_stays(page, tmp_path):
     assert not differ(before, picture(page))
 
 
+def test_an_iris_is_dropped_on_the_page(page, tmp_path):
+    unfold(page, "Eyes")
+    Image.new("RGB", (64, 64), (255, 0, 0)).save(tmp_path / "red.png")
+    assert differ(*act_and_compare(page, lambda: upload(page, "image of an iris", tmp_path / "red.png")))
+    back = wait_for(lambda: page.find_elements(By.CSS_SELECTOR, "[data-pel='iris-fibres']"), "the way back")
+    assert differ(*act_and_compare(page, lambda: page.execute_script("arguments[0].click()", back[0])))
+    wait_for(lambda: not page.find_elements(By.CSS_SELECTOR, "[data-pel='iris-fibres']"), "fibres")
+
+
 def test_a_mesh_of_another_unit_brings_a_question(page, tmp_path):
     mesh = tmp_path / "metres.obj"
     mesh.write_text("v 0 0 0\nv .24 0 0\nv 0 .24 0\nv 0 0 .24\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")

@@ -34,6 +34,8 @@ def test_fields_have_the_librarys_defaults_and_keep_what_they_are_given():
     assert light.type is pel.LightType.SPOT and light.color.tolist() == [1, 2, 3] and light.range == 5
     assert light.world_to_shadow.tolist() == list(range(16))
     assert light.copy() == light and pel.Light() != light and light.to_dict()["type"] == "spot"
+    table = pel.LutInfo(kind="shadow", shadow=pel.ShadowLutDesc(width=7))
+    assert table.shadow.width == 7 and table.copy().shadow == table.shadow
 
 
 @pytest.mark.parametrize("use, error, message", [
@@ -44,6 +46,7 @@ def test_fields_have_the_librarys_defaults_and_keep_what_they_are_given():
     (lambda: pel.Material(thickness_taps=-1), ValueError, "Material.thickness_taps is -1; it must be from 0"),
     (lambda: pel.Material(thickness_taps=2.5), ValueError, "an integer"),
     (lambda: pel.CurvatureParams(estimator=99), ValueError, "estimator is 99; it must be one of edge"),
+    (lambda: pel.LutInfo(shadow=pel.CurvatureLutDesc()), ValueError, "LutInfo.shadow is .*a ShadowLutDesc"),
     (lambda: pel.Material().albedo.fill(1), ValueError, "read-only"),
     (lambda: setattr(pel.Material(), "albdo", 1), AttributeError,
      "no field 'albdo'; did you mean 'albedo'.; it has albedo"),

@@ -1,7 +1,5 @@
 #include "io/lut/lut_file.h"
 
-#include <sstream>
-
 #include "io/atomic_file.h"
 #include "io/image/texture_file.h"
 #include "io/lut/lut_describe.h"
@@ -47,13 +45,9 @@ std::vector<uint16_t> withAlpha(const std::vector<uint16_t>& rgbHalves) {
 std::map<std::string, std::string> keyValues(const Image& image) {
     std::map<std::string, std::string> pairs{{"KTXwriter", concat("pellucid ", pelVersion())}};
     for (const auto& [name, value] : image.attributes) {
-        std::ostringstream text;
-        text.imbue(std::locale::classic());
-        text.precision(9);
-        if (const auto* s = std::get_if<std::string>(&value)) text << *s;
-        if (const auto* i = std::get_if<int>(&value)) text << *i;
-        if (const auto* f = std::get_if<float>(&value)) text << *f;
-        pairs[name] = text.str();
+        if (const auto* s = std::get_if<std::string>(&value)) pairs[name] = *s;
+        if (const auto* i = std::get_if<int>(&value)) pairs[name] = concat(*i);
+        if (const auto* f = std::get_if<float>(&value)) pairs[name] = concat(*f);
     }
     return pairs;
 }
@@ -116,10 +110,7 @@ void writeLut(const std::string& path, const Lut& lut, std::optional<PelLutEncod
 void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLutInfo& wanted,
                   const std::vector<std::string>& keys) {
     const auto refuse = [&](const std::string& what, const auto& is, const auto& asked) {
-        std::ostringstream text;
-        text.imbue(std::locale::classic());
-        text << "is a table whose " << what << " is " << is << "; " << asked << " is asked for";
-        throw FileError(path, text.str());
+        throw FileError(path, concat("is a table whose ", what, " is ", is, "; ", asked, " is asked for"));
     };
     if (found.kind != wanted.kind) refuse("kind", lutKinds[found.kind], lutKinds[wanted.kind]);
     const auto [width, height] = lutSize(found);
