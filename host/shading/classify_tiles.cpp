@@ -38,6 +38,7 @@ class ClassifyTiles final : public Pass {
     }
 
     std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
+        if (!listsTiles(plan)) return {};
         // A program of its own, since all shaders with ids of this format share it.
         const ShaderState& state = plan.state;
         return {

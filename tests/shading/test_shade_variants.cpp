@@ -68,6 +68,9 @@ TEST(ShadeVariants, EqualMeaningIsOneProgram) {
     frames = {frames[0], frames[0]};
     frames[1].slots[PEL_SLOT_ALBEDO] = {};
     EXPECT_EQ(programsOf(frames), 3u) << "an input that is read";
+    frames.resize(1);
+    frames[0].options.tileLists = PEL_TILES_NO_LIST;
+    EXPECT_EQ(programsOf(frames), 1u) << "nothing is classified";
 }
 
 // NaN in an image that the pixel's material does not read does not make the pixel invalid.

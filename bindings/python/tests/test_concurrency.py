@@ -56,7 +56,10 @@ def test_arrays_live_until_their_work_is_done(device, make_sphere):
         gc.collect()
         if not event.done:
             assert not gone
-        event.wait() if wait == "event" else device.finish()
+        if wait == "event":
+            event.wait()
+        else:
+            device.finish()
         assert gone == [1] and np.allclose(out, 1, atol=1e-4)
         gone.clear()
     assert _in_flight.in_flight() == 0
