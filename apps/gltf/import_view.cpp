@@ -134,6 +134,7 @@ void drawImport(Run& run, const std::string& folder, io::ImportedGltf& imported,
                                               v.curvature, gltf.mesh.triangles, ids});
     sample::GBufferOptions options;
     options.detail.enabled = false;
+    options.thickness = true;
     for (const io::GltfLook& look : imported.looks)
         options.looks.push_back({sample::Look::Kind::Plain,
                                  {float(look.albedo[0]), float(look.albedo[1]), float(look.albedo[2])}});
@@ -152,6 +153,7 @@ void drawImport(Run& run, const std::string& folder, io::ImportedGltf& imported,
     add(PEL_SLOT_NORMAL_SHADING, "Normal", "XYZ", g.geometricNormal.data);
     add(PEL_SLOT_CURVATURE, "Curvature", "V", g.curvature.data);
     add(PEL_SLOT_ALBEDO, "Albedo", "RGB", g.albedo.data);
+    add(PEL_SLOT_THICKNESS, "Thickness", "V", g.thickness.data);
     add(PEL_SLOT_MATERIAL, "Material", "I", std::vector<float>(g.material.begin(), g.material.end()));
     size_t covered = 0;
     for (const uint32_t id : g.material) covered += id != 0;

@@ -60,13 +60,17 @@ struct Detail {
 class Renderer {
   public:
     Renderer(const Scene& scene, const Camera& camera, const GBufferOptions& options, GBuffer& out)
-        : mesh_(scene.mesh()), view_(camera, out.width, out.height), options_(options), out_(out) {
+        : scene_(scene),
+          mesh_(scene.mesh()),
+          view_(camera, out.width, out.height),
+          options_(options),
+          out_(out) {
         if (options.detail.enabled) detail_.emplace(options.detail);
     }
 
-    void render(const Scene& scene) {
+    void render() {
         traceRays(
-            scene, out_.width, out_.height, [&](int x, int y) { return view_.ray(x, y); },
+            scene_, out_.width, out_.height, [&](int x, int y) { return view_.ray(x, y); },
             [&](int x, int y, const Ray& ray, const Hit& hit) { pixel(x, y, ray, hit); });
     }
 
@@ -92,6 +96,18 @@ class Renderer {
         }
         return normalize(cross(p[1] - p[0], p[2] - p[0]));
     }
+    // That of the sheet that loses as much light as the body does, measured along the inward normal of the
+    // triangle. A body with a curvature (1/mm) of 2 over its thickness is a ball, which the gain of curved
+    // bodies describes already; where faces meet at 60 degrees or more, light comes in through both.
+    double thicknessBelow(Vec3 position, Vec3 face, double curvature) const {
+        const double extent = length(scene_.bounds().high - scene_.bounds().low), start = 1e-6 * extent;
+        Vec3 otherFace;
+        const Hit hit = scene_.firstHit({position - face * start, -face}, extent, otherFace);
+        const double facing = -dot(otherFace, face), distance = hit.distance + start;
+        if (hit.triangle == Hit::none || facing <= 0) return 0;
+        const double ofSheet = std::max(2 * facing - 1, 0.0) * std::max(1 - distance * curvature / 2, 0.0);
+        return std::min(distance / std::max(ofSheet, 1e-6), extent);
+    }
     static void store(Image& image, int x, int y, Vec3 v) {
         image.at(0, x, y) = float(v.x);
         image.at(1, x, y) = float(v.y);
@@ -108,6 +124,8 @@ class Renderer {
         store(out_.geometricNormal, x, y, geometric);
         if (!mesh_.curvature.empty())
             out_.curvature.at(0, x, y) = float(interpolate(mesh_.curvature, hit, 1, 0));
+        if (options_.thickness)
+            out_.thickness.at(0, x, y) = float(thicknessBelow(position, face, out_.curvature.at(0, x, y)));
         for (int c = 0; c < out_.uv.channels; ++c)
             out_.uv.at(c, x, y) = float(interpolate(mesh_.uvs, hit, 2, c));
         out_.viewDepth.at(0, x, y) = float(depth);
@@ -179,6 +197,7 @@ class Renderer {
         out_.roughness.at(0, x, y) = float(roughness);
     }
 
+    const Scene& scene_;
     const Mesh& mesh_;
     View view_;
     GBufferOptions options_;
@@ -202,11 +221,12 @@ GBuffer renderGBuffer(const Scene& scene, const Camera& camera, int width, int h
     for (Image* image : {&out.curvature, &out.coverage, &out.specular, &out.roughness})
         *image = Image(width, height, 1);
     if (!scene.mesh().uvs.empty()) out.uv = Image(width, height, 2);
+    if (options.thickness) out.thickness = Image(width, height, 1);
     out.viewDepth = Image(width, height, 1, backgroundDepth);
     out.material.assign(size_t(width) * size_t(height), 0);
     if (out.material.empty()) return out;
 
-    Renderer(scene, camera, options, out).render(scene);
+    Renderer(scene, camera, options, out).render();
     return out;
 }
 

@@ -44,6 +44,7 @@ struct GBufferOptions {
     std::vector<Look> looks;       // of material ids 1, 2, ...; ids beyond are skin
     std::vector<SkinZone> zones;   // of skin
     std::vector<EyeLook> eyes;     // an eye's pixel belongs to the nearest
+    bool thickness = false;        // measure it: one more ray per pixel
 };
 
 constexpr float backgroundDepth = 1e10f;  // mm, of viewDepth where nothing was hit
@@ -62,6 +63,9 @@ struct GBuffer {
     Image specular;       // 1, factor of the material's specular, 1 but for zones of skin
     Image roughness;      // 1, factor of the material's roughness: zones, and relief that the pixel blurs
     Image uv;             // 2, or empty when the mesh has none
+    Image thickness;      // 1, mm of the sheet that loses as much light as the body does, for
+                          // PEL_SLOT_THICKNESS; 0: unknown, as below a surface that encloses nothing. Empty
+                          // unless asked for
     Image viewDepth;      // 1, mm along the camera's axis; backgroundDepth where nothing was hit
     Image coverage;       // 1, 1 or 0
     std::vector<uint32_t> material;  // id per pixel, 0 background

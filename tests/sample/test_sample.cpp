@@ -163,6 +163,42 @@ TEST(SampleGBuffer, ClosedMeshesHaveNoCracks) {
     EXPECT_EQ(std::count(g.coverage.data.begin(), g.coverage.data.end(), 0.0f), 0);
 }
 
+TEST(SampleGBuffer, ThicknessIsThatOfTheBodyBelow) {
+    sample::GBufferOptions options = plain();
+    const auto drawn = [&](const sample::Mesh& mesh) {
+        return sample::renderGBuffer(sample::Scene(mesh.view()), {.eye = {0, 0, 300}, .up = {0, 1, 0}}, 41,
+                                     41, options);
+    };
+    EXPECT_TRUE(drawn(sphere()).thickness.data.empty());
+    options.thickness = true;
+    sample::Mesh mesh = sphere();
+    mesh.curvature.clear();
+    const sample::GBuffer ball = drawn(mesh);
+    const float radius = float(vectorAt(ball.position, 20, 20).z);
+    EXPECT_NEAR(ball.thickness.at(0, 20, 20), 2 * radius, 0.5);
+    EXPECT_EQ(ball.thickness.at(0, 0, 0), 0);  // background
+    for (const float share : {0.25f, 1.0f}) {  // of a ball's curvature; a ball is no sheet
+        mesh.curvature.assign(mesh.positions.size() / 3, share / radius);
+        EXPECT_NEAR(drawn(mesh).thickness.at(0, 20, 20),
+                    share < 1 ? radius * 8 / 3 : std::sqrt(12.0f) * radius, 0.01 * radius);
+    }
+    // A single sheet encloses nothing.
+    EXPECT_EQ(drawn(sample::makeRectangle(-50, 50, -50, 50, 0)).thickness.at(0, 20, 20), 0);
+    // The upper face is z = 0, x from 0 on; the lower one falls by the angle.
+    for (const double angle : {0.2, 0.6, 1.2}) {
+        const float lower = float(-100 * std::tan(angle));
+        const sample::Mesh wedge{
+            .positions = {0, -50, 0, 100, -50, 0, 0, 50, 0, 100, 50, 0, 100, -50, lower, 100, 50, lower},
+            .triangles = {0, 1, 2, 2, 1, 3, 0, 2, 4, 2, 5, 4}};
+        const sample::GBuffer g = drawn(wedge);
+        const double x = vectorAt(g.position, 30, 20).x, below = x * std::tan(angle),
+                     extent = std::hypot(100, 100, lower);
+        ASSERT_GT(x, 1);
+        EXPECT_NEAR(g.thickness.at(0, 30, 20), angle < 1 ? below / (2 * std::cos(angle) - 1) : extent,
+                    1e-4 * extent);
+    }
+}
+
 TEST(SampleDetail, ShadingDiffersFromGeometricAsAsked) {
     // A close view, so that a pixel is much smaller than a pore.
     const sample::Mesh mesh = sample::makeRectangle(-50, 50, -50, 50, 0);

@@ -108,6 +108,7 @@ TEST_F(Import, ABallOfWaxBecomesAPicture) {
     const io::Image g = io::readImage(out("gbuffer.exr"));
     const float middle = g.channel("Curvature.V").pixels[48 * 96 + 48];
     EXPECT_NEAR(middle, 1 / 20.0, 0.003);
+    EXPECT_GT(g.channel("Thickness.V").pixels[48 * 96 + 48], 60);  // mm: no sheet
 }
 
 TEST_F(Import, LightsCamerasAndProfilesOfOnesOwn) {
