@@ -72,10 +72,11 @@ TEST(ScatterBlend, EachMaterialHasItsOwnShareOfAlbedo) {
     const Picture p = stripes(true);
     Extra extra;
     for (size_t i = 0; i < 3 * p.pixels(); ++i) extra.albedo.push_back(0.25f + 0.5f * float(i / 30 % 2));
-    for (PelScattering method : {separable, screen}) {
-        const auto lightOf = [&](float one, float two) {
-            std::vector<Material> materials{{1, Profile::skin(), 1, controlsOf(method, 0)},
-                                            {2, Profile::skin(), 1, controlsOf(method, 0)}};
+    for (const auto& [first, second] :
+         {std::pair{separable, separable}, {screen, screen}, {separable, screen}}) {
+        const auto lightOf = [&, first = first, second = second](float one, float two) {
+            std::vector<Material> materials{{1, Profile::skin(), 1, controlsOf(first, 0)},
+                                            {2, Profile::skin(), 1, controlsOf(second, 0)}};
             materials[0].controls.albedoBefore = one, materials[1].controls.albedoBefore = two;
             return run(p, materials, extra).scattered;
         };
@@ -180,6 +181,10 @@ TEST(ScatterBlend, AloneAddsAndMultiplies) {
         // All of the albedo before is the same where it is one colour.
         c.albedoBefore = 1;
         expectNear(run(adding, materials, extra).scattered, 1e-3, [&](size_t i) { return result[i]; });
+        // Where nothing is to scatter, light arrives as it was.
+        extra.weights.assign(p.pixels(), 0.0f);
+        expectNear(run(adding, materials, extra).scattered, 1e-5,
+                   [&](size_t i) { return 2 + 0.5 * (p.irradiance[i] + 0.3 * through[i % 3]); });
         extra.inPlace = true;
         EXPECT_THROW(run(adding, materials, extra), pellucid::Error);
     }

@@ -146,7 +146,7 @@ TEST(SkinMaps, AlbedoAndRadiusAreThoseOfTheSkin) {
 // Even maps are a material of that skin: of the profile's own exactly but for the table, of another as near
 // as one factor for three channels can be.
 TEST(SkinMaps, EvenMapsAreAPlainMaterial) {
-    for (const auto& [melanin, within] : {std::pair{0.02f, 2e-3}, {0.12f, 0.03}}) {
+    for (const auto& [melanin, within] : {std::pair{0.02f, 2e-4}, {0.12f, 4e-3}}) {
         Picture p = plane(96, 96, 0.4, [](double x, double) { return x > 19 ? Vec3{1, 1, 1} : Vec3{}; });
         Frame maps(p, byAuto), plain = maps;
         maps.profile = Profile::skinLayers(skinOf(0.02f, 0.01f));

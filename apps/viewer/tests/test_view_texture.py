@@ -25,6 +25,9 @@ def test_the_method_in_the_texture(session, tmp_path):
     export(session, tmp_path / "look", 160, 90)
     session.look.lamps[0].intensity = 0.2  # made again
     assert session.radiance(None, 640, 360)[skin].mean() < 0.8 * by["texture"][skin].mean()
+    session.look.method = "auto"
+    # Texture coordinates of another size are let go.
+    assert session.radiance(None, 320, 180).shape == (180, 320, 3)
     reset(session)
     bare = Session(session.device)
     (tmp_path / "bare.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
