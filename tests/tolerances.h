@@ -217,6 +217,7 @@ constexpr double radiusPerPixelRms = 1.1e-2;
 constexpr double scatterBlocksMax = 8.5e-2;  // the same, where the edge of a hard shadow meets the limb
 constexpr double scatterOneMissing = 2e-2;   // neighbours of a pixel that counts no more
 constexpr double widthsAgree = 1e-3;         // between widths of vectors: the order of sums
+constexpr double oneLaneAgrees = 1e-4;       // the same for the kept frames, 7e-6 measured
 // RMS, a tenth of the maximum: a ring of blocks with 0.4 % of the light may count or not
 constexpr double scatterUnits = 1e-3;
 // of the pixels of a front-lit head, at least: 0.22 of skin and 0.26 of a narrow profile measured. Of its

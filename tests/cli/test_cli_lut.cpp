@@ -80,9 +80,13 @@ TEST_F(CliLut, TablesOfCaustics) {
     PelEyeLutDesc desc = pelEyeLutDescDefaults();
     desc.width = 32, desc.height = 16, desc.depth = 8, desc.chamberDepth = 3.4f, desc.irisRadius = 5.5f;
     EXPECT_EQ(lut.read<float>(PEL_LUT_FLOAT), Lut(device_, desc).read<float>(PEL_LUT_FLOAT));
+    desc.scleraRadius = 12, desc.corneaRadius = 7.7f, desc.corneaConic = -0.2f, desc.limbusRadius = 5.9f;
+    desc.corneaIndex = 1.38f, desc.aqueousIndex = 1.34f, desc.irisConcavity = 0.1f,
     desc.millimetresPerUnit = 10;
-    io::writeLut(path("cm.exr"), Lut(device_, desc));
-    EXPECT_EQ(io::readLut(device_, path("cm.exr")).info().eye.millimetresPerUnit, 10);
+    io::writeLut(path("own.exr"), Lut(device_, desc));
+    const PelEyeLutDesc again = io::readLut(device_, path("own.exr")).info().eye;
+#define SAME(type, name, ...) EXPECT_EQ(again.name, desc.name) << #name;
+    PEL_EACH_EYE_LUT_FIELD(SAME)
     EXPECT_STREQ(info("eye --size 8x8x4 --encoding half --profile skin").profile, "skin");
     done("lut eye -o @e.ktx2 --size 8x8x4");
 }

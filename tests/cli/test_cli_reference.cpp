@@ -102,6 +102,26 @@ TEST_F(CliReference, VerticesUnitAndProfile) {
     EXPECT_TRUE(read(path("own.npy")) == read(path("named.npy")));
 }
 
+TEST_F(CliReference, AmbientLightIsThatOfItsHarmonics) {
+    scene_.lights.clear();
+    PelAmbient& ambient = scene_.ambient;
+    ambient.constant[0] = 2;
+    for (int i = 0; i < 9; ++i) ambient.sh[i][0] = 0.1f * float(i + 1), ambient.sh[i][1] = i == 1;
+    pellucid::io::writeScene(path("s.toml"), scene_);
+    done(ofBall + picture + fine + "-o @o.exr");
+    const Image out = pellucid::io::readImage(path("o.exr"));
+    for (size_t i = 0; i < out.pixelCount(); ++i) {
+        if (!given("Id.X")[i]) continue;
+        const double x = given("N.X")[i], y = given("N.Y")[i], z = given("N.Z")[i], pi = std::numbers::pi,
+                     linear = std::sqrt(3 / (4 * pi)), square = std::sqrt(15 / (4 * pi)),
+                     sum = 0.1 / std::sqrt(4 * pi) + linear * (0.2 * y + 0.3 * z + 0.4 * x) +
+                           square * (0.5 * x * y + 0.6 * y * z + 0.7 * std::sqrt(1 / 12.0) * (3 * z * z - 1) +
+                                     0.8 * x * z + 0.45 * (x * x - y * y));
+        EXPECT_NEAR(out.channel("Irradiance.R").pixels[i], 2 + sum, 0.02) << x << ' ' << y << ' ' << z;
+        EXPECT_NEAR(out.channel("Irradiance.G").pixels[i], std::max(0.0, linear * y), 0.02);
+    }
+}
+
 // A lamp at x = 20, by its distance and the cosine from its axis.
 TEST_F(CliReference, LampsEndAtTheirRangeAndCone) {
     PelLight& lamp = scene_.lights[0].light;

@@ -1,4 +1,5 @@
 // Frames with fields at random, by every method and form of shadow map, beside kept results.
+#include "device_lanes.h"
 #include "diffusion/lit_ball.h"
 #include "kept_sums.h"
 #include "test.h"
@@ -120,6 +121,7 @@ Frame frameOf(uint32_t structure, uint32_t copy) {
 TEST(KeptResults, OfFramesWithFieldsAtRandom) {
     if (testsAreSmall()) GTEST_SKIP() << "for whole pictures";
     KeptSums kept("frames.dat");
+    const Device oneLane = lanes::deviceOf(1);  // as GPUs have
     for (uint32_t index = 0; index < structures * copies; ++index) {
         const Frame f = frameOf(index % structures, index / structures);
         const Shown shown = f.shade();
@@ -128,5 +130,12 @@ TEST(KeptResults, OfFramesWithFieldsAtRandom) {
                     tolerance::keptResults + tolerance::scatterLeftOut * double(f.options.targetError),
                     "frame " + std::to_string(index) + ", method " + std::to_string(f.material.scattering) +
                         "; " + shown.warnings);
+        if (index >= 8) continue;  // each method
+        ShownImages narrow(oneLane, 1, 1);
+        const std::vector<float> light = f.shade(narrow).light;
+        for (size_t i = 0; i < light.size(); ++i)
+            ASSERT_NEAR(light[i], shown.light[i],
+                        tolerance::oneLaneAgrees + tolerance::scatterLeftOut * double(f.options.targetError))
+                << "by one lane, frame " << index << ", value " << i;
     }
 }

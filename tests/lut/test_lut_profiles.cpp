@@ -70,6 +70,14 @@ TEST(LutProfiles, RadialAndLineSpreadEqualTheOracles) {
     }
 }
 
+// All but a thousandth of the light of each channel leaves within its reach.
+TEST(LutProfiles, ReachLeavesAThousandth) {
+    for (const fixture::ProfileCase& pair : fixture::profiles()) {
+        const double reach = pair.ours.info().reach;
+        EXPECT_NEAR(std::ranges::max(pair.ours.transmission({reach})), 1e-3, 2e-6) << pair.name;
+    }
+}
+
 TEST(LutProfiles, NormalBlendOfSkinIsThePublishedOne) {
     const PelProfileInfo info = Profile::skin().info();
     for (auto [c, blend] : {std::pair(0, 1.0), {1, 0.3}, {2, 0.0}})
