@@ -226,6 +226,15 @@ TEST_F(MeshFile, LengthsOfListsAreChecked) {
               {file("short", values("short", {3}) + values("int", {0, 1, 3})), "refers to vertex 3"},
               {file("float", std::string(4, '\0')), "a.ply:8: the lengths of a list are whole"}})
             EXPECT_TRUE(contains(loadError("a.ply", text), message)) << big;
+        // An index of -1 is no 255.
+        const auto chars = [&](double last) {
+            return std::string("ply\nformat binary_") + (big ? "big" : "little") +
+                   "_endian 1.0\nelement vertex 256\nproperty float x\nproperty float y\nproperty float z\n"
+                   "element face 1\nproperty list char char vertex_indices\nend_header\n" +
+                   values("float", std::vector<double>(3 * 256)) + values("char", {3, 0, 1, last});
+        };
+        EXPECT_EQ(loadError("good.ply", chars(2)), "");
+        EXPECT_TRUE(contains(loadError("a.ply", chars(-1)), "refers to vertex"));
     }
 }
 
