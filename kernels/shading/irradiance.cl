@@ -75,7 +75,11 @@ static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMat
 #endif
     }
 #if PEL_FORMAT_THICKNESS
-    const floatw thickness = loadScalar(PEL_FORMAT_THICKNESS, SPAN(THICKNESS));
+    floatw thickness = loadScalar(PEL_FORMAT_THICKNESS, SPAN(THICKNESS));
+#if PEL_THIN
+    // What a sheet reflects is its albedo.
+    thickness = selectw(thickness, (floatw)(0.0f), through.x + through.y + through.z > 0.0f);
+#endif
     const Vec3w path = ofMaterials(materials->gain, id, wanted);
     e = mul3(
         e, vec3(keptBySlab(thickness, path.x), keptBySlab(thickness, path.y), keptBySlab(thickness, path.z)));

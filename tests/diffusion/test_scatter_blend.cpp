@@ -116,6 +116,27 @@ TEST(ScatterBlend, ThinSheetsLetLightThrough) {
     }
 }
 
+// A thickness image takes light from bodies alone: what a sheet reflects is its albedo.
+TEST(ScatterBlend, ThicknessLeavesSheetsAlone) {
+    Frame f(stripes(), screen);
+    f.profile = Profile::burleyDistance({2, 1, 0.5});
+    f.giveIrradiance = false;
+    f.lamps.resize(1);
+    f.material.curvatureGain = 1;
+    f.lamps[0].light.toLight[1] = 0.6f, f.lamps[0].light.toLight[2] = 0.8f;
+    for (const float sheet : {0.0f, 0.4f}) {
+        f.material.thinThickness = sheet;
+        f.images.erase(PEL_SLOT_THICKNESS);
+        const std::vector<float> before = f.shade().light;
+        f.images[PEL_SLOT_THICKNESS].assign(f.picture.pixels(), 0.4f);
+        const std::vector<float> after = f.shade().light;
+        if (sheet > 0)
+            EXPECT_EQ(after, before);
+        else
+            EXPECT_LT(after[0], 0.9f * before[0]);
+    }
+}
+
 // The gain of curved bodies of a PelScatter that has normals, or the curvature itself, is that of a shader.
 TEST(ScatterBlend, CurvedBodiesGainAsInAShader) {
     const double radius = 10;
