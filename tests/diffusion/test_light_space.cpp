@@ -503,6 +503,17 @@ TEST(LightSpace, TexelsThatTheCameraSeesCountOnce) {
         }
 }
 
+TEST(LightSpace, AnIdIsButAName) {
+    for (PelScattering method : {byLight, byAuto}) {
+        Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{0.9, 0.2, -0.1}), sized(256u, 64u))},
+                          sized(48u, 24u), method, 0.4f);
+        const std::vector<float> one = f.shade().light;
+        f.materials = 2;
+        for (uint8_t& id : f.picture.ids) id *= 2;
+        EXPECT_EQ(f.shade().light, one) << int(method);
+    }
+}
+
 // A light without a map beside it: as on the screen, and said. So are maps, faces of cubes one by one, of
 // which 24 are the most.
 TEST(LightSpace, WithoutAllMapsTheScreenDoes) {
