@@ -88,6 +88,27 @@ TEST(Scatter, OneLaneFindsTheLightOfSixteen) {
     EXPECT_LT(difference(p, light(1), light(16)).most, tolerance::scatterLanes);
 }
 
+// Dots in the middle of nine tiles, which the middle tile and the four beside it take into account. Pixels
+// are too far apart for light to get from one to the next, but for those of one tile: every tile round it
+// reckons with pixels as near.
+TEST(Scatter, ATileCountsWhereAnyTileAroundItIsFine) {
+    const Profile profile = Profile::burleyDistance({0.02, 0.02, 0.02});
+    const auto tapped = [&](uint32_t fineX, uint32_t fineY) {
+        Picture p(48, 48);
+        for (uint32_t y = 0; y < 48; ++y)
+            for (uint32_t x = 0; x < 48; ++x) {
+                const bool fine = x / 16 == fineX && y / 16 == fineY,
+                           dotted = x / 4 >= 5 && x / 4 < 7 && y / 4 >= 5 && y / 4 < 7;
+                const double step = fine ? 0.02 : 1, e = dotted ? (x + y) % 2 : 0.5;
+                p.set(p.at(x, y), {step * x, step * y, 0}, {e, e, e});
+            }
+        return run(p, profile).stats.tilesTapped;
+    };
+    EXPECT_EQ(tapped(9, 9), 0u);
+    const uint32_t expected[] = {3, 4, 3, 4, 5, 4, 3, 4, 3};
+    for (uint32_t i = 0; i < 9; ++i) EXPECT_EQ(tapped(i % 3, i / 3), expected[i]) << i;
+}
+
 TEST(Scatter, TapsAreThoseOfTheOracle) {
     Picture p = scene();
     p.params.frameIndex = 3;
