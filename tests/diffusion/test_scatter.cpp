@@ -514,6 +514,7 @@ TEST(ScatterStats, CountWhatIsCovered) {
     for (const auto& [method, taps] : ways) {
         const PelScatterStats stats = run(p, {{1, narrow(), 1, controlsOf(method, taps)}}).stats;
         EXPECT_EQ(stats.pixelsTotal, p.pixels());
+        EXPECT_GT(stats.deviceMilliseconds, 0);
         EXPECT_EQ(stats.pixelsCovered, size_t(std::ranges::count(p.ids, 1)));
         EXPECT_EQ(stats.tilesCovered, tiles.size()) << int(method) << ", " << taps;
         EXPECT_EQ(std::accumulate(stats.tilesByScattering, std::end(stats.tilesByScattering), uint64_t{0}),

@@ -70,6 +70,7 @@ def test_host_memory_is_used_in_place(device):
     (lambda d: pel.Buffer(d, 8).read(np.empty(9, np.uint8)), pel.PellucidError),
     (lambda d: pel.Buffer(d, 8).write(np.empty(4, np.uint8), offset=5), pel.PellucidError),
     (lambda d: pel.Buffer(d, 80).read(np.empty((4, 4), np.uint8)[:, 1]), ValueError),
+    (lambda d: pel.Buffer(d, 80).write(np.ones((4, 4), np.uint8)[:, 1]), ValueError),
     (lambda d: pel.Buffer.from_host(d, np.zeros((8, 8))[:, ::2]), ValueError),
     (lambda d: pel.Buffer.from_cl(d, None), TypeError),
     (lambda d: pel.Device.from_cl("queue"), TypeError),

@@ -167,6 +167,15 @@ def test_ambient_cube(device, view):
             shader.set_ambient_cube(wrong)
 
 
+@pytest.mark.parametrize("slot", ["radiance", "out_diffuse"])
+def test_outputs_are_writable(device, view, slot):
+    out = black()
+    out.flags.writeable = False
+    with pytest.raises(ValueError, match="read-only"):
+        pel.Shader(device).set_image(slot, out)
+    pel.Shader(device).set_image("albedo", out)
+
+
 def test_history(device, view):
     """Frames of few taps come closer to many; pixels that were not in the picture stand alone."""
     motion = np.zeros((HEIGHT, WIDTH, 2), np.float32)
