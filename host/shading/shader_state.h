@@ -27,7 +27,7 @@ struct ShaderMaterial {
     PelMaterial given;  // by the caller, with
     Ref<Profile> profile;
     Ref<Lut> givenCurvatureLut, givenShadowLut;
-    // with what it leaves to defaults filled in (shading/material.h, choose_method.h), as are
+    // with what it leaves to defaults filled in (shading/material.h, features.h), as are
     PelMaterial params;
     Ref<Lut> curvatureLut, shadowLut, transmission;
     float through[3];  // share of the light on a sheet's other side
