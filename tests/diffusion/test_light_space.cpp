@@ -237,11 +237,13 @@ TEST(LightSpace, TwoLightsAreTheSumOfEachAlone) {
             const auto light = [&](const std::vector<LitBall>& lights) {
                 Frame f = frameOf(lights, side, method, width);
                 f.options.targetError = 0;
-                return f.shade().light;
+                return f.shade();
             };
-            std::vector<float> sum = light({both[0]});
-            std::ranges::transform(sum, light({both[1]}), sum.begin(), std::plus());
-            const Difference d = difference(pictureOf(both, side), light(both), sum);
+            const Shown first = light({both[0]}), together = light(both);
+            EXPECT_GT(together.stats.scatterTaps, first.stats.scatterTaps);
+            std::vector<float> sum = first.light;
+            std::ranges::transform(sum, light({both[1]}).light, sum.begin(), std::plus());
+            const Difference d = difference(pictureOf(both, side), together.light, sum);
             std::printf("method %d, radius %g: rms %.4f, most %.4f\n", int(method), double(width), d.relative,
                         d.most);
             // A small picture has too few tiles to choose the same ones for two lights as for each.
