@@ -194,11 +194,8 @@ std::vector<float> thicknessAt(const sample::WalkBody& body,
     std::vector<float> out;
     for (const sample::SurfacePoint& p : points) {
         const sample::Surface s = surfaceAt(body.lit().mesh(), p);
-        sample::Vec3 normal;
-        const double start = 1e-6 * extent;
-        const sample::Hit hit =
-            body.body().firstHit({s.position - s.normal * start, -s.normal}, extent, normal);
-        out.push_back(float(std::min(hit.distance + start, extent)));
+        sample::Vec3 otherSide;
+        out.push_back(float(std::min(body.body().depthBelow(s.position, s.normal, otherSide), extent)));
     }
     return out;
 }

@@ -100,13 +100,12 @@ class Renderer {
     // triangle. A body with a curvature (1/mm) of 2 over its thickness is a ball, which the gain of curved
     // bodies describes already; where faces meet at 60 degrees or more, light comes in through both.
     double thicknessBelow(Vec3 position, Vec3 face, double curvature) const {
-        const double extent = length(scene_.bounds().high - scene_.bounds().low), start = 1e-6 * extent;
         Vec3 otherFace;
-        const Hit hit = scene_.firstHit({position - face * start, -face}, extent, otherFace);
-        const double facing = -dot(otherFace, face), distance = hit.distance + start;
-        if (hit.triangle == Hit::none || facing <= 0) return 0;
+        const double distance = scene_.depthBelow(position, face, otherFace), facing = -dot(otherFace, face);
+        if (!(distance < INFINITY) || facing <= 0) return 0;
         const double ofSheet = std::max(2 * facing - 1, 0.0) * std::max(1 - distance * curvature / 2, 0.0);
-        return std::min(distance / std::max(ofSheet, 1e-6), extent);
+        return std::min(distance / std::max(ofSheet, 1e-6),
+                        length(scene_.bounds().high - scene_.bounds().low));
     }
     static void store(Image& image, int x, int y, Vec3 v) {
         image.at(0, x, y) = float(v.x);

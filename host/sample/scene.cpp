@@ -109,6 +109,11 @@ Hit Scene::firstHit(const Ray& ray, double within, Vec3& normal) const {
     return hit;
 }
 
+double Scene::depthBelow(Vec3 position, Vec3 normal, Vec3& otherSide) const {
+    const double extent = length(bounds_.high - bounds_.low), start = 1e-6 * extent;
+    return firstHit({position - normal * start, -normal}, extent, otherSide).distance + start;
+}
+
 Hit Scene::intersect(const Ray& ray) const {
     Vec3 normal;
     Hit hit = firstHit(ray, INFINITY, normal);

@@ -47,6 +47,9 @@ class Scene {
     // The same no further than `within`, and the unit normal of the triangle. All is in single precision, for
     // rays by the million.
     Hit firstHit(const Ray& ray, double within, Vec3& normal) const;
+    // How far the mesh reaches below a place on it, against the unit normal there; infinite where it has no
+    // other side. `otherSide`: the unit normal of the triangle there.
+    double depthBelow(Vec3 position, Vec3 normal, Vec3& otherSide) const;
     // Whether anything is hit before `within`.
     bool occluded(const Ray& ray, double within) const;
 
