@@ -29,7 +29,9 @@ class KeptSums {
         else
             kept_.open(name_);
     }
-    ~KeptSums() { std::printf("largest difference of a sum: %.2f of what is allowed\n", most_); }
+    ~KeptSums() {
+        std::printf("largest difference from %s: %.2f of what is allowed\n", name_.c_str(), most_);
+    }
 
     // Each of 24 sums takes a sixth of the values, of either sign, over the root of their number: one that
     // changed shows, and many that changed a little. `within`: the largest difference of a sum.
@@ -54,6 +56,24 @@ class KeptSums {
         if (made_.is_open()) made_ << "\n";
         EXPECT_LT(off, within) << what << ", in " << name_;
         most_ = std::max(most_, off / within);
+    }
+
+    // Counts of work, where they were kept for such a device. `within`: by share, below 100 as of 100.
+    void expectCounts(const std::vector<uint64_t>& counts, double within, const std::string& what) {
+        if (!made_.is_open() && !kept_.is_open()) return;
+        for (size_t i = 0; i < counts.size(); ++i) {
+            uint64_t known = 0;
+            if (made_.is_open()) {
+                made_ << counts[i] << (i + 1 < counts.size() ? " " : "\n");
+                continue;
+            }
+            ASSERT_TRUE(kept_ >> known) << what << ", in " << name_;
+            const double off =
+                std::abs(double(counts[i]) - double(known)) / double(std::max<uint64_t>(known, 100));
+            EXPECT_LE(off, within) << what << ", count " << i << ": " << counts[i] << ", kept " << known
+                                   << ", in " << name_;
+            most_ = std::max(most_, off / within);
+        }
     }
 
   private:

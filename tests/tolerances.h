@@ -240,6 +240,8 @@ constexpr double tapsOfLargeError = 0.85;
 // of white, sums of many pixels' differences over the root of their number: at most 1.6e-6 between 1, 8 and
 // 16 lanes, whose order of additions differs
 constexpr double keptResults = 1e-5;
+// relative, counts of tiles, pixels, taps: between machines of as many lanes only steps at a threshold differ
+constexpr double keptWork = 0.02;
 constexpr double keptCurvature = 1e-5;  // of the same, 1/length, of meshes of a few units
 constexpr double keptHead = 1e-5;       // the same of lengths, mm; a hundred times for places in float32
 constexpr double scatterLanes = 2e-6;   // of white, one lane beside sixteen: order of additions

@@ -8,7 +8,7 @@ using namespace lit_ball;
 
 namespace {
 
-constexpr uint32_t structures = 12, copies = 5, side = 40;
+constexpr uint32_t structures = 12, copies = 5;
 
 Vec3 directionOf(Draw& draw) {
     return normalized(Vec3{double(draw.in(-1, 1)), double(draw.in(-1, 1)), double(draw.in(-0.4f, 1)) + 0.05});
@@ -52,8 +52,8 @@ void addOccluder(LitBall& ball, Form form, Draw& draw) {
         }
 }
 
-// Frames of one structure share their programs, which take most of the time.
-Frame frameOf(uint32_t structure, uint32_t copy) {
+// Frames of one structure share their programs, which take most of the time. `behind`: all lights are.
+Frame frameOf(uint32_t structure, uint32_t copy, uint32_t side = 40, bool behind = false) {
     // Choices by `draw` may need another program; what `value` gives does not.
     Draw draw(structure), value(structure + structures * copy + 1);
     constexpr PelScattering methods[] = {
@@ -61,7 +61,8 @@ Frame frameOf(uint32_t structure, uint32_t copy) {
         PEL_SCATTERING_LIGHT, PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_AUTO,   PEL_SCATTERING_PREINTEGRATED};
     std::vector<LitBall> lights;
     const auto addLight = [&](Form form) {
-        lights.push_back(evenBall(form, directionOf(value), 48));
+        const Vec3 direction = directionOf(value);
+        lights.push_back(evenBall(form, behind ? normalized(Vec3{0.05, 0.02, -1}) : direction, 48));
         if (!draw.oneOf(4)) addOccluder(lights.back(), form, value);
     };
     addLight(forms[structure % std::size(forms)]);
@@ -80,7 +81,7 @@ Frame frameOf(uint32_t structure, uint32_t copy) {
     if (draw.oneOf(2)) {
         f.materials = 2;
         for (size_t i = 0; i < pixels; ++i)
-            if (f.picture.ids[i] && i % side + i / side > 44) f.picture.ids[i] = 2;
+            if (f.picture.ids[i] && i % side + i / side > 11 * side / 10) f.picture.ids[i] = 2;
         for (float& color : m.borderColor)
             if (m.scatterTaps > 0 || separable) color = value.oneOf(2) ? value.in(0, 1) : 0;
     }
@@ -112,8 +113,25 @@ Frame frameOf(uint32_t structure, uint32_t copy) {
     o.rotateTaps = draw.oneOf(3);
     o.halfRate = draw.oneOf(4);
     o.everyPixel = draw.oneOf(5);
-    if (value.oneOf(5)) o.regionX = 4, o.regionY = 3, o.regionWidth = 27, o.regionHeight = 30;
+    if (value.oneOf(5))
+        o.regionX = side / 10, o.regionY = 3 * side / 40, o.regionWidth = 27 * side / 40,
+        o.regionHeight = 3 * side / 4;
     return f;
+}
+
+// What skipping left of the work. Another number of lanes leaves other tiles and blocks alone.
+std::vector<uint64_t> workOf(const PelShaderStats& s) {
+    std::vector<uint64_t> work{s.pixelsShaded,     s.pixelsIrradiance,   s.pixelsShadowLut,
+                               s.pixelsWideShadow, s.pixelsShadowTexels, s.pixelsScattered,
+                               s.pixelsKept,       s.scatterTaps,        s.texelsReached,
+                               s.tilesShaded,      s.tilesPartial};
+    work.insert(work.end(), std::begin(s.tilesByScattering), std::end(s.tilesByScattering));
+    work.insert(work.end(), std::begin(s.pixelsByChoice), std::end(s.pixelsByChoice));
+    return work;
+}
+
+std::string workFile(const Device& device) {
+    return "work_" + std::to_string(device.info().mathWidth) + ".dat";
 }
 
 }  // namespace
@@ -138,4 +156,22 @@ TEST(KeptResults, OfFramesWithFieldsAtRandom) {
                         tolerance::oneLaneAgrees + tolerance::scatterLeftOut * double(f.options.targetError))
                 << "by one lane, frame " << index << ", value " << i;
     }
+}
+
+// Faults in what may be left out change the time that frames take, not their pixels.
+TEST(KeptResults, WorkOfFramesWithFieldsAtRandom) {
+    if (testsAreSmall()) GTEST_SKIP() << "for whole pictures";
+    const Device oneLane = lanes::deviceOf(1);  // as GPUs have
+    KeptSums kept(workFile(device())), narrowKept("work_one_lane.dat");
+    for (uint32_t index = 0; index < 3 * structures; ++index)
+        for (const float error : {0.004f, 0.05f}) {
+            Frame f = frameOf(index % structures, index / structures, 200, index >= 2 * structures);
+            f.options.targetError = error;
+            if (index / structures == 1) f.profile = Profile::burleyDistance({0.12f, 0.06f, 0.03f});
+            const std::string what = "frame " + std::to_string(index) + ", error " + std::to_string(error);
+            kept.expectCounts(workOf(f.shade().stats), tolerance::keptWork, what);
+            if (index >= 8) continue;  // each method
+            ShownImages narrow(oneLane, 1, 1);
+            narrowKept.expectCounts(workOf(f.shade(narrow).stats), tolerance::keptWork, what);
+        }
 }
