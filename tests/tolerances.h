@@ -244,6 +244,7 @@ constexpr double keptResults = 1e-5;
 constexpr double keptWork = 0.02;
 constexpr double keptCurvature = 1e-5;  // of the same, 1/length, of meshes of a few units
 constexpr double keptHead = 1e-5;       // the same of lengths, mm; a hundred times for places in float32
+constexpr double keptPixels = 3e-3;     // of white, means of 4 x 4 pixels: one that shows something else
 constexpr double scatterLanes = 2e-6;   // of white, one lane beside sixteen: order of additions
 constexpr double scatterSeam = 1.6;     // the same, over the borders of tiles that took different ways
 // of targetError: how much more a tile steps that begins to count; 0.03 measured

@@ -2,6 +2,7 @@
 #include "demo/demo_hair.h"
 #include "demo/dress_gbuffer.h"
 #include "kept_sums.h"
+#include "sample/occlusion.h"
 #include "sample/scene.h"
 #include "test.h"
 
@@ -149,6 +150,51 @@ TEST_P(DemoHeads, AreTheKeptOnes) {
     std::vector<double> bounds;
     for (const Vec3 v : frame) add(bounds, v);
     expect(bounds, 100, "the frame and the pose");
+}
+
+// The face, an eye and the mouth: every image of their G-buffers, what light and hair add included. Means of
+// 4 x 4 pixels, since another machine's rays may pass an edge on its other side.
+TEST_P(DemoHeads, PixelsAreTheKeptOnes) {
+    constexpr int part = 4;
+    KeptSums kept(std::string(GetParam()) + "_pixels.dat");
+    const std::vector<Strand> strands = demo::strandsOf(scene, head);
+    const sample::Scene hair(demo::curvesOf(strands));
+    sample::GBufferOptions look;
+    look.looks = head.looks, look.zones = head.zones, look.eyes = head.eyes, look.thickness = true;
+    const Vec3 toLight = sample::headDirection(head.pose, 54, 22);
+    sample::Bounces bounces;
+    bounces.lamps.emplace_back().toLight = toLight;
+    bounces.sky.up = head.pose.up, bounces.hair = &hair;
+    demo::StrandLight onHair{{{toLight, {1, 0.9, 0.8}}}, bounces.sky, &scene};
+    const auto around = [](Vec3 centre, double half) {
+        const Vec3 to{half, half, half};
+        return sample::Bounds{centre - to, centre + to};
+    };
+    for (const sample::Bounds& shown :
+         {head.frame, around(head.eyes[0].centre, 9), around(head.zones[0].centre, 30)}) {
+        const sample::Camera view = sample::frameHead(shown, head.pose, {.azimuth = 25}, 1);
+        sample::GBuffer g = sample::renderGBuffer(scene, view, size, size, look);
+        const sample::Image occlusion = sample::ambientOcclusion(scene, g, 8, &hair);
+        const std::vector<float> wetness = demo::dressEyes(g, head.pose.up);
+        demo::darkenFolds(g, occlusion, wetness);
+        const auto expect = [&](const char* what, const std::vector<float>& planes, double scale = 1) {
+            std::vector<double> means(planes.size() / (part * part));
+            for (size_t i = 0; i < planes.size(); ++i)
+                means[i / size / part * (size / part) + i % size / part] += planes[i] / (scale * part * part);
+            kept.expect(means, tolerance::keptPixels, what);
+        };
+        expect("albedo", g.albedo.data);
+        expect("specular", g.specular.data);
+        expect("roughness", g.roughness.data);
+        expect("shading normal", g.shadingNormal.data);
+        expect("blurred normal", g.blurredNormal.data);
+        expect("thickness", g.thickness.data, 100);
+        expect("wetness", wetness);
+        expect("occlusion", occlusion.data);
+        expect("shadow", sample::softShadow(scene, g, toLight, 0.1, 8, &hair).data);
+        expect("bounced light", sample::bouncedLight(scene, g, bounces).data);
+        expect("hair", demo::drawStrands(strands, onHair, view, g).data);
+    }
 }
 
 // But for the caruncles, which lie where the eyes' corners are.
