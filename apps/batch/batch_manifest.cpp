@@ -111,6 +111,8 @@ Request readRequest(TomlReader& reader, LutPreset preset) {
                    : r.kind == PEL_LUT_CURVATURE ? Size{r.curvature.width, r.curvature.height}
                                                  : Size{specular.width, specular.height}};
     reader.integer("stack", r.stack, {1, mostStacked});
+    if (r.stack > 1 && r.kind == PEL_LUT_SPECULAR)
+        reader.fail("stack", "is of tables that differ, and specular tables of one size are all the same");
     if (r.stack > 1 && !r.name.empty())
         reader.fail("name", "cannot stand beside 'stack', whose files are named by their content");
     reader.number("radius_min", r.curvature.radiusMin, range::curvatureLut::radiusMin);

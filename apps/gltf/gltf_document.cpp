@@ -141,16 +141,18 @@ std::string relativePath(const GltfValue& value, const std::string& uri) {
     }
     bool outside = path.empty() || path[0] == '/' || path.find('\\') != std::string::npos ||
                    path.find(':') != std::string::npos || path.find('\0') != std::string::npos;
+    std::string below;  // without parts "."
     for (size_t at = 0; at <= path.size() && !outside;) {
         const size_t end = std::min(path.find('/', at), path.size());
         const std::string part = path.substr(at, end - at);
-        outside = part.empty() || part == ".." || part == ".";
+        outside = part.empty() || part == "..";
+        if (part != ".") below.append(below.empty() ? "" : "/").append(part);
         at = end + 1;
     }
-    if (outside)
+    if (outside || below.empty())
         value.fail("is '" + uri.substr(0, 80) +
                    "'; a file beside the scene or below, or a data: URI would be right");
-    return path;
+    return below;
 }
 
 // Required extensions that can be ignored: without them the geometry is still correct.

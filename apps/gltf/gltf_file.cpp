@@ -103,10 +103,12 @@ Triple axis(const Matrix& m, int i) {
     return {m[i][0], m[i][1], m[i][2]};
 }
 
-// Transforms a normal by the cofactors of the upper left 3 x 3 matrix: correct for mirrored parts, too.
-Triple turned(const Matrix& m, const Triple& n) {
+// Transforms a normal by the inverse transpose of the upper left 3 x 3 matrix, times its determinant's size:
+// by its cofactors, which a mirrored part turns inside out.
+Triple turned(const Matrix& m, const Triple& n, bool mirrored) {
     const Triple x = axis(m, 0), y = axis(m, 1), z = axis(m, 2);
-    return n.x * y.cross(z) + n.y * z.cross(x) + n.z * x.cross(y);
+    const Triple by = n.x * y.cross(z) + n.y * z.cross(x) + n.z * x.cross(y);
+    return mirrored ? -by : by;
 }
 
 Triple unit(const Triple& v, const Triple& otherwise) {
@@ -326,11 +328,13 @@ class Builder {
         const size_t vertices = positions.size() / 3, first = scene_.mesh.vertexCount();
         checkSceneSize(part.primitive, vertices, part.triangles.size());
         MeshData& mesh = scene_.mesh;
+        const bool mirrored = m.determinant() < 0;
         bool bad = false;
         for (size_t v = 0; v < vertices; ++v) {
             const Triple p = vectorOf(&positions[3 * v]) * m,
-                         n = normals.empty() ? Triple(0)
-                                             : unit(turned(m, vectorOf(&normals[3 * v])), Triple(0));
+                         n = normals.empty()
+                                 ? Triple(0)
+                                 : unit(turned(m, vectorOf(&normals[3 * v]), mirrored), Triple(0));
             bad |= n == Triple(0);
             for (int c = 0; c < 3; ++c) {
                 if (!std::isfinite(float(p[c])))
@@ -348,7 +352,6 @@ class Builder {
             warn("some normals are zero or not finite: all are made from the triangles");
         normalsEverywhere_ &= !bad;
         uvsEverywhere_ &= !uvs.empty();
-        const bool mirrored = m.determinant() < 0;
         for (size_t i = 0; i < part.triangles.size(); i += 3)
             for (const size_t k : {size_t{0}, size_t{mirrored ? 2u : 1u}, size_t{mirrored ? 1u : 2u}})
                 mesh.triangles.push_back(uint32_t(first + part.triangles[i + k]));

@@ -138,7 +138,7 @@ double Run::deviceMilliseconds() const {
 void Run::warn(const std::string& text) {
     if (options_.strict) throw InputError(text + " (--strict)");
     warnings_.push_back(text);
-    std::fprintf(stderr, "warning: %s\n", text.c_str());
+    std::fprintf(stderr, "warning: %s\n", io::printable(text).c_str());
 }
 
 void Run::finish() {
@@ -152,7 +152,8 @@ void Run::finish() {
     for (const auto& [key, value] : report.items()) {
         // Tables are for programs: people saw theirs on the way.
         if (value.is_array() && (value.empty() || value[0].is_object())) continue;
-        std::cout << key << ": " << (value.is_string() ? value.get<std::string>() : jsonText(value, -1))
+        std::cout << key << ": "
+                  << (value.is_string() ? io::printable(value.get<std::string>()) : jsonText(value, -1))
                   << "\n";
     }
     std::cout << std::flush;

@@ -50,7 +50,7 @@ Rgb readRgb(const std::string& path, const std::string& layer, float scale) {
         out.width = image.width, out.height = image.height;
         std::vector<std::string> names = layerOf(layer);
         if (layer.empty() && !image.has("R"))
-            names.assign(3, image.channels.size() == 1 ? image.channels[0].name : "R");
+            names.assign(3, image.channels.size() == 1 ? image.channels[0].name : image.has("Y") ? "Y" : "R");
         if (layer.empty() && image.has("First.R") && image.has("Second.R")) {
             names = layerOf("First");
             out.secondHalf = image.interleaved(layerOf("Second"));
@@ -256,8 +256,8 @@ void addCompare(CLI::App& app) {
     option(command, "--layer-a", a.channelsA, "layer of A: its .R, .G and .B instead of R, G, B",
            Word{"NAME"});
     option(command, "--layer-b", a.channelsB, "layer of B, such as Surface", Word{"NAME"});
-    option(command, "--scale-a", a.scaleA, "multiplies A", shown);
-    option(command, "--scale-b", a.scaleB, "multiplies B, such as by an albedo", shown);
+    option(command, "--scale-a", a.scaleA, "multiplies A", isPositive(), shown);
+    option(command, "--scale-b", a.scaleB, "multiplies B, such as by an albedo", isPositive(), shown);
     option(command, "--gbuffer", a.gbuffer,
            "multi-layer EXR: only pixels of a material count; errors are given for each sub-set of them");
     option(command, "--scene", a.scene, "its scene file (TOML)");
@@ -265,7 +265,7 @@ void addCompare(CLI::App& app) {
     option(command, "--unit-mm", a.unit, "millimetres per unit of positions (default: the scene's unit_mm)",
            isPositive());
     option(command, "--picture", a.picture, "PNG to write: both pictures, and their difference in colours");
-    option(command, "--exposure", a.exposure, "multiplies both pictures in it", shown);
+    option(command, "--exposure", a.exposure, "multiplies both pictures in it", isPositive(), shown);
     option(command, "--max-rmse", a.maxRmse,
            "exit with 1 if the RMSE over all channels is larger, or a value is NaN or Inf", isNotNegative());
     jsonOption(command, a.json);

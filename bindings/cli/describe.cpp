@@ -104,8 +104,9 @@ std::string unknownOptions(const CLI::App& app) {
         for (const std::string& name : option->get_snames()) known.push_back("-" + name);
     }
     std::vector<std::string> words = app.remaining(true);
+    const bool ended = std::erase(words, "--") > 0;  // no option stands behind it
     // A value behind an unknown option is not another mistake.
-    const auto isOption = [](const std::string& word) { return word.starts_with("-"); };
+    const auto isOption = [&](const std::string& word) { return !ended && word.starts_with("-"); };
     if (std::any_of(words.begin(), words.end(), isOption))
         std::erase_if(words, [&](const auto& word) { return !isOption(word); });
     std::string message;

@@ -208,7 +208,7 @@ struct ReferenceMesh {
     bool byMaterial = false;
 };
 
-constexpr uint32_t shadowOnly = 255;
+constexpr uint32_t shadowOnly = 256;  // no material has this id
 
 // The id of each triangle: that of its group, or shadowOnly.
 std::vector<uint32_t> idsOf(const std::string& path, const io::PartedMesh& mesh,
@@ -524,7 +524,8 @@ class Reference {
         options.finest = a_.finest > 0 ? a_.finest : d.narrowest / 4;
         options.coarsest = a_.coarsest > 0 ? a_.coarsest : std::max(d.widest, options.finest);
         options.material = body;
-        sample::LitMesh lit = sample::lightMesh(scene_, lighting_, options);
+        sample::LitMesh lit = sample::lightMesh(
+            scene_, lighting_, options, [&](double part) { run_.progress(part, "irradiance of the mesh"); });
         run_.report["lit_triangles"] = lit.triangles.size() / 3;
         run_.report["finest"] = options.finest;
         return lit;
@@ -557,7 +558,7 @@ void runReference(const ReferenceArguments& a) {
         if (e.code() == PEL_ERROR_INVALID_ARGUMENT)
             throw InputError(a.mesh + " with " + a.scene + ": " + e.what());
         throw;
-    } catch (const std::invalid_argument& e) {
+    } catch (const std::logic_error& e) {
         throw InputError(a.mesh + ": " + e.what());
     }
     run.report["output"] = a.output;

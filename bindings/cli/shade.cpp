@@ -260,11 +260,12 @@ void runShade(ShadeArguments a) {
     io::checkReadable(a.gbuffer);
     const auto files = outputFiles(a, scene);
     std::vector<PelImageSlot> outputs;
-    std::set<std::string> distinct{a.output, a.picture};
+    const auto place = [](const std::string& file) { return std::filesystem::weakly_canonical(file); };
+    std::set<std::filesystem::path> distinct{place(a.output), place(a.picture)};
     for (const auto& [slot, file] : files) {
         if (outputs.empty() || outputs.back() != slot) outputs.push_back(slot);
         io::requireExtension(file, {"exr"});
-        if (!distinct.insert(file).second)
+        if (!distinct.insert(place(file)).second)
             throw io::FileError(file, "would be written twice; give each output a name of its own");
         io::checkWritable(file);
     }

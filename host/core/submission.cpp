@@ -30,6 +30,12 @@ Submission::Submission(Device& device, const PelSubmit* submit) : device_(device
     std::vector<cl_event> waits;
     for (uint32_t i = 0; i < submit->numWaits; ++i) {
         events.push_back(fromHandle<Event>(submit->waits[i]));
+        cl_context context = nullptr;
+        cl::check(
+            clGetEventInfo(events.back()->cl().get(), CL_EVENT_CONTEXT, sizeof context, &context, nullptr),
+            "clGetEventInfo");
+        if (context != device.context())
+            invalidArgument("PelSubmit.waits[", i, "] is an event of another device");
         // PoCL ends the process when a command waits for an event that failed.
         if (const cl_int status = events.back()->status(); status < 0)
             cl::check(status, text("PelSubmit.waits[", i, "]").c_str());

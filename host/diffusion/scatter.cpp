@@ -218,6 +218,7 @@ void Scatter::run(const PelScatterParams& params, const ScatterImages& images,
                   std::vector<cl::ProgramKey>* keys) {
     checkParams(params);
     checkImages(images);
+    if (images.depth) checkInvertible("PelScatterParams", params.inverseViewProjection);
     const Plan plan = planOf(params, images);
     if (!keys) capture(params, images);
     ScatterView view;

@@ -23,4 +23,18 @@ std::string concat(const Parts&... parts) {
     return all;
 }
 
+// `text` with control characters, which a terminal would obey, as \xNN. `lines`: but for line breaks.
+inline std::string printable(std::string_view text, bool lines = false) {
+    constexpr const char* digits = "0123456789abcdef";
+    std::string all;
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if ((code >= ' ' && code != 127) || c == '\t' || (lines && c == '\n'))
+            all += c;
+        else
+            all.append("\\x").append(1, digits[code >> 4]).append(1, digits[code & 15]);
+    }
+    return all;
+}
+
 }  // namespace pellucid::io

@@ -11,7 +11,7 @@ namespace pellucid::io {
 class FileError : public std::runtime_error {
   public:
     explicit FileError(std::string file, const std::string& message, int line = 0)
-        : std::runtime_error(place(file, line).append(": ").append(message)),
+        : std::runtime_error(printable(place(file, line).append(": ").append(message))),
           file_(std::move(file)),
           line_(line) {}
 

@@ -13,7 +13,10 @@ class TextScan {
     // `comment`: the character that begins a comment, or a line break if there are none. `linesBefore`:
     // lines of the file before `text`.
     TextScan(std::string path, std::string_view text, char comment = '#', int linesBefore = 0)
-        : path_(std::move(path)), rest_(text), comment_(comment), line_(linesBefore) {}
+        : path_(std::move(path)), rest_(text), comment_(comment), line_(linesBefore) {
+        if (constexpr std::string_view byteOrderMark = "\xEF\xBB\xBF"; rest_.starts_with(byteOrderMark))
+            rest_.remove_prefix(byteOrderMark.size());
+    }
 
     // The next line that has words, split at blanks, without comments. False at the end.
     bool nextLine() {

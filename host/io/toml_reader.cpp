@@ -181,14 +181,16 @@ void TomlReader::text(std::string_view key, std::string& value) {
     if (!node) return;
     if (!node->is_string()) fail(key, "is " + typeName(*node) + "; a string in quotes would be right");
     value = node->as_string()->get();
+    if (value.find('\0') != std::string::npos) fail(key, "holds a NUL character");
 }
 
-void TomlReader::texts(std::string_view key, std::vector<std::string>& values, size_t most, size_t least) {
+void TomlReader::texts(std::string_view key, std::vector<std::string>& values, size_t most, size_t least,
+                       std::string_view of) {
     const toml::node* node = Nodes::find(*this, key);
     if (!node) return;
-    const std::string wanted = most == 1      ? std::string("one channel name")
-                               : least < most ? concat("an array of ", least, " to ", most, " channel names")
-                                              : concat("an array of ", most, " channel names");
+    const std::string wanted = most == 1      ? concat("one ", of)
+                               : least < most ? concat("an array of ", least, " to ", most, " ", of, "s")
+                                              : concat("an array of ", most, " ", of, "s");
     values.clear();
     if (node->is_string() && least == 1) {
         values.push_back(node->as_string()->get());

@@ -33,7 +33,8 @@ class TomlReader {
     void integer(std::string_view key, uint32_t& value, Range range);
     void text(std::string_view key, std::string& value);
     // From `least` to `most` of them. One text is enough for 1.
-    void texts(std::string_view key, std::vector<std::string>& values, size_t most, size_t least);
+    void texts(std::string_view key, std::vector<std::string>& values, size_t most, size_t least,
+               std::string_view of = "channel name");
 
     // One value or an array of them, not empty.
     void list(std::string_view key, std::vector<std::string>& values);

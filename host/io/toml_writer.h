@@ -34,7 +34,8 @@ class TomlWriter {
     void text(std::string_view key, const std::string& value) {
         if (!value.empty()) line(key, quoted(value));
     }
-    void texts(std::string_view key, const std::vector<std::string>& values, size_t, size_t) {
+    void texts(std::string_view key, const std::vector<std::string>& values, size_t, size_t,
+               std::string_view = "") {
         if (values.empty()) return;
         std::string list;
         for (const std::string& value : values) list += (list.empty() ? "" : ", ") + quoted(value);

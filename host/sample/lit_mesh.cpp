@@ -1,6 +1,8 @@
 #include "sample/lit_mesh.h"
 
 #include <algorithm>
+#include <locale>
+#include <sstream>
 
 namespace pellucid::sample {
 namespace {
@@ -73,30 +75,60 @@ std::array<double, 3> middle(const std::array<double, 3>& a, const std::array<do
     return {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
 }
 
+[[noreturn]] void tooMany(const LitMeshOptions& options, double triangles) {
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text << "the lit mesh would have " << triangles << " triangles or more, with edges of at most "
+         << options.coarsest << "; " << options.mostTriangles
+         << " are the most. Is the unit of lengths right, or the profile too narrow for the mesh?";
+    throw std::length_error(text.str());
+}
+
 class Refiner {
   public:
     Refiner(const Scene& scene, const Lighting& lighting, const LitMeshOptions& options)
         : scene_(scene), lighting_(lighting), options_(options) {}
 
-    void take(uint32_t first, uint32_t end) {
+    // Before any work: triangles whose edges are at most `coarsest` long have an area of at most an
+    // equilateral one's.
+    void refuseTooMany() const {
+        const double mostArea = std::sqrt(3.0) / 4 * options_.coarsest * options_.coarsest;
+        double least = 0;
+        for (uint32_t t = 0; t < scene_.mesh().triangles.size() / 3; ++t) {
+            if (!takes(t)) continue;
+            Vec3 corners[3];
+            for (int k = 0; k < 3; ++k)
+                corners[k] = vectorAt(scene_.mesh().positions, scene_.mesh().triangles[3 * size_t(t) + k]);
+            least +=
+                std::max(1.0, length(cross(corners[1] - corners[0], corners[2] - corners[0])) / 2 / mostArea);
+        }
+        if (least > double(options_.mostTriangles)) tooMany(options_, least);
+    }
+    // `poll`: called again and again, and may throw.
+    void take(uint32_t first, uint32_t end, const std::function<void()>& poll) {
         std::vector<Piece> pieces;
         for (uint32_t t = first; t < end; ++t)
-            if (options_.material == 0 || materialOf(t) == options_.material)
-                pieces.push_back({t, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {}});
+            if (takes(t)) pieces.push_back({t, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {}});
         lightPoints(
             pieces, [](const Piece& p, int k) { return p.weights[k]; },
             [](Piece & p, int k) -> auto& { return p.light[k]; });
+        // The last ones first, so that pieces of pieces take bounded memory.
+        constexpr size_t atOnce = size_t{1} << 20;
         while (!pieces.empty()) {
+            poll();
+            const auto from = pieces.end() - std::ptrdiff_t(std::min(pieces.size(), atOnce));
             std::vector<Halves> halves;
-            for (const Piece& p : pieces) halves.push_back({p, {}});
+            for (auto p = from; p != pieces.end(); ++p) halves.push_back({*p, {}});
+            pieces.erase(from, pieces.end());
             lightPoints(
                 halves,
                 [](const Halves& h, int k) {
                     return middle(h.piece.weights[k], h.piece.weights[(k + 1) % 3]);
                 },
                 [](Halves & h, int k) -> auto& { return h.light[k]; });
-            pieces.clear();
             for (const Halves& h : halves) split(h, pieces);
+            if (pieces.size() + result.triangles.size() / 3 > options_.mostTriangles)
+                tooMany(options_, double(pieces.size() + result.triangles.size() / 3));
         }
     }
     LitMesh result;
@@ -107,8 +139,9 @@ class Refiner {
         Piece piece;
         std::array<std::array<float, 3>, 3> light;  // in the middle of each side
     };
-    uint32_t materialOf(uint32_t t) const {
-        return scene_.mesh().materials.empty() ? 1 : scene_.mesh().materials[t];
+    bool takes(uint32_t t) const {
+        const std::vector<uint32_t>& of = scene_.mesh().materials;
+        return options_.material == 0 || options_.material == (of.empty() ? 1 : of[t]);
     }
 
     template <class Item, class Where, class Light>
@@ -146,10 +179,6 @@ class Refiner {
         }
         if (longest <= options_.coarsest &&
             (longest <= options_.finest || deviation <= options_.deviation * brightest)) {
-            if (result.triangles.size() / 3 >= options_.mostTriangles)
-                throw std::runtime_error("the lit mesh would have more than " +
-                                         std::to_string(options_.mostTriangles) +
-                                         " triangles; let it be less fine");
             for (int k = 0; k < 3; ++k) {
                 result.triangles.push_back(uint32_t(result.triangles.size()));
                 for (double x : {corners[k].x, corners[k].y, corners[k].z})
@@ -221,6 +250,7 @@ std::vector<float> irradianceAt(const Scene& scene, const Lighting& lighting,
 LitMesh lightMesh(const Scene& scene, const Lighting& lighting, const LitMeshOptions& options,
                   const std::function<void(double)>& progress) {
     Refiner refiner(scene, lighting, options);
+    refiner.refuseTooMany();
     // The largest irradiance is known before, so that the order of triangles does not matter.
     std::vector<SurfacePoint> corners;
     const auto count = uint32_t(scene.mesh().triangles.size() / 3);
@@ -228,8 +258,9 @@ LitMesh lightMesh(const Scene& scene, const Lighting& lighting, const LitMeshOpt
     for (float E : irradianceAt(scene, lighting, corners)) refiner.brightest = std::max(refiner.brightest, E);
     constexpr uint32_t batch = 16384;
     for (uint32_t first = 0; first < count; first += batch) {
-        if (progress) progress(double(first) / count);
-        refiner.take(first, std::min(count, first + batch));
+        refiner.take(first, std::min(count, first + batch), [&] {
+            if (progress) progress(double(first) / count);
+        });
     }
     return std::move(refiner.result);
 }

@@ -62,7 +62,7 @@ struct LitMeshOptions {
     uint32_t material = 0;  // only triangles of this id give light; 0: all
 };
 
-// `progress`: told a fraction, and may throw. Throws std::runtime_error beyond mostTriangles.
+// `progress`: told a fraction again and again, and may throw. Throws std::length_error beyond mostTriangles.
 LitMesh lightMesh(const Scene& scene, const Lighting& lighting, const LitMeshOptions& options,
                   const std::function<void(double)>& progress = {});
 

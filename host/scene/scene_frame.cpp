@@ -125,7 +125,12 @@ SceneFrame::SceneFrame(const Device& device, const Image& gbuffer, const SceneFi
         shader_.commit();
         return;
     }
+    PelShaderOptions whole = withOptionsOf(scene, options);
+    const PelShaderOptions wanted = whole;
+    whole.regionX = whole.regionY = whole.regionWidth = whole.regionHeight = 0;  // `gbuffer` is a blank one
+    shader_.set(whole);
     if (!options.buildInBackground) warmUpPrograms(device_, 0, {shader_});
+    shader_.set(wanted);
     gbuffer_ = nullptr;
 }
 

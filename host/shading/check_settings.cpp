@@ -209,6 +209,21 @@ void checkCamera(const PelCamera& camera) {
     checkFinite("PelCamera", "inverseViewProjection", camera.inverseViewProjection, 16);
 }
 
+void checkInvertible(const char* structure, const float (&m)[16]) {
+    // By its 2 x 2 minors, over the lengths of its rows.
+    const auto minor = [&](int row, int a, int b) {
+        return double(m[row + a]) * m[row + 4 + b] - double(m[row + b]) * m[row + 4 + a];
+    };
+    const double determinant = minor(0, 0, 1) * minor(8, 2, 3) - minor(0, 0, 2) * minor(8, 1, 3) +
+                               minor(0, 0, 3) * minor(8, 1, 2) + minor(0, 1, 2) * minor(8, 0, 3) -
+                               minor(0, 1, 3) * minor(8, 0, 2) + minor(0, 2, 3) * minor(8, 0, 1);
+    double lengths = 1;
+    for (int r = 0; r < 16; r += 4)
+        lengths *= std::hypot(std::hypot(m[r], m[r + 1]), std::hypot(m[r + 2], m[r + 3]));
+    if (!(std::abs(determinant) > 1e-14 * lengths))
+        invalidArgument(structure, ".inverseViewProjection is singular: positions cannot be made from depth");
+}
+
 void checkOptions(const PelShaderOptions& options) {
     checkFinite("PelShaderOptions", "invalidColor", options.invalidColor, 3);
     const char* structure = "PelShaderOptions";

@@ -24,6 +24,8 @@ void checkCube(const ImageView& faces, const char* what);
 void checkEnvironment(const ImageView& image);
 void checkAxes(const std::array<float, 9>& axes);  // of it
 void checkCamera(const PelCamera& camera);
+// Positions follow from depth by it.
+void checkInvertible(const char* structure, const float (&inverseViewProjection)[16]);
 void checkOptions(const PelShaderOptions& options);
 
 }  // namespace pel

@@ -269,6 +269,8 @@ uint32_t deriveFeatures(const ShaderState& state) {
         checkNormalMapFormats(state);
     }
     const bool position = images[PEL_SLOT_POSITION] || images[PEL_SLOT_DEPTH];
+    if (images[PEL_SLOT_DEPTH] && !images[PEL_SLOT_POSITION])
+        checkInvertible("PelCamera", state.camera.inverseViewProjection);
     constexpr const char* what = "position image (or the depth image)";
     if (features & PEL_FEATURE_THICKNESS_TAPS) need(position, what, "to measure thickness in the shadow map");
     if (features & (PEL_FEATURE_SPECULAR | PEL_FEATURE_ENVIRONMENT))

@@ -23,6 +23,7 @@ void checkScreenCurvature(const PelScreenCurvatureParams& params, const ScreenCu
         if (images.depth && !std::isfinite(m))
             invalidArgument("PelScreenCurvatureParams.inverseViewProjection holds ", m,
                             "; it must be finite");
+    if (images.depth) checkInvertible("PelScreenCurvatureParams", params.inverseViewProjection);
     if (images.curvature.format != PEL_FORMAT_R32F)
         invalidArgument("the curvature image has format ", images.curvature.info().name, "; it needs R32F");
     const std::pair<PelImageSlot, const ImageView*> inputs[] = {{PEL_SLOT_NORMAL_SHADING, &images.normals},

@@ -22,7 +22,7 @@ class Cli : public shade_files::Shade {
 };
 
 struct Refusal {
-    const char* line;
+    std::string line;
     int exitCode;
     const char *message, *environment = "";
 };
@@ -63,7 +63,13 @@ const Refusal refusals[] = {
     {"curvature @m.off -o @c.npy --picture @c.jpg", 2, ".png"},
     {"curvature @m.off -o @c.ply --range 2 1", 2, "lower one first"},
     {"curvature @m.off -o @c.ply --range 2", 2, "--range"},
+    {"curvature -- @m.off -o @c.npy", 2, "pellucid curvature does not expect '-o'"},
+    {"curvature @m.off -o @" + std::string(260, 'n') + ".npy", 2,
+     "has a name of 264 bytes; 255 are the most"},
     {"curvature @nan.off -o @c.npy", 3, "nan.off:4: "},
+    {"compare @g.exr @g.exr --exposure nan", 2, "--exposure"},
+    {"compare @g.exr @g.exr --scale-a inf", 2, "--scale-a"},
+    {"compare @g.exr @g.exr --scale-b 0", 2, "--scale-b"},
     {"curvature @none.off -o @c.npy", 3, "No such file"},
     {"profile show granite", 3, "granite"},
     {"profile fit skin --gaussians 13", 2, "'13' is not a whole number from 1 to 12"},

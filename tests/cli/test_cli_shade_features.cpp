@@ -139,7 +139,8 @@ TEST_F(ShadeFeatures, PartsOfThePictureAreFiles) {
     const auto thickness = channel("o_thickness.exr", "Thickness.V");
     for (size_t i = 0; i < thickness.size(); ++i) EXPECT_EQ(thickness[i], i % width < 2 ? 0.0f : 3.0f);
     EXPECT_EQ(thickness, channel("own name.exr", "Thickness.V"));
-    for (const auto& [file, message] : {std::pair{"o.exr", "written twice"}, {"o.png", ".exr"}}) {
+    for (const auto& [file, message] :
+         {std::pair{"o.exr", "written twice"}, {"./o.exr", "written twice"}, {"o.png", ".exr"}}) {
         scene_.outputs[PEL_SLOT_OUT_THICKNESS] = file;
         refuses(message);
     }

@@ -176,6 +176,20 @@ TEST(Events, WaitingForAFailedEventIsAnError) {
     EXPECT_EQ(buffer.readAll<int>(), (std::vector<int>{1, 2}));
 }
 
+TEST(Events, OfAnotherDeviceAreRefused) {
+    const Device one(""), other("");
+    const Buffer buffer(one, std::vector<int>{1, 2}), elsewhere(other, std::vector<int>{3, 4});
+    int back[2] = {};
+    PelEvent event = nullptr;
+    PelSubmit submit{nullptr, 0, &event};
+    check(pelBufferRead(elsewhere.get(), 0, sizeof back, back, &submit));
+    submit = {&event, 1, nullptr};
+    expectRefused(PEL_ERROR_INVALID_ARGUMENT, {"PelSubmit.waits[0]", "another device"},
+                  [&] { return pelBufferRead(buffer.get(), 0, sizeof back, back, &submit); });
+    check(pelEventWait(event));
+    pelEventRelease(event);
+}
+
 TEST(Errors, HaveNames) {
     EXPECT_STREQ(pelErrorName(PEL_ERROR_NO_DEVICE), "PEL_ERROR_NO_DEVICE");
 }

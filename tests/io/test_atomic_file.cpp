@@ -163,6 +163,24 @@ TEST_F(AtomicFileTest, AbandonedFilesAreRemovedAndLiveOnesAreNot) {
     EXPECT_EQ(removeAbandonedFiles(path("none")), 0u);
 }
 
+// Names from scenes and programs: the system would end them at the NUL.
+TEST_F(AtomicFileTest, NamesHaveNoNul) {
+    const std::string name = write("a.txt", "abc") + '\0' + ".exr";
+    const auto refusal = [](auto&& use) { return messageOf<FileError>(use); };
+    for (const std::string& said :
+         {refusal([&] { writeWholeFile(name, "x"); }), refusal([&] { readWholeFile(name); }),
+          refusal([&] { checkWritable(name); }), refusal([&] { checkReadable(name); })})
+        EXPECT_TRUE(contains(said, "a.txt\\x00.exr: is a name with a NUL character")) << said;
+    EXPECT_EQ(readWholeFile(path("a.txt")), "abc");
+}
+
+// A terminal would obey them.
+TEST_F(AtomicFileTest, MessagesHaveNoControlCharacters) {
+    EXPECT_STREQ(FileError("a\nb", "has no '\x1b[2J\x7f\xc3\xa4'", 3).what(),
+                 "a\\x0ab:3: has no '\\x1b[2J\\x7f\xc3\xa4'");
+    EXPECT_EQ(printable("a\tb\nc\r", true), "a\tb\nc\\x0d");
+}
+
 TEST_F(AtomicFileTest, InputsHaveALimit) {
     EXPECT_EQ(readWholeFile(write("a", "abc")), "abc");
     EXPECT_EQ(readWholeFile(write("e", "")), "");

@@ -130,6 +130,13 @@ TEST_F(MeshFile, ObjWithNegativeIndicesAndSeams) {
     EXPECT_EQ((Floats(split.uvs.begin() + 8, split.uvs.end())), (Floats{0.5f, 0.5f}));
 }
 
+TEST_F(MeshFile, AByteOrderMarkIsNoPartOfTheFirstLine) {
+    const std::string mark = "\xEF\xBB\xBF";
+    EXPECT_EQ(load("a.obj", mark + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").positions,
+              (Floats{0, 0, 0, 1, 0, 0, 0, 1, 0}));
+    EXPECT_EQ(load("a.off", mark + offTetrahedron).positions, corners);
+}
+
 TEST_F(MeshFile, StlBothWays) {
     const Floats facets = facetsOfTetrahedron();
     const MeshData binary = load("b.stl", binaryStl(facets)), ascii = load("a.stl", textStl(facets));

@@ -714,7 +714,19 @@ TEST(LitMesh, LightsAndLimits) {
             ASSERT_EQ(behind.irradiance[3 * corner], 0) << "in the first one's shadow";
         }
     options.mostTriangles = 3;
-    EXPECT_THROW(sample::lightMesh(scene, fromAbove(), options), std::runtime_error);
+    EXPECT_THROW(sample::lightMesh(scene, fromAbove(), options), std::length_error);
+    // Refused by the area alone, before any light; and where shadows need too many; `progress` may end it.
+    int calls = 0;
+    const auto count = [&](double) { ++calls; };
+    EXPECT_THROW(sample::lightMesh(scene, fromAbove(), {.coarsest = 1e-3 * radius}, count),
+                 std::length_error);
+    EXPECT_EQ(calls, 0);
+    EXPECT_THROW(sample::lightMesh(scene, fromAbove(), {.deviation = 1e-9, .mostTriangles = 5000}, count),
+                 std::length_error);
+    EXPECT_GT(calls, 2);
+    EXPECT_THROW(sample::lightMesh(scene, fromAbove(), {.deviation = 1e-9},
+                                   [](double) { throw std::domain_error(""); }),
+                 std::domain_error);
 
     // A point light at distance 100 from the first sphere's pole, without and with a range; a spot's cone.
     sample::SurfaceLight light;

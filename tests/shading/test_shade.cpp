@@ -335,6 +335,12 @@ TEST(ShadeLayouts, PositionsFromDepth) {
         shader.set(PEL_SLOT_DEPTH, imageDesc(upload(device(), depth), PEL_FORMAT_R32F, f.width, f.height));
         const auto result = shadeInto(shader, f);
         EXPECT_LE(worstError(f, result), tolerance::shadeFromDepth) << "reversed " << reversed;
+        PelCamera flat = f.camera;  // one row is another's multiple
+        for (int k = 0; k < 4; ++k) flat.inverseViewProjection[4 + k] = 3 * flat.inverseViewProjection[k];
+        shader.set(flat);
+        expectRefused(PEL_ERROR_INVALID_ARGUMENT, {"singular"},
+                      [&] { return pelShaderCommit(shader.get()); });
+        shader.set(f.camera);
         // A NaN in the depth makes its own pixel invalid and no other.
         size_t at = 0;
         while (f.slots[PEL_SLOT_MATERIAL].values[at] == 0) ++at;

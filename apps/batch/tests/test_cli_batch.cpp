@@ -206,6 +206,8 @@ TEST_F(BatchCommand, AStackHoldsTheTexelsOfItsTables) {
     EXPECT_EQ(report["redone"], 1);
     EXPECT_TRUE(contains(batch(stacked + "name = \"{profile}\"\n").err, "cannot stand beside 'stack'"));
     EXPECT_TRUE(contains(batch(grid + "stack = 5000\n").err, "stack"));
+    EXPECT_TRUE(contains(batch("[[grid]]\nkind = \"specular\"\nsize = [4, 8]\nstack = 3\n").err,
+                         "specular tables of one size are all the same"));
 }
 
 // Wrong entries are reported with their lines, and the others are made.

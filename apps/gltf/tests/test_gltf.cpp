@@ -51,6 +51,19 @@ std::vector<float> position(const GltfScene& s, size_t v) {
     return {s.mesh.positions[3 * v], s.mesh.positions[3 * v + 1], s.mesh.positions[3 * v + 2]};
 }
 
+// The cross product of two edges of a triangle, along its first vertex's normal.
+double facing(const MeshData& m, size_t triangle) {
+    const float* p[3];
+    for (size_t k = 0; k < 3; ++k) p[k] = &m.positions[3 * m.triangles[triangle + k]];
+    double sum = 0;
+    for (size_t c = 0; c < 3; ++c) {
+        const size_t d = (c + 1) % 3, e = (c + 2) % 3;
+        sum += m.normals[3 * m.triangles[triangle] + c] * (double(p[1][d] - p[0][d]) * (p[2][e] - p[0][e]) -
+                                                           double(p[1][e] - p[0][e]) * (p[2][d] - p[0][d]));
+    }
+    return sum;
+}
+
 using Indices = std::vector<uint32_t>;
 constexpr const char *mode = "/meshes/0/primitives/0/mode", *uri = "/buffers/0/uri";
 
@@ -84,9 +97,12 @@ TEST(Gltf, JsonWithABufferInTextOrInAFile) {
     const GltfScene file = decodeGltf("s.gltf", edited({{uri, "my%20parts/a.bin"}}).dump(),
                                       [&](const std::string& name) { return asked = name, raw; });
     EXPECT_EQ(asked, "my parts/a.bin");
+    (void)decodeGltf("s.gltf", edited({{uri, "./parts/./a.bin"}}).dump(),
+                     [&](const std::string& name) { return asked = name, raw; });
+    EXPECT_EQ(asked, "parts/a.bin");
     EXPECT_EQ(file.mesh.positions, text.mesh.positions);
     for (const char* wrong : {"/etc/passwd", "../a.bin", "a/../../b", "file:///etc/passwd", "http://x/y",
-                              "%2e%2e/a", "a\\b", "", "a//b"})
+                              "%2e%2e/a", "a\\b", "", "a//b", ".", "./../a.bin"})
         expectError(edited({{uri, wrong}}).dump(), {"buffers[0].uri"});
 }
 
@@ -100,24 +116,26 @@ TEST(Gltf, NodesMoveTurnScaleAndMirror) {
     EXPECT_EQ(position(s, 5), (std::vector<float>{9, 0, 5}));
 }
 
-// However a node is turned, its triangles face the way of its normals, mirrored or not.
+// However a node is turned, its triangles face the way of its normals, mirrored or not, whether the normals
+// are the file's or made from the triangles.
 TEST(Gltf, TurnedAndMirroredFacesKeepTheirFront) {
+    std::string buffer = squareBuffer();
+    for (int v = 0; v < 4; ++v) buffer += gltf::bytesOf<float>({0, 0, 1});
     for (const json& turn : R"([[0, 0, 0, 1], [0, 0, 0.70710678, 0.70710678], [0, 0.70710678, 0, 0.70710678],
              [0.70710678, 0, 0, 0.70710678], [0.5, 0.5, 0.5, 0.5], [0.1826, 0.3651, 0.5477, 0.7303]])"_json)
         for (const json& scale : "[[1, 1, 1], [-1, 1, 1], [1, -2, 1], [1, 1, -3], [-1, -1, -1]]"_json) {
-            const MeshData m = decoded(square({{"/nodes/0/rotation", turn}, {"/nodes/0/scale", scale}})).mesh;
-            for (size_t t = 0; t < m.triangles.size(); t += 3) {
-                const float* p[3];
-                for (size_t k = 0; k < 3; ++k) p[k] = &m.positions[3 * m.triangles[t + k]];
-                double facing = 0;
-                for (size_t c = 0; c < 3; ++c) {
-                    const size_t d = (c + 1) % 3, e = (c + 2) % 3;
-                    facing +=
-                        m.normals[3 * m.triangles[t] + c] * (double(p[1][d] - p[0][d]) * (p[2][e] - p[0][e]) -
-                                                             double(p[1][e] - p[0][e]) * (p[2][d] - p[0][d]));
-                }
-                EXPECT_GT(facing, 0.9) << turn << " times " << scale;
-            }
+            const Edits made{{"/nodes/0/rotation", turn}, {"/nodes/0/scale", scale}};
+            Edits given = made;
+            given.insert(given.end(),
+                         {{"/meshes/0/primitives/0/attributes/NORMAL", 3},
+                          {"/accessors/3", R"({"bufferView": 3, "componentType": 5126, "count": 4,
+                                                            "type": "VEC3"})"_json},
+                          {"/buffers/0/byteLength", buffer.size()},
+                          {"/bufferViews/3",
+                           {{"buffer", 0}, {"byteOffset", 92}, {"byteLength", buffer.size() - 92}}}});
+            for (const MeshData& m : {decoded(square(made)).mesh, decoded(square(given, buffer)).mesh})
+                for (size_t t = 0; t < m.triangles.size(); t += 3)
+                    EXPECT_GT(facing(m, t), 0.9) << turn << " times " << scale;
         }
 }
 

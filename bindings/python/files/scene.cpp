@@ -85,6 +85,7 @@ class Scene {
         take(std::move(image));
     }
     bool hasGBuffer() const { return gbuffer_.has_value(); }
+    std::string gbufferFile() const { return scene_.gbuffer; }  // that the scene names; may be empty
 
     // Materials (id, bytes, name of the profile), lights, ambient light, camera, options.
     using Material = std::tuple<uint32_t, std::string, std::string>;
@@ -254,6 +255,7 @@ void bindScene(py::module_& module) {
         .def("read_gbuffer", &Scene::readGBuffer)
         .def("set_gbuffer", &Scene::setGBuffer)
         .def("has_gbuffer", &Scene::hasGBuffer)
+        .def("gbuffer_file", &Scene::gbufferFile)
         .def("shade", &Scene::shade)
         .def("save", &Scene::save);
     module.def("write_scene", &writeScene);

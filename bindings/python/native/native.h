@@ -169,7 +169,9 @@ struct Argument<T*> {
 template <>
 struct Argument<const char*> {
     using Python = std::string;
-    explicit Argument(std::string given) : text(std::move(given)) {}
+    explicit Argument(std::string given) : text(std::move(given)) {
+        if (text.find('\0') != std::string::npos) throw py::value_error("a text holds a NUL character");
+    }
     const char* get() { return text.c_str(); }
     std::string text;
 };

@@ -111,8 +111,10 @@ class Scene(OfThisProcess):
                 self.camera._data.tobytes(), self.options._data.tobytes())
 
     def gbuffer_file(self) -> Optional[Path]:
-        """The G-buffer beside the scene as the viewer and the demo write it: gbuffer.exr or
-        SCENE_gbuffer.exr, if there is one."""
+        """The G-buffer that the scene names, or the one beside it as the viewer and the demo write it:
+        SCENE_gbuffer.exr or gbuffer.exr, if there is one."""
+        if named := self._native.gbuffer_file():
+            return Path(named)
         here = Path(self.source)
         for candidate in (here.with_name(here.stem + "_gbuffer.exr"), here.with_name("gbuffer.exr")):
             if candidate.exists():
@@ -127,8 +129,8 @@ def load_scene(path: Any, gbuffer: Union[str, Path, Mapping[str, ArrayLike], Non
     ----------
     path : str or path
     gbuffer : str, path or dict, optional
-        As for `Scene.set_gbuffer`. Without it: SCENE_gbuffer.exr or gbuffer.exr beside the scene, if there
-        is one.
+        As for `Scene.set_gbuffer`. Without it: what the scene's key `gbuffer` names, else SCENE_gbuffer.exr
+        or gbuffer.exr beside the scene, if there is one.
 
     Raises
     ------

@@ -86,6 +86,36 @@ def test_what_a_scene_holds(folder):
     assert "2 materials, 1 lights" in repr(scene)
 
 
+def test_the_gbuffer_that_a_scene_names(folder, device):
+    scene = folder / "scene.toml"
+    (folder / "gbuffer.exr").rename(folder / "own.exr")
+    files.write_image(folder / "gbuffer.exr", np.zeros((2, 2, 3), np.float32))  # not the one
+    scene.write_text(SCENE.replace("[channels]", 'gbuffer = "own.exr"\n[channels]', 1))
+    assert pel.load_scene(scene).gbuffer_file() == folder / "own.exr"
+    assert pel.shade(pel.load_scene(scene), device).radiance.shape == (80, 96, 3)
+
+
+def test_a_region_can_be_shaded_first(folder, device):
+    scene = pel.load_scene(folder / "scene.toml")
+    scene.options.region_x, scene.options.region_y = 40, 30
+    scene.options.region_width, scene.options.region_height = 32, 24
+    part = pel.shade(scene, device).radiance
+    assert part[30:54, 40:72].min() > 0
+    part[30:54, 40:72] = 0
+    assert not part.any()
+
+
+def test_names_have_no_nul(folder):
+    scene = pel.load_scene(folder / "scene.toml")
+    with pytest.raises(files.FileError, match="NUL"):
+        scene.save(folder / "a.toml\0.txt")
+    with pytest.raises(files.FileError, match="NUL"):
+        pel.load_scene(f"{folder}/scene.toml\0.x")
+    with pytest.raises(ValueError, match="NUL"):
+        pel.Profile.named("skin\0more")
+    assert not (folder / "a.toml").exists()
+
+
 def test_the_bits_are_those_of_the_command(folder, device):
     made = pel.shade(pel.load_scene(folder / "scene.toml"), device)
     assert made.radiance.shape == (80, 96, 3) and made.radiance.max() > 0.1

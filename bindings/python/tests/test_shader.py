@@ -167,6 +167,13 @@ def test_ambient_cube(device, view):
             shader.set_ambient_cube(wrong)
 
 
+def test_memory_that_is_no_image_says_what_would_be(device):
+    packed = np.zeros((8, 9), dtype=[("n", np.float32, 3), ("id", np.uint8)])
+    for wrong in (np.zeros((9, 8, 3), np.float32).swapaxes(0, 1), packed["n"]):
+        with pytest.raises(ValueError, match="ascontiguousarray"):
+            pel.Shader(device).set_image("normal_shading", wrong)
+
+
 @pytest.mark.parametrize("slot", ["radiance", "out_diffuse"])
 def test_outputs_are_writable(device, view, slot):
     out = black()

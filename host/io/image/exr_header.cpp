@@ -80,7 +80,11 @@ class Check {
                 // None, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
                 constexpr int rows[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
                 const auto method = uint8_t(a->value[0]);
-                if (method >= std::size(rows)) damaged(concat("its compression ", method, " is not known"));
+                if (method >= std::size(rows))
+                    throw FileError(path_,
+                                    concat("has compression ", method,
+                                           ", which is not known here; None, RLE, ZIP, PIZ, PXR24, B44 or "
+                                           "DWA would be right"));
                 part.rowsPerChunk = rows[method];
             } else if (a->name == "chunkCount") {
                 need("int", 4);

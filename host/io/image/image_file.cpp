@@ -35,6 +35,9 @@ const Channel& Image::channel(const std::string& name) const {
         }
     }
     if (fitting.size() == 1) return *found;
+    if (name.empty())
+        throw FileError(source,
+                        "has several channels, and none is named; 'channel' names one of: " + listOf(all));
     if (fitting.empty()) throw FileError(source, "has no channel '" + name + "'; it has: " + listOf(all));
     throw FileError(source, "has several channels that '" + name + "' could mean: " + listOf(fitting) +
                                 "; give one of these full names");

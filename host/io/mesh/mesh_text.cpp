@@ -208,7 +208,11 @@ RawMesh readObj(const std::string& path, const std::string& text) {
             for (size_t i = 1; i < 3; ++i) uvs.push_back(scan.number(i, "texture coordinate"));
         if (word == "vn")
             for (size_t i = 1; i < 4; ++i) normals.push_back(scan.number(i, "normal"));
-        if (word != "f") continue;
+        if (word != "f") {
+            if (std::ranges::any_of(word, [](char c) { return c >= 0 && c < ' '; }))
+                scan.fail("begins with a control character; the file is damaged");
+            continue;
+        }
         if (scan.words().size() < 4) scan.fail("a face needs at least three corners");
         const size_t counts[3] = {mesh.positions.size() / 3, uvs.size() / 2, normals.size() / 3};
         faces.push_back({{}, scan.line()});

@@ -64,6 +64,11 @@ AtomicFile::AtomicFile(std::string target)
     if (folder_ < 0 && errno == ENOENT)
         throw FileError(target_, "cannot be written: there is no folder '" + folder + "'; create it first");
     if (folder_ < 0) fail();
+    if (const long most = ::fpathconf(folder_, _PC_NAME_MAX); most > 0 && name_.size() > size_t(most)) {
+        ::close(folder_);
+        throw FileError(target_,
+                        concat("has a name of ", name_.size(), " bytes; ", most, " are the most there"));
+    }
     temporary_ = temporaryName(name_);
     file_ = ::openat(folder_, temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (file_ < 0) {

@@ -57,6 +57,7 @@ int opened(const std::string& path, uint64_t& bytes) {
 }  // namespace
 
 std::string otherThanFile(const std::string& path) {
+    if (path.find('\0') != std::string::npos) return "a name with a NUL character";
     struct stat status {};
     return ::stat(path.c_str(), &status) == 0 ? kindOf(status.st_mode) : "";
 }

@@ -125,7 +125,7 @@ void materialKeys(Visitor& v, Material& m) {
     auto& s = m.material;
     PEL_EACH_MATERIAL_FIELD(PELLUCID_FIELD_KEY)
     v.text("normal_map", m.normalMap);
-    v.texts("normal_map_levels", m.normalMapLevels, PEL_MAP_LEVELS, 1);
+    v.texts("normal_map_levels", m.normalMapLevels, PEL_MAP_LEVELS, 1, "file name");
     v.choice("specular_model", m.material.specularModel, specularModels);
     v.choice("scattering", m.material.scattering, scatterings);
     v.number("scale", m.scale, {0, PEL_FINITE, -1});

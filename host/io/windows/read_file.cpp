@@ -26,6 +26,7 @@ std::unique_ptr<std::FILE, Close> opened(const std::string& path) {
 }  // namespace
 
 std::string otherThanFile(const std::string& path) {
+    if (path.find('\0') != std::string::npos) return "a name with a NUL character";
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     return !fs::exists(status) || fs::is_regular_file(status) ? ""
