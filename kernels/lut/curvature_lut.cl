@@ -108,7 +108,7 @@ static inline Rgb kernelAt(__global const LutGaussian* gaussians, const uint fir
     for (uint g = first; g < end; ++g) {
         const LutGaussian G = gaussians[g];
 #if PEL_FORM == PEL_FORM_SPHERE
-        // In sigmas. At 1e-6 light is already even; the same limit is used where the sum is normalised.
+        // In sigmas. At 1e-6 light is already uniform; the normalisation uses the same limit.
         const floatw x = clamp(radius / G.sigma, 1e-6f, 1e8f);
 #else
         const floatw x = fmin(radius / G.sigma, 1e8f);
