@@ -24,7 +24,7 @@ bool samePixels(const ImageView& a, const ImageView& b) {
 }
 
 namespace {
-// Samples of sums by levels are nearer than the light that they stand for, so that they gain less.
+// Samples of sums by levels are nearer than the light that they represent, so their gain is smaller.
 constexpr double nearerByLevels = 0.925;
 
 enum ScreenProgram { PYRAMIDS, SUMS, CLASSIFY };
@@ -39,7 +39,7 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
     std::vector<PelProfileTable> tables;
     std::vector<float> values;
     for (const Material& material : distinct) {
-        // Otherwise surfaces have no outer side.
+        // Without sides, the outward direction is unknown.
         Rgb path{};
         const PelProfileInfo info = material.profile->info();
         for (int c = 0; hasSides && c < 3; ++c) path[c] = meanFreePath(info, c) * material.scale;

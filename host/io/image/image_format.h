@@ -10,7 +10,7 @@ namespace pellucid::io {
 
 struct ImageFormat {
     const char* reader;  // OpenImageIO's name for it
-    // Of the file, without what pictures do not need: text, colour profiles, thumbnails, EXIF
+    // Of the file, without text, colour profiles, thumbnails and EXIF
     std::string bytes;
 };
 

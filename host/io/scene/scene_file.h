@@ -34,7 +34,7 @@ struct SceneMaterial {
     ScenePreset preset = ScenePreset::none;
     std::string scatteredTexture;  // image of light that was scattered in texture space, linear; "": none
     std::string normalMap;  // image of tangent-space normals, x, y, z from 0 to 1 as in 8-bit files; "": none
-    // Instead: its levels, the finest first, x, y, z from -1 to 1
+    // Alternative: its levels, the finest first, x, y, z from -1 to 1
     std::vector<std::string> normalMapLevels;
     int line = 0;
 };
