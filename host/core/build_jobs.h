@@ -11,7 +11,7 @@ namespace pel {
 // on the smallest possible input.
 using BuildJobs = std::vector<std::function<void()>>;
 
-// A job for each of these programs, the longest first so that the others are built beside it.
+// A job for each of these programs, the longest first, so that the others are built in parallel with it.
 void addProgramJobs(const Ref<Device>& device, std::vector<cl::ProgramKey> keys, BuildJobs& jobs);
 
 // So many threads or processes; 0: one per core, at most `mostHelpers`.

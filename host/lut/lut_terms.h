@@ -68,8 +68,8 @@ std::vector<cl_float4> antipodes(const Profile& profile, bool radial, const std:
 // The intervals of the mesh of curvature tables (lut_terms.h). `chord`: distances are chords, not arcs.
 std::vector<TableInterval> tableMesh(int nodes, bool chord);
 
-// Of samples PEL_RAMP_PARTS to a half width of the ramp 3/4 (1 - y^2), -1 <= y <= 1, of a function that is
-// cubic between them.
+// Weights of samples, PEL_RAMP_PARTS to a half width of the ramp 3/4 (1 - y^2), -1 <= y <= 1, for a function
+// that is cubic between them.
 std::vector<RampWeight> rampWeights();
 
 // Points (weight R, G, B; distance) that represent the table with those knots on a sphere of that diameter,

@@ -1,4 +1,4 @@
-// Skin by what it is made of: albedo, profile, and maps of melanin and blood. Section 15 of the mathematics.
+// Skin from its composition: albedo, profile, and maps of melanin and blood. Section 15 of the mathematics.
 #pragma once
 #include "lut/profile.h"
 

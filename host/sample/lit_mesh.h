@@ -39,8 +39,8 @@ Surface surfaceAt(const Mesh& mesh, const SurfacePoint& point);
 std::vector<SurfacePoint> nearestPoints(const Scene& scene, std::span<const float> positions,
                                         std::vector<double>& distances);
 
-// RGB per point. The cosine is that of the interpolated normals. Shadow rays begin at the surface that these
-// mean, so that facets throw no shadows on each other [Hanika 2021, "Hacking the shadow terminator"].
+// RGB per point. The cosine is that of the interpolated normals. Shadow rays begin at the smooth surface that
+// these imply, so that facets cast no shadows on each other [Hanika 2021, "Hacking the shadow terminator"].
 std::vector<float> irradianceAt(const Scene& scene, const Lighting& lighting,
                                 std::span<const SurfacePoint> points);
 

@@ -103,7 +103,7 @@ LaunchRule launchRule(const PelDeviceInfo& device) {
     }
     if (number == 0) return ignored("it is empty or cannot be read");
     if (own) return ignored("it has none for this device");
-    return rule;  // a record for time budgets alone
+    return rule;  // the record is only for time budgets
 }
 
 }  // namespace pel
