@@ -31,8 +31,7 @@ struct ProgramKey {
 // Programs from binaries that earlier processes left on disk.
 class BinaryCache {
   public:
-    // For drivers that keep programs themselves: loads only PoCL's, and stores only if PELLUCID_CACHE is
-    // "on".
+    // If the driver keeps programs itself: loads only PoCL's, stores only if PELLUCID_CACHE is "on".
     BinaryCache(cl_context context, cl_device_id device);
 
     // Empty when there is none, or the driver refuses it.
@@ -40,8 +39,7 @@ class BinaryCache {
     // False if it could not be stored.
     bool store(const Program& program, const std::string& source, const std::string& options) const;
 
-    // The program of a binary that another process made; stores the binary, too. Empty if the driver refuses
-    // it.
+    // The program of another process's binary, which is stored, too. Empty if the driver refuses it.
     Program take(const std::string& binary, const std::string& source, const std::string& options,
                  uint32_t& stored) const;
 

@@ -7,8 +7,7 @@
 
 namespace pel {
 
-// While one exists, allocations of this thread are only counted: buffers are tiny, and nothing is sent to
-// them.
+// While one exists, this thread's allocations are only counted: buffers are tiny, and nothing is sent.
 class CountedRun {
   public:
     CountedRun() { on_ = true; }

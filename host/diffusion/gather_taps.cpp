@@ -108,8 +108,7 @@ std::vector<PelGatherTap> diskTaps(const ProfileShape& shape, double scale, doub
 
 std::vector<PelGatherTap> lineTaps(const ProfileShape& shape, double scale, double reach, uint32_t count) {
     const Shares shares = lineShares(shape, reach / scale);
-    // Half of the pieces by light, half by length: by light alone, pieces would be long where there is little
-    // light.
+    // Half of the pieces by light, half by length: by light alone, pieces in the tail would be long.
     const auto border = [&](uint32_t i) {  // from the middle of the line; of 0 and `count` the reach
         const double t = 2.0 * i / count - 1, part = std::abs(t);
         double low = 0, high = reach / scale;

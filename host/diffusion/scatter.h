@@ -25,8 +25,7 @@ class Scatter final : public Object {
     void setImage(PelImageSlot slot, const ImageView& view);
     // Enqueues everything.
     void execute(const PelScatterParams& params, const ScatterImages& images);
-    // Jobs for a warm-up: they build the programs of an execution with such images, and scatter a small
-    // image.
+    // Jobs for a warm-up: they build the programs for such images, and scatter a small image.
     void addBuildJobs(const PelScatterParams& params, const ScatterImages& images, BuildJobs& jobs) const;
     PelScatterStats stats();
     Device& device() const { return *device_; }

@@ -11,8 +11,7 @@ namespace pellucid::io {
 // writer lives. commit() renames it and flushes the folder; without it the destructor removes the file.
 class AtomicFile {
   public:
-    // Throws FileError if the folder is missing or not writable, or if the name is taken by something other
-    // than a file.
+    // Throws FileError if the folder is missing or not writable, or if the name is not that of a file.
     explicit AtomicFile(std::string target);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;

@@ -99,8 +99,7 @@ void estimateQuadric(MeshTopology& topology, const cl::Defines& common, const Sl
     cl::Defines defines = common;
     const uint32_t lanes = rows.list ? width(topology.device()) : topology.device().info().mathWidth;
     defines["PEL_WIDTH"] = lanes;
-    // In one program, because each program costs a CPU's compiler a tenth of a second before its first
-    // kernel.
+    // In one program, because each one costs a CPU's compiler 0.1 s before its first kernel.
     const cl::Program program =
         topology.device().programs().get({{"mesh/curvature_quadric.cl", "mesh/two_ring.cl"}, defines});
     const MeshTopology::TwoRings& lists = twoRings(topology, program);

@@ -66,10 +66,10 @@ struct LitMeshOptions {
 LitMesh lightMesh(const Scene& scene, const Lighting& lighting, const LitMeshOptions& options,
                   const std::function<void(double)>& progress = {});
 
-// What light leaves a lit mesh after scattering in it (docs/mathematics.md, section 9), by the library.
+// Light that leaves a lit mesh after scattering in it (docs/mathematics.md, section 9), by the library.
 
-// RGB per point. `points`: xyz each; none give none. `desc` says how: profile, radius, unit, cut and
-// tolerance; mesh, points and result are filled in here.
+// RGB per point. `points`: xyz each; may be empty. `desc` gives profile, radius, unit, cut and tolerance;
+// mesh, points and result are filled in here.
 std::vector<float> scatteredAt(const Device& device, const LitMesh& lit, const std::vector<float>& points,
                                PelSurfaceIntegralDesc desc);
 

@@ -65,8 +65,7 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
             const bool unshadowed = light.images[PEL_LIGHT_SHADOW_MAP] &&
                                     !light.images[PEL_LIGHT_WIDE_SHADOW] &&
                                     light.params.shadowFilterTexels == 0;
-            // A map that is used only for thickness is no mistake, unless other materials get a shadow from
-            // it.
+            // A map used only for thickness is no mistake, unless other materials get a shadow from it.
             const bool useful =
                 (features & PEL_FEATURE_THICKNESS_TAPS) && !(features & PEL_FEATURE_MAKE_IRRADIANCE);
             if (unshadowed && !useful)

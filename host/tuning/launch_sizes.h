@@ -38,8 +38,8 @@ struct LaunchRule {
     std::string file;     // the source of these sizes; "": built in
     std::string warning;  // why the file is ignored; "": it is not
 };
-// The sizes of the file that PELLUCID_TUNING names, or else of launchFile(); "off": built in. Errors in a
-// file do not throw.
+// Sizes of the file that PELLUCID_TUNING names, or of launchFile(); "off": built in. Faulty files do not
+// throw.
 LaunchRule launchRule(const PelDeviceInfo& device);
 
 // This user's file for the device with its driver and this version of the library; empty: there is no folder.

@@ -67,8 +67,7 @@ static inline Cluster chooseCluster(Cluster a, Cluster b, maskw second) {
     return s;
 }
 
-// Sums are relative to the seed, to avoid cancellation. Children that are not near count at the seed's
-// position.
+// Sums are relative to the seed, to avoid cancellation. Children far from it count at its position.
 static inline void addToCluster(Cluster* sum, Cluster seed, Cluster s, maskw on, maskw near) {
     const floatw flux = selectw((floatw)(0.0f), s.flux, on);
     sum->flux += flux;
@@ -116,8 +115,7 @@ static inline bool cellsMatter(__global const PelLightMap* map, __global const u
     return false;
 }
 
-// Blocks wider than this many cells are always computed: few have no lit cell, and a search would take
-// longer.
+// Wider blocks, in cells, are always computed: few have no lit cell, and a search would take longer.
 #define MOST_CELLS 4
 
 // PEL_WIDTH blocks of level `to`.

@@ -128,8 +128,7 @@ static inline floatw curvatureAt(const Images* in, const Point* here, uint x, ui
     return selectw((floatw)(0.0f), curvature, sound & finitew(curvature));
 }
 
-// Curvature of the pixels `on`, all of one material. Lanes whose windows span the same number of pixels are
-// computed together.
+// Curvature of the pixels `on`, all of one material. Lanes with equally wide windows, in pixels, go together.
 static inline floatw curvatureOf(const Images* in, const Point* here, uint x, uint y, float window,
                                  maskw on) {
     const floatw step =

@@ -120,8 +120,7 @@ static inline floatw farSide(const floatw zeta, const float b, const LutGaussian
     floatw lost = cutTail;
     if (anyw(e2 > cut)) lost = beyondCut(xi, beta, cut, e1, e2, i2e1, i3e1, i2e2, i3e2);
     if (anyw(e1 < -cut)) {
-        // Mirrored: 1 - smoothstep turns the other end into the same problem, where the loss of light is Q
-        // minus this.
+        // Mirrored: 1 - smoothstep turns the other end into the same problem, with a loss of Q minus this.
         lost += cutTail - beyondCut(-xi, beta, cut, -e2, -e1, secondTail(-e2, 1.0f - Q2, density2),
                                     thirdTail(-e2, 1.0f - Q2, density2), secondTail(-e1, 1.0f - Q1, density1),
                                     thirdTail(-e1, 1.0f - Q1, density1));

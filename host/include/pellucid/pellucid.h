@@ -128,8 +128,7 @@ PEL_API PelError pelDeviceEnumerate(uint32_t index, PelDeviceInfo* info);
 PEL_API PelError pelDeviceCreate(const char* selector, PelDevice* device);
 
 /* A host's own device memory: returns a cl_mem buffer of the context, of at least `bytes`, or NULL if there
- * is none. The library takes over the reference; clSetMemObjectDestructorCallback notifies the host of the
- * release.
+ * is none. The library takes over the reference; clSetMemObjectDestructorCallback reports its release.
  */
 typedef void* (*PelAllocateCallback)(void* user, void* clContext, size_t bytes);
 
@@ -512,7 +511,7 @@ typedef struct PelScreenCurvatureParams {
  * that depends on its angle to the pixel grid. `normals`: unit, world; `positions`: world; or `depth` with
  * params.inverseViewProjection and positions NULL; `ids`: of materials or objects, 0 is background; may be
  * NULL. `curvature`: R32F, written, finite; 0 for background and for pixels whose normal or position is not
- * finite; neighbours ignore these. All images have one size. `params` may be NULL. Source: Penner, SIGGRAPH
+ * finite, which neighbours ignore. All images have one size. `params` may be NULL. Source: Penner, SIGGRAPH
  * 2011. */
 PEL_API PelError pelScreenCurvature(PelDevice device, const PelScreenCurvatureParams* params,
                                     const PelImageDesc* normals, const PelImageDesc* positions,
@@ -1313,9 +1312,8 @@ typedef struct PelShaderOptions {
     uint32_t halfRate;
     /* 1: wide shadows that the shader filters, and thickness by taps, are computed at every pixel. 0, the
      * default: shadows are computed at every second pixel along both axes, and interpolated where material,
-     * surface and values are continuous (docs/guide/shading.md, "Between pixels"); thickness is interpolated
-     * between nodes of a grid in the shadow map, where that is as accurate (the same page, "Cells of taps")
-     * */
+     * surface and values are continuous (docs/guide/shading.md, "Between pixels"); thickness between nodes of
+     * a grid in the shadow map, where that is as accurate (the same page, "Cells of taps") */
     uint32_t everyPixel;
     /* 1: pelShaderCommit does not wait for programs that are neither in memory nor on disk. They are built
      * while the caller goes on, and until the first execution after that the materials shade by
@@ -1375,8 +1373,7 @@ PEL_API PelError pelShaderSetScatteredTexture(PelShader shader, uint32_t id, con
  * limbus and film of tears come from `eye`. Needs PEL_SLOT_POSITION or _DEPTH, and PelCamera.position.
  * `caustics`: a table of pelEyeLutCreate; NULL: it is made for this eye, and kept. NULL for `eye`: the
  * material is no longer an eye. Removing the material removes its eye. Errors: PEL_ERROR_INVALID_ARGUMENT for
- * parts that do not fit together, such as a pupil that is wider than the iris; the message names the field.
- * */
+ * parts that do not fit together, such as a pupil wider than the iris; the message names the field. */
 PEL_API PelError pelShaderSetEye(PelShader shader, uint32_t id, const PelEye* eye, PelLut caustics);
 /* The albedo of the iris of material `id`, which must be an eye: a square image whose inscribed circle is the
  * iris' rim, as seen by a viewer who faces the eye, row 0 at PelEye.up; a colour format; bilinear. Read at
@@ -1676,9 +1673,8 @@ typedef struct PelWarmUp {
      * them, and only the formats and packing of images matter: 16 x 1 pixels can represent a frame */
     const PelShader* shaders;
     uint32_t numShaders;
-    /* that build at the same time; 0: one per core, at most one per program. PoCL builds one program at a
-     * time in a process, so other processes build, at most 4 by default (docs/guide/devices.md, "Compiled
-     * programs") */
+    /* that build at the same time; 0: one per core, at most one per program. PoCL builds one by one in a
+     * process, so other processes build, at most 4 by default (docs/guide/devices.md, "Compiled programs") */
     uint32_t threads;
     const PelScatterWork* scatters; /* numScatters; nothing is written to their images */
     uint32_t numScatters;

@@ -44,8 +44,7 @@ class Handle {
     ~Handle() {
         if (h_) Release(h_);
     }
-    // Not callable on a temporary: in `desc.profile = Profile::named("jade").get()` the profile is released
-    // at once.
+    // Not on a temporary: `desc.profile = Profile::named("jade").get()` would refer to a released profile.
     H get() const& { return h_; }
     H get() const&& = delete;
     explicit operator bool() const { return h_ != nullptr; }
