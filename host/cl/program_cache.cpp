@@ -127,7 +127,7 @@ uint64_t limitBytes() {
     return uint64_t(value) << 20;
 }
 
-// Settings of drivers that change what they compile. Settings that say where it is kept are left out.
+// Environment variables that affect a driver's compiler, without those that only set a folder.
 std::string settings() {
     static constexpr const char* prefixes[] = {"CL_CONFIG_", "POCL_", "RUSTICL_", "LP_", "GALLIVM_", "IGC_"};
     std::vector<std::string> found;

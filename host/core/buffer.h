@@ -42,7 +42,7 @@ class Buffer final : public Object {
     cl::Memory memory_;
     cl::Memory texture_;                // that it is a copy of
     std::array<size_t, 3> texels_{};    // its size
-    std::atomic<uint32_t> version_{0};  // of what was copied last
+    std::atomic<uint32_t> version_{0};  // of the last copy
     size_t bytes_;
     Place place_;
     std::mutex mutex_;

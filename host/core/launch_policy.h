@@ -20,11 +20,11 @@ inline size_t groupsFor(const Device& device, size_t tiles) {
     return std::min<size_t>(tiles, 64 * size_t(device.info().computeUnits));
 }
 
-// Ranges of kernels in groups of PEL_GROUP: an item each; one group each, or as many as groupsFor() has.
+// Ranges of kernels in groups of PEL_GROUP, for a number of work-items.
 inline cl::Range itemRange(const Device& device, size_t items) {
     return cl::folded(items, launchPolicy(device).texels);
 }
-// A vector of pixels or blocks each.
+// The same with a work-item for each vector of pixels or blocks.
 inline cl::Range vectorRange(const Device& device, uint32_t width, uint32_t height) {
     const uint32_t lanes = device.info().mathWidth;
     return itemRange(device, size_t((width + lanes - 1) / lanes) * height);

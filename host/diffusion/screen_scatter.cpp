@@ -103,7 +103,7 @@ void ScreenScatter::describeLevels(uint32_t width, uint32_t height, bool radii) 
         return;
     pyramid_.forget(), sums_.forget();
     pyramid_.resize(*device_, floats * sizeof(float), true);  // no area outside of the picture
-    // Vectors read beyond what is set.
+    // Zeros, because vectors read beyond the values that are written.
     sums_.resize(*device_, sumFloats(frame_.level, radii, floats) * sizeof(float), true);
 }
 

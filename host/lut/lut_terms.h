@@ -31,7 +31,7 @@ struct RowAxis {
 RowAxis rowAxis(PelLutAxis axis, uint32_t height, double least, double most);
 
 // 1/length of the first and the last row of a curvature or shadow table, 1/diffusion radii, limited to what
-// float arithmetic on squares can hold. Tables are at their limits beyond.
+// float arithmetic on squares can hold. Beyond, tables have reached their limits.
 struct RowRange {
     double least, most;
 };

@@ -14,7 +14,7 @@ namespace {
 constexpr int sweptNodes = 128, sphereNodes = 79;
 // Cells of the sums of R, whose corners lie within cells; P is smoother, and more expensive.
 constexpr int radialCells = 4096;
-// Rows of shadow tables have nodes up to so many for each texel.
+// Rows of shadow tables have nodes unless these outnumber the texels by this factor.
 constexpr double nodesPerTexel = 2;
 
 // The radius of each row, in diffusion radii.

@@ -6,7 +6,7 @@
 namespace pellucid::sample {
 
 constexpr int pattern = 4;             // pixels along a side
-constexpr double normalOffset = 0.05;  // mm from the surface, for the vertex normals lean from the triangles'
+constexpr double normalOffset = 0.05;  // mm from the surface: vertex normals differ from the triangles'
 constexpr double facetOffset = 0.3;    // facets at a slant to the light throw no shadow on their neighbours
 constexpr double hairReach = 25;       // mm: further away, single hairs throw no shadow that shows
 constexpr double alikeNormal = 0.8;    // cosine

@@ -46,7 +46,7 @@ void clear(const Buffer& buffer) {
     buffer.unmap();
 }
 
-// R, G and B, or the first three channels; `need` says what the image should have.
+// R, G and B, or the first three channels; `need`: the requirement, for messages.
 std::vector<std::string> colorChannels(const std::string& file, const Image& image, const char* need) {
     if (image.channels.size() < 3)
         throw FileError(file, concat("has ", image.channels.size(), " channels; ", need));

@@ -137,7 +137,7 @@ class SceneFrame {
     PelImageDesc mapOf(const std::string& file, const std::string& channel, const std::string& second);
     const std::vector<PelImageDesc>& normalMap(const std::string& file);
     const std::vector<PelImageDesc>& normalMapLevels(const std::vector<std::string>& files);
-    // Each name or file is one profile, also where several materials have it.
+    // One profile per name or file, also if several materials use it.
     Profile profileOf(const std::string& nameOrPath);
     PelImageDesc colorImage(const std::string& file, const char* need);
     // Curvature from normals and positions or depth of the G-buffer (pelScreenCurvature).
@@ -192,7 +192,7 @@ void writeThickness(const std::string& path, int width, int height, const std::v
 SceneFrame prepareFrame(const Device& device, const SceneFile& scene, LutStore& luts,
                         const PelShaderOptions& options = pelShaderOptionsDefaults(),
                         const std::vector<PelImageSlot>& outputs = {});
-// Fills the driver's cache of programs, and `luts`. `images`: those of the scene that are in no file yet.
+// Fills the driver's cache of programs, and `luts`. `images`: images of the scene that are not in files yet.
 void buildPrograms(const Device& device, const SceneFile& scene, LutStore& luts,
                    const ShadowMaps& images = {});
 

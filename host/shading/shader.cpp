@@ -274,7 +274,7 @@ void Shader::setRows(const PassWork& work, TileRows rows) {
                        work.around.begin * PEL_TILE_HEIGHT);
 }
 
-// Runs one band: passes make what they need in it and around it; the last pass shades it.
+// Runs one band: passes make their images in it and around it; the last pass shades it.
 void Shader::runBand(PassWork& work) {
     const TileRows rows = work.rows;
     work.around = {rows.begin - std::min(rows.begin, plan_.haloRows),
@@ -413,7 +413,7 @@ std::vector<PelPassMemory> Shader::memory() {
     return all;
 }
 
-// The queue is in order: what was launched last finishes last.
+// The queue is in order, so the last launch finishes last.
 bool Shader::hasFinished(const Frame& frame) const {
     for (size_t i = frame.events.size(); i-- > 0;)
         if (const cl::Event& last = frame.events[i])

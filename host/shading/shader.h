@@ -48,7 +48,7 @@ class Shader final : public Object {
     const std::string& warnings() const { return warnings_; }
     // Jobs for a warm-up: they build the programs of a commit, and launch each kernel without tiles. Tables
     // of profiles are made here, those of eyes by a job; both are kept. The caller's images are not read,
-    // except to count `autoPixels` (keepToBudget()) if it is 0. Throws what a commit would.
+    // except to count `autoPixels` (keepToBudget()) if it is 0. Throws the errors of a commit.
     void addBuildJobs(BuildJobs& jobs, uint64_t autoPixels = 0);
     Device& device() const { return *device_; }
 

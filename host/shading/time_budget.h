@@ -11,7 +11,7 @@ struct TunedSetting {
     double targetError;         // share of white; 0 where the method has none
     double perPixel, perFrame;  // ns beyond plain lighting: per pixel of the materials, and of the frame
     double error;               // RMS against light, share of white
-    bool halfRate = false;      // PelShaderOptions.halfRate, of light alone
+    bool halfRate = false;      // PelShaderOptions.halfRate, only for light
 };
 
 struct Tuning {

@@ -135,7 +135,7 @@ static inline void measurePixel(__global const PelGatherFrame* frame, __global f
     to[PEL_GATHER_PIXEL] = wide, to[PEL_GATHER_PIXEL + 1] = high;
 }
 
-// Measures a pixel. Returns what it adds to the flags of its tile.
+// Measures a pixel. Returns its flags for the tile.
 static inline uint measured(__global const PelGatherFrame* frame, __global float* points,
                             __global const PelGatherMaterial* materials, uint x, uint y) {
     const size_t at = PEL_GATHER_FLOATS * ((size_t)y * frame->width + x);

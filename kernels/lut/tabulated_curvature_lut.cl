@@ -228,7 +228,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_s
     }
     const floatw sinPhi = loadw(0, sines), cosPhi = loadw(0, cosines);
     const floatw tanPhi = sinPhi / fmax(cosPhi, (floatw)(1e-30f));
-    const float nearest = sines[0];  // nothing nearer than this reaches the light
+    const float nearest = sines[0];  // circles with a smaller sin(psi) are all dark
     floatw Er = 0.0f, Eg = 0.0f, Eb = 0.0f, Fr = 0.0f, Fg = 0.0f, Fb = 0.0f;
     float4 cosineMean = 0.0f;
     for (uint i = range.first; i < range.first + range.count; ++i) {

@@ -113,7 +113,7 @@ static inline ShadowRow shadowRow(const TabulatedShadowLutParams params, const u
     return row;
 }
 
-// At zeta >= 0. `nodes`: of the row.
+// U at zeta >= 0. `nodes`: of the row.
 static inline float4 farSide(__global const float4* tails, __global const float4* nodes, const ShadowRow row,
                              const float zeta, const float4 total, const float end) {
     if (zeta - row.b >= end) return (float4)(0.0f);

@@ -48,7 +48,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
     storew(selectw((floatw)(NAN), 0.5f * (sqrt(low) + sqrt(high)), high >= 0.0f), first, curvature);
 }
 
-// The mean over a slot's triangles of their other two slots' values, itself not included.
+// The mean of the values at the other two corners of a slot's triangles.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvature_smooth(
     uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict slices,
     __global const uint* restrict rings, __global const uint* restrict runs, uint planeStride,

@@ -21,7 +21,7 @@
 // The fit's coordinates come from the second moments of the two-ring, so that slivers fit as well as other
 // triangles, and a ring that is small among larger triangles still has points that determine nine numbers.
 //
-// Of a ring with many neighbours (the hub of a fan, for a vertex on its rim) only the nearest on either
+// In a ring with many neighbours (the hub of a fan, for a vertex on its rim), only the nearest ones on either
 // side are in the list. A slot of at most four neighbours with few points takes the three-ring as well
 // (two_ring.cl).
 //

@@ -115,7 +115,7 @@ typedef struct PelShadeMaterial {
 #define PEL_CELLS_PER_RADIUS 4
 #define PEL_NODE_TAPS 32        // for every material, since they cost next to nothing
 #define PEL_SAMPLES_PER_CELL 2  // samples of the map from node to node
-// Samples along an axis with so many nodes: a radius more on either side.
+// Samples along an axis with this many nodes, and a margin of one radius on either side.
 #define PEL_TAP_SAMPLES(nodes) \
     (((nodes)-1) * PEL_SAMPLES_PER_CELL + 1 + 2 * PEL_CELLS_PER_RADIUS * PEL_SAMPLES_PER_CELL)
 

@@ -286,7 +286,7 @@ typedef struct PelImageDesc {
 
 typedef struct PelMeshTopologyObject* PelMeshTopology;
 
-/* What was found in a mesh, and how it was handled. */
+/* Irregularities of a mesh, and how they are handled. */
 typedef struct PelMeshReport {
     uint32_t structSize;
     uint32_t vertices;
@@ -339,10 +339,10 @@ PEL_API PelError pelMeshTopologySave(PelMeshTopology topology, void* destination
 PEL_API PelError pelMeshTopologyLoad(PelDevice device, const void* bytes, size_t size,
                                      PelMeshTopology* topology, PelMeshReport* report);
 
-/* What pelMeshOrient found and did. A part: triangles connected by edges that belong to two of them. */
+/* The result of pelMeshOrient. A part: triangles connected by edges that belong to two of them. */
 typedef struct PelMeshOrientation {
     uint32_t structSize;
-    uint32_t trianglesTurned; /* whose second and third index were exchanged */
+    uint32_t trianglesTurned; /* triangles whose second and third index were exchanged */
     uint32_t parts;
     uint32_t partsTurned;       /* with a triangle that was reversed */
     uint32_t inconsistentEdges; /* that remain: of parts with one side only, such as a Moebius strip */
@@ -377,8 +377,9 @@ typedef enum PelCurvatureEstimator {
     PEL_CURVATURE_QUADRIC = 2
 } PelCurvatureEstimator;
 
-/* What is written for a vertex. Curvatures are positive where the surface curves away from its normal (a
- * sphere with outward normals has two positive ones); k1 >= k2. Edge has the first quantity only. */
+/* The quantity that is written for a vertex. Curvatures are positive where the surface curves away from its
+ * normal (a sphere with outward normals has two positive ones); k1 >= k2. Edge has the first quantity only.
+ * */
 typedef enum PelCurvatureQuantity {
     /* |k1 + k2| / 2, 1/radius of the best sphere; edge: its own estimate. For LUTs */
     PEL_QUANTITY_ABSOLUTE = 0,
@@ -481,7 +482,7 @@ PEL_API PelError pelLiveMeshUpdate(PelLiveMesh live, const PelVertexView* positi
                                    const PelVertexRange* changed, uint32_t numChanged,
                                    const PelSubmit* submit);
 
-/* What the last update did. A row is a vertex after welding; rows are worked on eight at a time. */
+/* Statistics of the last update. A row is a vertex after welding; rows are worked on eight at a time. */
 typedef struct PelLiveMeshStats {
     uint32_t structSize;
     uint32_t rowsTotal;
@@ -1028,9 +1029,9 @@ typedef enum PelScattering {
     PEL_SCATTERING_SCREEN = 3,  /* the profile summed over the screen, from irradiance per pixel */
     PEL_SCATTERING_LIGHT = 4,   /* the profile summed over the light's shadow map */
     PEL_SCATTERING_TEXTURE = 5, /* irradiance in texture space [d'Eon, Luebke 2007] */
-    /* what the inputs allow, with the least work for PelShaderOptions.targetError: on the screen where
-     * there are positions or depth, and shadows that are sharp or can be made so; by tables otherwise, and
-     * where the material brings its own; without inputs for either, like PREINTEGRATED without tables
+    /* the method that the inputs allow, with the least work for PelShaderOptions.targetError: on the screen
+     * where there are positions or depth, and shadows that are sharp or can be made so; by tables otherwise,
+     * and where the material brings its own; without inputs for either, like PREINTEGRATED without tables
      * (docs/guide/shading.md, "Auto"). pelShaderGetWarnings and PelShaderStats report the choice */
     PEL_SCATTERING_AUTO = 6
 } PelScattering;
@@ -1186,7 +1187,7 @@ typedef enum PelFeature {
     PEL_FEATURE_ENVIRONMENT = 1 << 30         /* specular light of the surroundings */
 } PelFeature;
 
-/* What a shader did: counts of its last execution unless they say total. */
+/* Statistics of a shader: counts of its last execution unless marked as total. */
 typedef struct PelShaderStats {
     uint32_t structSize;
     uint32_t features;      /* PelFeature bits, derived at commit */
@@ -1249,7 +1250,7 @@ typedef struct PelShaderStats {
     uint64_t texelsReached;
 } PelShaderStats;
 
-/* What a pass of a shader did in one execution. */
+/* Statistics of a pass of a shader in one execution. */
 typedef struct PelPassStats {
     uint32_t structSize;
     uint32_t launches;
@@ -1257,7 +1258,7 @@ typedef struct PelPassStats {
     uint64_t bytes;      /* of device memory that the pass holds now */
     uint64_t tiles;      /* of 16 x 16 pixels over which it was launched, over bands; 0: not over tiles */
     uint64_t execution;  /* which: 1 is the shader's first */
-    char name[24];       /* that of its kernel file where it has one, such as "irradiance" */
+    char name[24];       /* of its kernel file if it has one, such as "irradiance" */
 } PelPassStats;
 
 /* Device memory of a pass of a shader. */
@@ -1413,8 +1414,8 @@ PEL_API PelError pelShaderSetCamera(PelShader shader, const PelCamera* camera);
 /* Checks that everything fits together, derives the features and builds the programs that they need. */
 PEL_API PelError pelShaderCommit(PelShader shader);
 /* Shades. A blocking call reports progress to the device's callback about every million pixels; if that
- * cancels, some pixels are shaded and others not. Errors: PEL_ERROR_CANCELLED; PEL_ERROR_INVALID_STATE when
- * something was set after the last commit. */
+ * cancels, some pixels are shaded and others not. Errors: PEL_ERROR_CANCELLED; PEL_ERROR_INVALID_STATE if a
+ * setting was changed after the last commit. */
 PEL_API PelError pelShaderExecute(PelShader shader, const PelSubmit* submit);
 /* Material `id` as it is shaded: each default is replaced by its value, and after a commit AUTO by the chosen
  * method. profile is NULL. */
@@ -1428,9 +1429,9 @@ PEL_API PelError pelShaderGetStats(PelShader shader, PelShaderStats* stats);
  * wait. passes[0].structSize is the size of each. `count`: room in `passes`, 24 suffice; receives how many
  * there are, 0 while no execution has finished. Errors: PEL_ERROR_INVALID_ARGUMENT for too little room. */
 PEL_API PelError pelShaderGetPasses(PelShader shader, PelPassStats* passes, uint32_t* count);
-/* Which passes hold device memory beside the caller's images, or will after a commit of what is set. Nothing
- * is committed and no image allocated; tables of profiles and eyes are made where they are missing. Arrays as
- * in pelShaderGetPasses. Errors: those of pelShaderCommit. */
+/* Device memory of the passes besides the caller's images, now and after a commit of the current settings.
+ * Nothing is committed and no image allocated; tables of profiles and eyes are made where they are missing.
+ * Arrays as in pelShaderGetPasses. Errors: those of pelShaderCommit. */
 PEL_API PelError pelShaderGetMemory(PelShader shader, PelPassMemory* passes, uint32_t* count);
 
 /* ---- Reference --------------------- */

@@ -47,7 +47,7 @@ std::string png(const std::string& path, std::string_view file, uint64_t limit) 
 }
 
 // Segments [ITU-T T.81, annex B]: a marker and, with few exceptions, a length. Left out: comments and
-// application data, except those of JFIF and Adobe, which say what the channels are.
+// application data, except those of JFIF and Adobe, which define the channels.
 std::string jpeg(const std::string& path, std::string_view file, uint64_t limit) {
     std::string kept(file.substr(0, 2));
     for (size_t at = 2;;) {
