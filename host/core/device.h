@@ -125,8 +125,8 @@ class Device final : public Object {
     std::map<std::string, std::weak_ptr<void>> shared_;
     std::mutex mutex_;  // guards the rest
     std::map<std::string, cl::Memory> constants_;
-    // Launches that may still be queued. NVIDIA's driver (580) uses a kernel even if it is released before
-    // its launch starts.
+    // Launches that may still be queued. They keep kernels alive, because NVIDIA's driver (580) still uses a
+    // kernel that is released before its launch starts.
     struct Pending {
         cl::Event event;
         cl::Kernel kernel;

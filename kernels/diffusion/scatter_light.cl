@@ -20,8 +20,8 @@
     16.0f  // squared distance over the area of a pixel; farther: another part of the surface
 // Radii of two windows: of the irradiance of the pixel itself, in points of a texel, and of the camera's
 // samples, in texels. Lengths are measured on the surface, where the cosine to the light counts as at least
-// OWN_COSINE: points lie closer together along the slope, and only a limited ring of texels is summed as
-// points.
+// OWN_COSINE or SHOWN_COSINE: points lie closer together along the slope, and only a limited ring of texels
+// is summed as points.
 #define OWN_WINDOW 2.0f
 #define OWN_COSINE 0.4f
 #define SHOWN_WINDOW 1.0f
