@@ -1,4 +1,4 @@
-// What every C entry point does: run the call, and turn an exception into an error code and a message.
+// Common code of C entry points: runs the call, and turns exceptions into an error code and a message.
 #pragma once
 #include <new>
 
@@ -43,7 +43,7 @@ T& output(T* pointer, const char* name) {
     return *pointer;
 }
 
-// An entry point that hands out what `make` returns, which is called if there is a place for the handle.
+// An entry point that returns a handle of the object from `make`, which is called only if `to` is not NULL.
 template <class Handle, class Make>
 PelError create(Handle* to, const char* name, const Make& make) noexcept {
     return entry([&] {

@@ -13,12 +13,12 @@ namespace pel::cl {
 namespace fs = std::filesystem;
 namespace {
 
-// Stands before the binary: damaged, cut or renamed files do not match it.
+// Stored before the binary: damaged, truncated or renamed files do not match it.
 std::string checksum(const Digest& name, const std::string& binary) {
     return Digest().addPart(name.text()).add(binary).text();
 }
 
-// A whole file, which now counts as just used. Empty if it is none, larger than `limit` bytes, or unreadable.
+// Reads a file and marks it as just used. Empty if it is no file, larger than `limit` bytes, or unreadable.
 std::optional<std::string> readFile(const fs::path& path, uint64_t limit) {
     std::error_code error;
     if (!fs::is_regular_file(path, error) || fs::file_size(path, error) > limit || error) return {};

@@ -1,4 +1,4 @@
-// Compiled programs on disk, for drivers that keep none themselves.
+// Compiled programs on disk, for drivers without such a cache.
 #pragma once
 #include <cstdio>
 #include <filesystem>
@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#define XXH_INLINE_ALL  // no library to link, and nothing of it leaves this one
+#define XXH_INLINE_ALL  // no library to link, no exported symbols
 #include <xxhash.h>
 
 namespace pel::cl {

@@ -64,7 +64,7 @@ std::string BuildHelpers::compile(const std::string& options, const std::string&
     if (alive)
         idle_.push_back(std::move(*place));
     else
-        words_.clear();  // another one would fare no better
+        words_.clear();  // another process would fail, too
     busy_.erase(place);
     freed_.notify_all();
     throwIfCancelled();

@@ -16,8 +16,8 @@ class BuildHelpers {
     BuildHelpers(cl_device_id device, unsigned most);
     ~BuildHelpers();
 
-    // The binary of a program, once a process has compiled it; waits for one that is free. Empty if none can:
-    // this process has to. Any thread may call it.
+    // The binary of a program; waits for a process that is free, and for its result. Empty if none can
+    // compile it: then this process must. Any thread may call it.
     std::string compile(const std::string& options, const std::string& source);
     // Ends the processes; from now on calls throw PEL_ERROR_CANCELLED.
     void cancel();
@@ -36,13 +36,13 @@ class BuildHelpers {
     bool cancelled_ = false;
 };
 
-// Of each thread: who compiles the programs that it asks for, or nullptr; and whether it only gets those in
-// memory or on disk, while ProgramCache throws NotBuilt for others.
+// Per thread: the helpers that compile its programs, or nullptr; and whether it only gets programs in memory
+// or on disk, while ProgramCache throws NotBuilt for others.
 inline thread_local BuildHelpers* helpersOfThread = nullptr;
 inline thread_local bool readyAlone = false;
 struct NotBuilt {};
 
-// During its lifetime one of these has another value.
+// Sets one of these to another value during its lifetime.
 template <class T>
 struct ThreadScope {
     ThreadScope(T& variable, T value) : variable(variable), outer(std::exchange(variable, value)) {}

@@ -37,7 +37,7 @@ template <class... Parts>
     fail(PEL_ERROR_INVALID_ARGUMENT, parts...);
 }
 
-// What body() returns. The message of an error that it throws begins with `parts`.
+// Returns the result of body(). Messages of errors that it throws begin with `parts`.
 template <class Body, class... Parts>
 auto about(Body&& body, const Parts&... parts) {
     try {

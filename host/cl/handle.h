@@ -31,7 +31,7 @@ PEL_OBJECT(cl_kernel, Kernel)
 PEL_OBJECT(cl_event, Event)
 #undef PEL_OBJECT
 
-// A fact about an object, as OpenCL's functions for it return.
+// A property of an object, from OpenCL's query function for its type.
 template <class T, class H>
 T info(H object, cl_uint what) {
     T value{};

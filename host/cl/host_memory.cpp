@@ -13,21 +13,21 @@ namespace pel::cl {
 namespace {
 
 constexpr size_t page = 4096, cacheLine = 128;
-// From this size on memory has a mapping of its own: it is zero, and returns to the system when it is freed.
+// From this size on memory is mapped separately: it is zero, and returns to the system when it is freed.
 constexpr size_t mapped = 32 << 20;
 // The same for memory that must be zero, as the system's pages are.
 constexpr size_t mappedZeros = 2 << 20;
 // Freed blocks of these sizes are kept for a while, up to the larger one; the allocator keeps smaller ones.
 constexpr size_t leastSpared = 128 << 10, mostSpared = 16 << 20;
-// May be allocated before the free memory is measured again, which takes 100 us.
+// Bytes allocated before the free memory is measured again, which takes 100 us.
 constexpr size_t unasked = 16 << 20;
 
-// The last blocks that were freed, for the next ones of their sizes: whether the allocator maps pages anew
-// for a table after a table depends on what else it holds.
+// Keeps the last freed blocks for new ones of their sizes: whether the allocator maps new pages for each of
+// several tables depends on its other blocks.
 class Spares {
   public:
     static Spares& all() {
-        static Spares& one = *new Spares;  // buffers may go after static objects
+        static Spares& one = *new Spares;  // buffers may outlive static objects
         return one;
     }
     void* take(size_t bytes) {
@@ -91,7 +91,7 @@ class Block {
     void* at_ = nullptr;
 };
 
-// Asks how much memory is left, once enough has been allocated to matter.
+// Measures the free memory once enough has been allocated to matter.
 void checkNow(size_t bytes) {
     static std::atomic<uint64_t> since{0};
     if (since.fetch_add(bytes, std::memory_order_relaxed) + bytes < unasked) return;

@@ -1,4 +1,4 @@
-// What host/cl asks of the operating system: memory, private folders, and whether this process is a fork.
+// Services of the operating system for host/cl: memory, private folders, and whether this process is a fork.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -7,21 +7,21 @@
 
 namespace pel::cl {
 
-// Whole pages of zeros, all committed: systems promise more memory than they have, and end the process that
-// touches the last page.
-// nullptr if there is not enough.
+// Whole pages of zeros, all committed: systems overcommit memory, and end the process that touches the last
+// page. nullptr if there is not enough.
 void* mapPages(size_t bytes);
-// Zeros whose pages come when they are touched, by whichever thread does so.
+// Zeros whose pages are allocated when a thread first touches them.
 void* mapZeros(size_t bytes);
-// Of either.
+// Frees memory of either function.
 void unmapPages(void* at, size_t bytes);
 
 // nullptr if there is not enough. `bytes` is a multiple of `alignment`, a power of two.
 void* allocateAligned(size_t alignment, size_t bytes);
 void freeAligned(void* at);
 
-// Throws PEL_ERROR_OUT_OF_MEMORY if so many more bytes would use what drivers and others need of the machine,
-// of the control group or the address space (ulimit -v): without that, processes end without an error.
+// Throws PEL_ERROR_OUT_OF_MEMORY if so many more bytes would not leave enough of the machine, the control
+// group or the address space (ulimit -v) for drivers and others: without this check, processes end without an
+// error.
 void requireMemory(uint64_t bytes, const char* what);
 // Seconds since the machine started; 0 where that is not known.
 double uptime();

@@ -1,4 +1,4 @@
-// Modules: parts of Pellucid that need libraries which the library itself does without.
+// Modules: parts of Pellucid with dependencies that the library itself does not have.
 #pragma once
 
 namespace pel::cl {

@@ -1,4 +1,4 @@
-// Where the library is linked with OpenCL's loader, which is there before anything runs.
+// For builds that link OpenCL's loader, which is then loaded with the library.
 #include "cl/opencl_loader.h"
 
 namespace pel::cl {

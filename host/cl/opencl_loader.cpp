@@ -40,7 +40,7 @@ using GetPlatforms = cl_int(CL_API_CALL*)(cl_uint, cl_platform_id*, cl_uint*);
 struct Library {
     void* handle = nullptr;
     GetPlatforms getPlatforms = nullptr;
-    std::string why;  // none was found
+    std::string why;  // the reason if none was found
 };
 
 std::vector<std::string> namesOf(const std::string& list) {

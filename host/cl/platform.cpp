@@ -56,13 +56,13 @@ std::string list(const std::vector<PelDeviceInfo>& devices) {
     return out;
 }
 
-// Better devices have more peak arithmetic. OpenCL tells only the clock and the number of units.
+// Better devices have more peak arithmetic. OpenCL reports only the clock and the number of units.
 uint64_t strength(const PelDeviceInfo& d) {
     const uint64_t kind = d.type == PEL_DEVICE_GPU ? 2 : d.type == PEL_DEVICE_CPU ? 1 : 0;
     return kind << 48 | uint64_t(d.computeUnits) * std::max(1u, d.clockMhz);
 }
 
-// PELLUCID_MATH_WIDTH, so that a CPU can test and time what other devices run.
+// PELLUCID_MATH_WIDTH, so that a CPU can test and time the kernels of other devices.
 std::optional<uint32_t> requestedMathWidth() {
     const char* text = std::getenv("PELLUCID_MATH_WIDTH");
     if (!text || !*text) return {};

@@ -10,8 +10,8 @@ namespace pel::cl {
 void choosePoclCache();
 
 // To be called after devices were listed, when PoCL has read the variable: removes POCL_CACHE_DIR again if
-// choosePoclCache set it. Programs that this process starts choose for themselves; a folder for this process
-// alone may be gone by then, and made again by somebody else.
+// choosePoclCache set it. Child processes choose their own folder: a temporary one of this process may be
+// deleted by then, and made again by another user.
 void poclCacheIsChosen();
 
 // To be called before PoCL builds a program. Throws PEL_ERROR_DEVICE if PoCL could not write its files.

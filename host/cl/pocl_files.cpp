@@ -10,7 +10,7 @@ namespace pel::cl {
 namespace fs = std::filesystem;
 namespace {
 
-// The head of a 64-bit ELF file (System V ABI, "ELF Header"), which not every system has in a header.
+// The head of a 64-bit ELF file (System V ABI, "ELF Header"), because not every system has a header for it.
 struct ElfHeader {
     unsigned char identity[16];  // begins with a magic number; [4] is 2 in 64-bit files
     uint16_t kinds[2];
@@ -63,7 +63,7 @@ unsigned removeDamagedPrograms(const fs::path& folder) {
     // Skips files that were complete at the last check and have not been written since, and files that
     // another process may be writing. A large cache takes long to walk: programs that nobody used in the ten
     // minutes before the last check are skipped whole, since PoCL touches last_accessed when it loads a
-    // program, and kernels follow when they are first launched. After the machine started again all files are
+    // program, and kernels follow when they are first launched. After a restart of the machine all files are
     // read, since it may have lost power.
     const fs::path stamp = folder / "checked";
     const auto now = fs::file_time_type::clock::now();

@@ -41,7 +41,7 @@ Program ProgramCache::get(const ProgramKey& wanted) {
     if (!slot) slot = std::make_shared<Entry>();
     const std::shared_ptr<Entry> entry = slot;
     lock.unlock();
-    // A thread waits here for a program that another one builds. After a failure the next one tries again.
+    // A thread waits here while another one builds the program. After a failure the next thread tries again.
     std::lock_guard building(entry->building);
     if (entry->program) return entry->program;
     const auto start = std::chrono::steady_clock::now();
@@ -127,7 +127,7 @@ uint64_t limitBytes() {
     return uint64_t(value) << 20;
 }
 
-// Settings of drivers that change what they compile. Settings that say where it is kept are left out.
+// Environment variables that affect a driver's compiler, without those that only set a folder.
 std::string settings() {
     static constexpr const char* prefixes[] = {"CL_CONFIG_", "POCL_", "RUSTICL_", "LP_", "GALLIVM_", "IGC_"};
     std::vector<std::string> found;
@@ -231,7 +231,7 @@ void expand(std::string_view name, std::set<std::string_view>& seen, std::string
         const std::string_view current = rest.substr(0, end + 1);
         rest.remove_prefix(end + 1);
         if (!current.starts_with(directive)) {
-            out += current == "#pragma once\n" ? "\n" : current;  // of no use in the main file, and warned of
+            out += current == "#pragma once\n" ? "\n" : current;  // useless in the main file, with a warning
             continue;
         }
         std::string_view included = current.substr(directive.size());

@@ -11,7 +11,7 @@
 
 namespace pel::cl {
 
-// Compile-time choices of a program, NAME=VALUE. Only structure: numbers are kernel arguments.
+// Compile-time choices of a program, NAME=VALUE. Only for structure: values of a scene are kernel arguments.
 struct DefineValue : std::string {
     using std::string::string;
     DefineValue(std::string text) : std::string(std::move(text)) {}
@@ -21,7 +21,7 @@ struct DefineValue : std::string {
 };
 using Defines = std::map<std::string, DefineValue>;
 
-// What a program is made of: kernel files in order, each included file once; and the choices.
+// The sources of a program: kernel files in order, each included file once; and the choices.
 struct ProgramKey {
     std::vector<std::string> files;
     Defines defines;
@@ -31,7 +31,7 @@ struct ProgramKey {
 // Programs from binaries that earlier processes left on disk.
 class BinaryCache {
   public:
-    // If the driver keeps programs itself, this cache loads PoCL's, and stores if PELLUCID_CACHE is "on".
+    // If the driver keeps programs itself: loads only PoCL's, stores only if PELLUCID_CACHE is "on".
     BinaryCache(cl_context context, cl_device_id device);
 
     // Empty when there is none, or the driver refuses it.
@@ -39,7 +39,7 @@ class BinaryCache {
     // False if it could not be stored.
     bool store(const Program& program, const std::string& source, const std::string& options) const;
 
-    // Of a binary that another process made, which is kept too. Empty if the driver refuses it.
+    // The program of another process's binary, which is stored, too. Empty if the driver refuses it.
     Program take(const std::string& binary, const std::string& source, const std::string& options,
                  uint32_t& stored) const;
 
@@ -51,7 +51,7 @@ class BinaryCache {
 
     cl_context context_;
     cl_device_id device_;
-    std::string builtBy_;  // whatever else the driver's output depends on
+    std::string builtBy_;  // everything else that affects the driver's output
     std::optional<BinaryFiles> files_;
     bool stores_ = false;
 };

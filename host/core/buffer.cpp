@@ -4,7 +4,7 @@ namespace pel {
 
 Buffer::Buffer(Ref<Device> device, cl::Memory memory, size_t bytes)
     : Object(kind), device_(std::move(device)), memory_(std::move(memory)), bytes_(bytes) {
-    // Where the bytes are, of which other buffers may be views: in host memory, or a part of a cl_mem.
+    // Location of the bytes, which other buffers may view, too: in host memory, or a part of a cl_mem.
     const cl_mem own = memory_.get(), whole = cl::info<cl_mem>(own, CL_MEM_ASSOCIATED_MEMOBJECT);
     void* const host = cl::info<void*>(own, CL_MEM_HOST_PTR);
     place_ = host    ? Place{nullptr, reinterpret_cast<uintptr_t>(host)}

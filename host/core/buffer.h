@@ -18,8 +18,8 @@ class Buffer final : public Object {
     bool ofTexture() const { return bool(texture_); }
     // Enqueues the copy from the texture, or back to it.
     void copyTexture(bool back) const;
-    // Whether the copy has this version of the texture's content, because the call before this one asked for
-    // it too. 0: a version of its own each time.
+    // Whether the copy already has this version of the texture's content, because the previous call had the
+    // same number. 0: always a new version.
     bool hasVersion(uint32_t version) { return version_.exchange(version) == version && version; }
 
     // Where byte 0 is. Two buffers with the same `whole` are in the same memory; NULL means host memory.
@@ -42,7 +42,7 @@ class Buffer final : public Object {
     cl::Memory memory_;
     cl::Memory texture_;                // that it is a copy of
     std::array<size_t, 3> texels_{};    // its size
-    std::atomic<uint32_t> version_{0};  // of what was copied last
+    std::atomic<uint32_t> version_{0};  // of the last copy
     size_t bytes_;
     Place place_;
     std::mutex mutex_;

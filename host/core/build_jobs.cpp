@@ -11,7 +11,7 @@ namespace {
 
 constexpr unsigned mostHelpers = 4;  // each takes about 200 MB
 
-// What `call` throws.
+// The exception that `call` throws.
 template <class Call>
 std::exception_ptr thrownBy(const Call& call) {
     try {

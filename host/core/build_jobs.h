@@ -11,14 +11,14 @@ namespace pel {
 // on the smallest possible input.
 using BuildJobs = std::vector<std::function<void()>>;
 
-// A job for each of these programs, the longest first so that the others are built beside it.
+// A job for each of these programs, the longest first, so that the others are built in parallel with it.
 void addProgramJobs(const Ref<Device>& device, std::vector<cl::ProgramKey> keys, BuildJobs& jobs);
 
 // So many threads or processes; 0: one per core, at most `mostHelpers`.
 unsigned buildersFor(const Device& device, uint32_t threads);
 
-// Runs them on as many threads, calls report(jobs done) on this one, and throws the first error of either.
-// Jobs that have not begun by then are left out.
+// Runs the jobs on `threads` threads, calls report(jobs done) on this one, and throws the first error of
+// either. Jobs that have not begun by then are left out.
 void runJobs(Device& device, const BuildJobs& jobs, unsigned threads, cl::BuildHelpers& helpers,
              const std::function<void(size_t)>& report);
 

@@ -7,7 +7,7 @@
 
 namespace pel {
 
-// While one lives, what this thread allocates is only counted: buffers are tiny, and nothing is sent to them.
+// While one exists, this thread's allocations are only counted: buffers are tiny, and nothing is sent.
 class CountedRun {
   public:
     CountedRun() { on_ = true; }
@@ -63,7 +63,7 @@ class Device final : public Object {
         if (constants_.size() == 32) constants_.clear();
         return constants_.insert_or_assign(key, memory).first->second;
     }
-    // What several objects use whose result follows from `key` alone. It goes with the last of them.
+    // Data that several objects share and that depends only on `key`. It is released with the last of them.
     template <class T, class Make>
     std::shared_ptr<T> shared(const std::string& key, const Make& make) {
         const std::lock_guard lock(sharedMutex_);
@@ -80,9 +80,9 @@ class Device final : public Object {
               cl_command_queue queue = nullptr);
     void write(cl_mem memory, size_t offset, size_t bytes, const void* source, bool blocking,
                cl_command_queue queue = nullptr);
-    // Enqueues the write of these bytes, from the memory's first one on.
+    // Enqueues the write of these bytes to the beginning of the memory.
     void writeLater(cl_mem memory, std::vector<unsigned char> bytes);
-    // The first bytes of memory that no queued command uses, at once, on another queue.
+    // Reads the first bytes at once, on another queue. No queued command may use the memory.
     void readOnSideQueue(cl_mem memory, size_t bytes, void* destination) {
         exchange(memory, bytes, nullptr, destination);
     }
@@ -125,8 +125,8 @@ class Device final : public Object {
     std::map<std::string, std::weak_ptr<void>> shared_;
     std::mutex mutex_;  // guards the rest
     std::map<std::string, cl::Memory> constants_;
-    // Of launches that may be queued still. NVIDIA's driver (580) uses a kernel that is released before its
-    // launch starts.
+    // Launches that may still be queued. They keep kernels alive, because NVIDIA's driver (580) still uses a
+    // kernel that is released before its launch starts.
     struct Pending {
         cl::Event event;
         cl::Kernel kernel;

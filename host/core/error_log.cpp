@@ -32,7 +32,7 @@ void keep(const char* what) noexcept {
     try {
         message = what;
     } catch (...) {
-        message.clear();  // out of memory for the message: the code is still returned
+        message.clear();  // no memory for the message: the code is still returned
     }
 }
 

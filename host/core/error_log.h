@@ -7,7 +7,7 @@ namespace pel {
 void setErrorCallback(PelErrorCallback callback, void* user);
 void setLogCallback(PelLogCallback callback, void* user);
 const char* lastErrorMessage();
-// Tells the log callback of each line. False if there is none.
+// Passes each line to the log callback. False if there is none.
 bool warn(const std::string& lines);
 // Stores the message for this thread, calls the callbacks, returns the code.
 PelError report(PelError code, const char* message) noexcept;

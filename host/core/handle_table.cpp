@@ -103,7 +103,7 @@ void retainHandle(const void* handle, Kind kind) {
 }
 
 void releaseHandle(const void* handle, Kind kind) {
-    Ref<Object> last;  // released after the lock is free: a device waits, others hold objects
+    Ref<Object> last;  // released after unlocking: a device waits, other objects release objects
     std::lock_guard lock(handles().mutex);
     const auto entry = find(handle, kind);
     if (--entry->second.holders > 0) return;
@@ -119,7 +119,7 @@ uint64_t liveHandles() {
 // With PELLUCID_CHECK_LEFT set, a process that leaves handles unreleased reports them and ends with 1.
 namespace {
 
-// After all static objects of whoever uses the library. A fork holds what its parent does.
+// Runs after the static objects of the program. A forked child inherits the parent's objects.
 [[gnu::destructor]] void tellWhatIsLeft() {
     const uint64_t handles = liveHandles(), objects = Object::alive();
     if ((handles == 0 && objects == 0) || !std::getenv("PELLUCID_CHECK_LEFT") || cl::isFork()) return;

@@ -1,5 +1,5 @@
-// The C handles. A handle is not an address but a number. The same handle is never returned twice in a
-// process, so a released, mistaken or invented handle is an error and never another object.
+// The C handles. A handle is not an address but a number. Handles are never reused in a process, so a
+// released or invalid handle is an error and never another object.
 #pragma once
 #include "core/object.h"
 
@@ -13,7 +13,7 @@ Ref<Object> lookUpHandle(const void* handle, Kind kind);
 // Raises or lowers the callers' count; errors as above. At 0 the table releases the object.
 void retainHandle(const void* handle, Kind kind);
 void releaseHandle(const void* handle, Kind kind);
-// Of any kind. pelSetName.
+// Names a handle of any kind: pelSetName.
 void nameHandle(const void* handle, const char* name);
 // The name of the first object with one that this thread looked up since beginCall(); "" if none has.
 const char* nameInCall();

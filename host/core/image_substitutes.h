@@ -1,5 +1,5 @@
-// Small images of zeros in the place of a caller's: what a warm-up launches kernels on. The caller's memory
-// may be gone by the time of the launches, and no kernel's code depends on a size.
+// Small images of zeros that replace a caller's, for kernels that a warm-up launches. The caller's memory may
+// be gone by the time of the launches, and no kernel's code depends on a size.
 #pragma once
 #include "core/image_view.h"
 

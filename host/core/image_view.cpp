@@ -97,7 +97,7 @@ bool overlaps(const ImageView& a, const ImageView& b) {
 
 // Whether pixels of both have the same addresses: interleaved components, or the same image.
 bool pixelOnPixel(const ImageView& a, const ImageView& b) {
-    // OpenCL does not define what one cl_mem shows of writes through another over the same memory.
+    // Writes through one cl_mem need not be visible through another one over the same memory.
     if (a.buffer->memory().get() != b.buffer->memory().get()) return false;
     if (a.pixelStride != b.pixelStride || a.rowStride != b.rowStride || a.info().planar != b.info().planar)
         return false;

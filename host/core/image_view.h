@@ -36,7 +36,7 @@ struct ImageView {
 // that the buffer is of `device`. `what` names the image in every message.
 ImageView makeImageView(const PelImageDesc* given, Device& device, const char* what);
 
-// Enqueues the copies of textures that images are of, each once; `back`: to the textures.
+// Enqueues the copies from the textures of these images, each once; `back`: to the textures.
 void copyTextures(const std::vector<ImageView>& images, bool back);
 
 // Whether `a` and `b` share a byte of a pixel, also by host memory or as parts of one cl_mem.

@@ -9,8 +9,8 @@ namespace pel {
 inline const LaunchPolicy& launchPolicy(const Device& device) {
     return device.policy();
 }
-// Work-items of a group that add floats up together on a device of one lane. The order of such a sum shows in
-// the result, so that no measurement may change it.
+// Work-items of a group that add floats up together on a device of one lane. The order of such a sum affects
+// the result, so measured sizes must not change it.
 inline size_t summingGroup(const Device& device) {
     return builtInPolicy(device.info().mathWidth).texels;
 }
@@ -20,21 +20,20 @@ inline size_t groupsFor(const Device& device, size_t tiles) {
     return std::min<size_t>(tiles, 64 * size_t(device.info().computeUnits));
 }
 
-// Ranges of kernels in groups of PEL_GROUP: an item each; one group each, or as many as groupsFor() has.
+// Ranges of kernels in groups of PEL_GROUP, for a number of work-items.
 inline cl::Range itemRange(const Device& device, size_t items) {
     return cl::folded(items, launchPolicy(device).texels);
 }
-// A vector of pixels or blocks each.
+// The same with a work-item for each vector of pixels or blocks.
 inline cl::Range vectorRange(const Device& device, uint32_t width, uint32_t height) {
     const uint32_t lanes = device.info().mathWidth;
     return itemRange(device, size_t((width + lanes - 1) / lanes) * height);
 }
-// Levels of a pyramid that one launch makes of a finer one, of `left` that follow, and its range for the
-// first of them. One lane: a group for each of the blocks that the last of these levels has. Of several
-// lanes each work-item has PEL_WIDTH blocks.
+// How many of the `left` remaining pyramid levels one launch makes, and its range. With one lane, a group
+// makes each block of the last of these levels; with several lanes, each work-item makes PEL_WIDTH blocks.
 inline uint32_t levelsPerLaunch(const Device& device, uint32_t left) {
-    // A block of the first level per item: with more, the few groups of the coarse levels take longer than a
-    // launch more.
+    // A block of the first level per item: with more, the few groups of the coarse levels take longer than
+    // another launch.
     constexpr uint32_t most = 4;
     return device.info().mathWidth > 1 ? 1 : std::min(left, most);
 }

@@ -1,5 +1,5 @@
 // Reference-counted objects. References of the library are counted here, the caller's in the handle table
-// (core/handle_table.h). So no caller can release what another one, or the library, still uses.
+// (core/handle_table.h). So no caller can release an object that another one, or the library, still uses.
 #pragma once
 #include <atomic>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Device memory whose size changes now and then.
+// Device memory whose size changes occasionally.
 #pragma once
 #include "core/device.h"
 
@@ -11,7 +11,7 @@ class KeepsLarger {
     ~KeepsLarger() { on_ = false; }
     KeepsLarger(const KeepsLarger&) = delete;
     KeepsLarger& operator=(const KeepsLarger&) = delete;
-    // Memory that `held` bytes long is, for `bytes` of them.
+    // Whether memory of `held` bytes serves for `bytes`.
     static bool fits(size_t held, size_t bytes) { return held == bytes || (on_ && bytes && held > bytes); }
     static bool on() { return on_; }
 
@@ -23,7 +23,7 @@ class SizedMemory {
   public:
     const cl::Memory& memory() const { return memory_; }
     size_t bytes() const { return held_; }
-    // Makes it this long, with anything in it or zeros. False, and nothing is done, if it is.
+    // Changes the size; the content is undefined, or zeros. Returns false, without effect, if it is the same.
     bool resize(Device& device, size_t bytes, bool zeros = false) {
         if (bytes == bytes_) return false;
         bytes_ = 0;
@@ -37,7 +37,7 @@ class SizedMemory {
         bytes_ = bytes;
         return true;
     }
-    // The next resize() counts as one. Memory goes, unless what is long enough is kept.
+    // The next resize() has an effect. Releases the memory, unless KeepsLarger is on.
     void forget() {
         bytes_ = 0;
         if (!KeepsLarger::on()) release();
@@ -55,7 +55,7 @@ class SizedMemory {
     }
 
     cl::Memory memory_;
-    size_t bytes_ = 0, held_ = 0;  // in use, and there
+    size_t bytes_ = 0, held_ = 0;  // in use; allocated
 };
 
 }  // namespace pel

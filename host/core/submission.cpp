@@ -10,7 +10,7 @@ Event::Event(Ref<Device> device, cl::Event event)
 void Event::wait() const {
     cl_event event = event_.get();
     cl::check(clWaitForEvents(1, &event), "clWaitForEvents");
-    isDone();  // NVIDIA's driver does not say that an event failed
+    isDone();  // NVIDIA's driver does not report that an event failed
 }
 
 cl_int Event::status() const {

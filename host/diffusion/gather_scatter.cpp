@@ -11,7 +11,7 @@
 namespace pel {
 namespace {
 
-// As the device reads a table.
+// Looks up a table as the device does.
 Rgb densityAt(const ProfileNodes& nodes, float distance2) {
     const int32_t last = int32_t((nodes.table.nodes - 1) << PEL_PROFILE_NODE_BITS) - 1;
     const int32_t bits =
@@ -24,7 +24,7 @@ Rgb densityAt(const ProfileNodes& nodes, float distance2) {
     return density;
 }
 
-// Line spreads in the place of R.
+// Replaces R by the line spread.
 void takeLineSpread(ProfileNodes& nodes, const ProfileShape& shape, double scale) {
     for (uint32_t k = 0; k + 1 < nodes.table.nodes; ++k) {
         const uint32_t bits = nodes.table.firstBits + (k << PEL_PROFILE_NODE_BITS);

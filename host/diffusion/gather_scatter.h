@@ -11,7 +11,7 @@ namespace pel {
 struct GatherImages {
     ScatterImages of;
     ImageView weight;   // may be empty
-    bool half = false;  // gathered at every second pixel of both directions
+    bool half = false;  // gathered at every second pixel along both axes
     // Light from beyond pixels goes to `of.out`, tightly packed RGBA32F; the result to `out`.
     struct History {
         float weight = 0;    // as PelShaderOptions.historyWeight; 0: none
@@ -56,7 +56,7 @@ class GatherScatter {
     }
 
   private:
-    // The frames that a history can go on from.
+    // Properties of frames that share a history.
     struct Sequence {
         uint32_t width, height, view, cut;
         bool operator==(const Sequence&) const = default;

@@ -7,14 +7,14 @@
 namespace pel {
 namespace {
 
-// Shares of the light at rising places, from 0 at the first on, for each channel.
+// Cumulative shares of the light at rising positions, 0 at the first, for each channel.
 class Shares {
   public:
     void add(double place, const Rgb& shares) {
         places_.push_back(place);
         shares_.push_back(shares);
     }
-    // Scales what is left at the last place to 1.
+    // Scales the shares so that the last one is 1.
     void close() {
         const Rgb all = shares_.back();
         for (Rgb& s : shares_)
@@ -55,7 +55,7 @@ double stepAt(int i, double reach) {
     return reach * t * t * t;
 }
 
-// Of the profile within a distance.
+// Shares of the profile's light within a distance.
 Shares radialShares(const ProfileShape& shape, double reach) {
     Shares shares;
     for (int i = 0; i <= steps; ++i) {
@@ -67,7 +67,7 @@ Shares radialShares(const ProfileShape& shape, double reach) {
     return shares;
 }
 
-// Of one half of the line spread; two points of Gauss a step.
+// Shares of one half of the line spread; two Gauss points a step.
 Shares lineShares(const ProfileShape& shape, double reach) {
     Shares shares;
     Rgb sum{};
@@ -108,7 +108,7 @@ std::vector<PelGatherTap> diskTaps(const ProfileShape& shape, double scale, doub
 
 std::vector<PelGatherTap> lineTaps(const ProfileShape& shape, double scale, double reach, uint32_t count) {
     const Shares shares = lineShares(shape, reach / scale);
-    // Half of the pieces by light, half by length: where there is little light pieces would be long.
+    // Half of the pieces by light, half by length: by light alone, pieces in the tail would be long.
     const auto border = [&](uint32_t i) {  // from the middle of the line; of 0 and `count` the reach
         const double t = 2.0 * i / count - 1, part = std::abs(t);
         double low = 0, high = reach / scale;

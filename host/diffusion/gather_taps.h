@@ -1,4 +1,4 @@
-// Places of the taps of methods that gather, and their shares of the light.
+// Positions of the taps of methods that gather, and their shares of the light.
 #pragma once
 #include "lut/profile.h"
 #include "shared/gather.h"

@@ -8,8 +8,7 @@ namespace {
 
 constexpr int samples = 96;
 
-// Weights of 0 and more that bring the sum of the columns nearest to `wanted`, one after the other until
-// they settle.
+// Non-negative weights for which the sum of the columns is nearest to `wanted`, by coordinate descent.
 std::vector<double> fitWeights(const std::vector<std::vector<double>>& columns,
                                const std::vector<double>& wanted) {
     std::vector<double> weights(columns.size(), 1.0 / double(columns.size())), left = wanted;

@@ -47,8 +47,7 @@ Vec rowOf(const Matrix& m, int r) {
     return {m[4 * r], m[4 * r + 1], m[4 * r + 2]};
 }
 
-// Of the length that u, or v, spans over the homogeneous coordinate: how much a step across the light
-// changes it.
+// Change of u or v, times the homogeneous coordinate, per length of a step across the light.
 double perLength(const Matrix& m, int r) {
     const Vec row = rowOf(m, r), forward = rowOf(m, 3);
     const double along = forward.dot(forward) > 0 ? row.dot(forward) / forward.dot(forward) : 0;
@@ -110,7 +109,7 @@ PelLightMap describe(const ShaderLight& light, uint32_t number, Matrix m, const 
     if (l.shadowProjection == PEL_SHADOW_CUBE_RADIAL) to.radialRange = l.shadowDepthRange;
     if (l.shadowExponent != 0) to.perExponent = float(std::log(2.0) / l.shadowExponent);
     const double texel = std::max(1 / (perLength(m, 0) * width), 1 / (perLength(m, 1) * height));
-    to.step = 1;  // how wide a texel of a perspective map is depends on where the surface lies
+    to.step = 1;  // the width of a texel of a perspective map depends on the distance of the surface
     if (rowOf(m, 3).length() == 0)
         while (to.step < mostTexels && 2 * to.step * texel <= coarsest) to.step *= 2;
     to.texel = float(texel * to.step);

@@ -10,11 +10,11 @@ struct LightMap {
     ImageView image;
 };
 
-// Maps of all lights that shine: cascades from the finest on, faces of cubes one by one. No more than
-// PEL_LIGHT_MAPS; a light of which one would be too many is left out. `origin`: of the kernels' positions.
+// Maps of all lights that shine: cascades from the finest on, faces of cubes one by one. At most
+// PEL_LIGHT_MAPS; a light whose maps do not all fit is left out. `origin`: of the kernels' positions.
 //
-// Of parallel maps, `step` by `step` texels are taken together that are no wider than `coarsest`, a length;
-// 0: one by one.
+// In parallel maps, `step` x `step` texels are merged, together no wider than `coarsest`, a length; 0: texels
+// are not merged.
 std::vector<LightMap> lightMaps(const std::vector<ShaderLight>& lights, const float origin[3],
                                 double coarsest = 0);
 

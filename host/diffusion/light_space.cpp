@@ -23,7 +23,7 @@ uint32_t pointsOf(uint32_t level) {
 uint64_t LightSpace::layOutLevels(std::vector<LightMap>& maps, bool hidden, uint64_t& seen, uint64_t& cells) {
     uint64_t floats = 0;
     cells = 0;
-    seen = PEL_PYRAMID_GUARD;  // vectors read before and after what is set
+    seen = PEL_PYRAMID_GUARD;  // margins, which vectors read
     for (LightMap& map : maps) {
         PelLightMap& m = map.constants;
         uint32_t width = m.level[0].width, height = m.level[0].height;

@@ -20,7 +20,7 @@ class LightSpace {
     explicit LightSpace(Ref<Device> device) : device_(std::move(device)) {}
 
     // Sets the variant of the program. `hidden`: occluded texels fill missing weight of the screen;
-    // otherwise all texels are the far part of the sum, `half`: at every second pixel of both directions. All
+    // otherwise all texels are the far part of the sum; `half`: at every second pixel along both axes. All
     // maps have one format and one content. Without a map nothing is done.
     void announce(const std::vector<ShaderLight>& lights, bool hidden, bool half);
     // `narrowest`, `widest`: reach of the profiles, length. `blocks`: floats for the occluded light of the
@@ -55,7 +55,7 @@ class LightSpace {
     std::vector<LightMap> maps_;
     std::vector<PelLightMap> sent_;
     bool empty_ = true, hidden_ = true, half_ = false, area_ = false;
-    bool known_ = false;        // whether cells_[0] says what the pyramid holds, and seen_ is 0
+    bool known_ = false;        // whether cells_[0] matches the pyramid, and seen_ is 0
     uint32_t frameNumber_ = 0;  // of those that were enqueued
     uint32_t mapFormat_ = 0, content_ = 0;
     CachedUpload mapUpload_;

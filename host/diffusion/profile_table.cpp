@@ -8,8 +8,8 @@
 namespace pel {
 namespace {
 
-// The factor 1 + k t of R (docs/mathematics.md, section 12) has the k with which even light on a sphere gains
-// this, times mean free path and curvature, to first order: k = 0.92 at a reflectance of 0.8.
+// The factor 1 + k t of R (docs/mathematics.md, section 12) has the k for which uniform light on a sphere
+// gains this times mean free path and curvature, to first order: k = 0.92 at a reflectance of 0.8.
 constexpr double gainPerCurvature = 1.06;
 
 // 2 pi r R dr over [begin, end], integrated over the logarithm of r by Gauss-Legendre with four points.
@@ -55,8 +55,7 @@ double radiusOfNode(uint32_t bits) {
     return std::sqrt(double(std::bit_cast<float>(bits)));
 }
 
-// What a look-up between two nodes returns too much in the mean: lines between the values of a convex curve
-// lie above it.
+// Mean excess of look-ups between two nodes: chords of a convex curve lie above it.
 template <class Density>
 Rgb aboveCurve(const Density& density, uint32_t bits, uint32_t step) {
     const Rgb a = density(radiusOfNode(bits)), b = density(radiusOfNode(bits + step)),
@@ -98,7 +97,7 @@ void solve(std::vector<double>& a, std::vector<Rgb>& b) {
 }
 
 // Least squares of the light in each part of an octave, from the reach down to a 2^8th of it. The terms are
-// so alike that a small multiple of the unit matrix keeps them apart.
+// nearly dependent, so a small multiple of the unit matrix is added.
 template <class Density>
 std::vector<Rgb> gaussiansOf(const Density& density, double widest, double reach) {
     constexpr int perTerm = 16, n = PEL_PROFILE_TERMS;
@@ -111,8 +110,8 @@ std::vector<Rgb> gaussiansOf(const Density& density, double widest, double reach
         for (int i = 0; i < n; ++i)
             columns[i].push_back(lightPerLog * std::exp2(-widest * std::exp2(i) * r * r));
     }
-    // In between an error of the light and one relative to it: tails are little light, and all that comes
-    // through an ear.
+    // A compromise between absolute and relative error: tails have little light, but all of the light through
+    // an ear.
     double most = 0;
     for (const Rgb& l : light) most = std::max({most, l[0], l[1], l[2]});
     for (size_t s = 0; s < light.size(); ++s) {
@@ -144,7 +143,7 @@ std::vector<Rgb> gaussiansOf(const Density& density, double widest, double reach
     return b;
 }
 
-// How much of the diffuse light on its far side a slab lets through, over the reflectance of a half-space, by
+// Transmittance of a slab for diffuse light on its far side, over the reflectance of a half-space, by
 // diffusion theory with an extrapolated boundary (docs/mathematics.md, section 12, "Slabs").
 class Slab {
   public:
@@ -163,9 +162,8 @@ class Slab {
     double decay_, strength_;
 };
 
-// V(s): light that a slab of thickness s lets through from a point of its far side straight to the other, so
-// that within `reach`, and with what surfaces count there (PEL_SLAB_COSINE), as much comes through as by a
-// random walk.
+// V(s): light through a slab of thickness s, from a point on its far side straight to the other, scaled so
+// that the sum within `reach`, over surfaces that count there (PEL_SLAB_COSINE), is that of a random walk.
 template <class Density>
 Rgb densityThrough(const Density& density, const Rgb& path, const Rgb& meanDistance, double directed,
                    double reach, double s) {

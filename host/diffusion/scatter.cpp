@@ -229,7 +229,7 @@ void Scatter::run(const PelScatterParams& params, const ScatterImages& images,
     counts_ = {};
     pixels_ = images.out.width * images.out.height;
     executed_ = true;
-    // What a method does to images, or the names of its programs.
+    // Runs a method on images, or collects the names of its programs.
     const auto step = [&](auto& method, const auto& on, const auto& work) {
         if (!keys) return work();
         for (cl::ProgramKey& key : method.programs(on)) keys->push_back(std::move(key));

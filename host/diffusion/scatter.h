@@ -25,7 +25,7 @@ class Scatter final : public Object {
     void setImage(PelImageSlot slot, const ImageView& view);
     // Enqueues everything.
     void execute(const PelScatterParams& params, const ScatterImages& images);
-    // Jobs for a warm-up: they build what an execution with such images would, and scatter a small one.
+    // Jobs for a warm-up: they build the programs for such images, and scatter a small image.
     void addBuildJobs(const PelScatterParams& params, const ScatterImages& images, BuildJobs& jobs) const;
     PelScatterStats stats();
     Device& device() const { return *device_; }
@@ -36,16 +36,16 @@ class Scatter final : public Object {
         std::map<uint32_t, GatherScatter::Material> disk, lines;
         GatherScatter::Ids sources;
         ImageView weight;
-        ImageView curvature;                // that the caller gives, if a material has a gain
-        bool measures = false;              // there is a gain, and none is given
-        std::map<uint32_t, float> windows;  // over which it is measured, by id
+        ImageView curvature;                // the caller's, if a material has a gain
+        bool measures = false;              // it is needed, but not given
+        std::map<uint32_t, float> windows;  // lengths over which it is measured, by id
         std::map<uint32_t, PelBlendMaterial> blend;
         PelBlendMaterial other{};  // of ids that do not scatter
         bool prepares = false, finishes = false;
     };
     ~Scatter() override = default;
     Plan planOf(const PelScatterParams& params, const ScatterImages& images) const;
-    // With `keys` the programs are named alone.
+    // With `keys` it only names the programs.
     void run(const PelScatterParams& params, const ScatterImages& images, std::vector<cl::ProgramKey>* keys);
     PelScatterControls controlsOf(uint32_t id) const;
     void capture(const PelScatterParams& params, const ScatterImages& images);

@@ -32,7 +32,7 @@ ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Bu
 // Whether irradiance is a scratch image that is not read after scattering, so that it can be overwritten.
 bool ownsIrradiance(const ShaderPlan& plan);
 
-// Whether the profile's radius differs from pixel to pixel, and the image that says so.
+// Whether the profile's radius varies per pixel, and its image.
 bool hasRadii(const ShaderPlan& plan);
 void addRadii(const ShaderPlan& plan, ScatterImages& images);
 

@@ -21,7 +21,7 @@ bool halfRate(const ShaderPlan& plan) {
     return plan.state.options.halfRate || plan.taken.halfRate;
 }
 
-// `alone`: texels are all of the far part.
+// `alone`: the far part is the sum over texels only.
 template <bool alone>
 class ScatterPass final : public Pass {
   public:

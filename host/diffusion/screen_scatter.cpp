@@ -24,7 +24,7 @@ bool samePixels(const ImageView& a, const ImageView& b) {
 }
 
 namespace {
-// Samples of sums by levels are nearer than the light that they stand for, so that they gain less.
+// Samples of sums by levels are nearer than the light that they represent, so their gain is smaller.
 constexpr double nearerByLevels = 0.925;
 
 enum ScreenProgram { PYRAMIDS, SUMS, CLASSIFY };
@@ -39,7 +39,7 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
     std::vector<PelProfileTable> tables;
     std::vector<float> values;
     for (const Material& material : distinct) {
-        // Otherwise surfaces have no outer side.
+        // Without sides, the outward direction is unknown.
         Rgb path{};
         const PelProfileInfo info = material.profile->info();
         for (int c = 0; hasSides && c < 3; ++c) path[c] = meanFreePath(info, c) * material.scale;
@@ -103,7 +103,7 @@ void ScreenScatter::describeLevels(uint32_t width, uint32_t height, bool radii) 
         return;
     pyramid_.forget(), sums_.forget();
     pyramid_.resize(*device_, floats * sizeof(float), true);  // no area outside of the picture
-    // Vectors read beyond what is set.
+    // Zeros, because vectors read beyond the values that are written.
     sums_.resize(*device_, sumFloats(frame_.level, radii, floats) * sizeof(float), true);
 }
 

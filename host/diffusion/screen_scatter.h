@@ -21,8 +21,8 @@ bool samePixels(const ImageView& a, const ImageView& b);
 // Lights whose shadow maps serve as lit surface.
 struct ScatterLights {
     std::vector<ShaderLight> lights;
-    bool alone = false;  // true: texels are all of the far part; false: only occluded texels are added
-    bool half = false;   // texels alone: summed at every second pixel of both directions
+    bool alone = false;  // true: the far part is the sum over texels; false: only occluded texels are added
+    bool half = false;   // texels alone: summed at every second pixel along both axes
 };
 
 struct ScatterCounts {

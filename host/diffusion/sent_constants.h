@@ -22,7 +22,7 @@ class SentConstants {
     T sent_{};
 };
 
-// The different materials among those of ids. `numberOf`: of each id, from 1 on; 0: none.
+// The distinct materials of all ids. `numberOf`: number of each id's material, from 1 on; 0: none.
 template <class Material>
 std::vector<Material> distinctOf(const std::map<uint32_t, Material>& materials,
                                  uint32_t (&numberOf)[PEL_DIFFUSION_IDS]) {

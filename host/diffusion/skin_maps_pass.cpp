@@ -95,7 +95,7 @@ class SkinMapsPass final : public Pass {
     }
 
   private:
-    // Halves: a frame waits for memory.
+    // Half floats, because memory bandwidth limits the frame.
     static constexpr size_t albedoBytes = 8, radiusBytes = 2, pixelBytes = albedoBytes + radiusBytes;
 
     int oxygenations() const { return skin_.info().components > 2 ? PEL_SKIN_OXYGENATIONS : 1; }

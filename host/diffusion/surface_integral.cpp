@@ -56,7 +56,7 @@ std::vector<SurfaceTriangle> litTriangles(const PelSurfaceIntegralDesc& desc) {
         const double n[3] = {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2],
                              ab[0] * ac[1] - ab[1] * ac[0]};
         const double longest = std::max(std::hypot(ab[0], ab[1], ab[2]), std::hypot(ac[0], ac[1], ac[2]));
-        // Triangles without an area, or so narrow that float gives them no plane.
+        // Skips triangles that are degenerate in float.
         if (!(std::hypot(n[0], n[1], n[2]) > 1e-7 * longest * longest)) continue;
         lit.push_back(t);
     }

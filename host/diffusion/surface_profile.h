@@ -1,5 +1,5 @@
-// What the surface integral needs of a profile: energy within a distance, and how fast R curves. In units of
-// positions.
+// Data of a profile for the surface integral: energy within a distance, and bounds of the derivatives of R.
+// In units of positions.
 #pragma once
 #include "core/device.h"
 #include "lut/profile.h"

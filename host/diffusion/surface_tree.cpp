@@ -43,8 +43,8 @@ Vec corner(const SurfaceTriangle& t, int k) {
     return {t.corner[3 * k], t.corner[3 * k + 1], t.corner[3 * k + 2]};
 }
 
-// Exact for cubic integrands; E |y|^2 is cubic [Strang & Fix 1973, degree 3]. Relative to `origin`, so that
-// nothing cancels.
+// Exact for cubic integrands; E |y|^2 is cubic [Strang & Fix 1973, degree 3]. Relative to `origin`, to avoid
+// cancellation.
 Moments momentsOf(const SurfaceTriangle& t, const Vec& origin) {
     const Vec a = corner(t, 0) - origin, ab = corner(t, 1) - corner(t, 0), ac = corner(t, 2) - corner(t, 0);
     const Vec normal{ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2],
@@ -154,7 +154,7 @@ class Builder {
             spread = std::max(
                 spread, (m.second[c] - 2 * dot(centre, m.first[c])) / m.weight[c] + dot(centre, centre));
         }
-        if (offset * offset < 1e-12 * spread) offset = 0;  // white light: rounding alone
+        if (offset * offset < 1e-12 * spread) offset = 0;  // white light: only rounding
         Vec far{};
         const Vec at = centre + origin_;
         for (int a = 0; a < 3; ++a) far[a] = std::max(at[a] - set.low[a], set.high[a] - at[a]);

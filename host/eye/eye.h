@@ -21,17 +21,17 @@ struct EyeShape {
     double slope(double r) const;
 };
 
-// Lengths times `scale`.
+// The shape with lengths multiplied by `scale`.
 PelEyeShape describeShape(const EyeShape& shape, const PelEyeLutDesc& desc, double scale);
 
-// Light on the iris that comes from everywhere, against that of the open air: from the axis to the rim.
+// Ambient light on the iris over that outside the eye, from the axis to the rim.
 using AmbientNodes = std::array<float, PEL_AMBIENT_NODES>;
 AmbientNodes ambientNodes(const PelEye& eye);
 
-// Whether light takes the same ways in both.
+// Whether light takes the same paths in both eyes.
 bool sameShape(const PelEye& a, const PelEye& b);
 
-// An eye without what depends on tables and textures. `eye` is resolved (resolvedEye()).
+// The constants of an eye, except those of tables and textures. `eye` is resolved (resolvedEye()).
 PelShadeEye describeEye(const PelEye& eye, const AmbientNodes& ambient, double millimetresPerUnit);
 
 // Checks of PelEye and PelEyeLutDesc. They throw PEL_ERROR_INVALID_ARGUMENT with the field, its value and the

@@ -10,7 +10,7 @@
 
 namespace pel {
 
-// What a profile was created from; lengths in mm.
+// The parameters of a profile's creation; lengths in mm.
 struct ProfileRecipe {
     PelProfileKind kind = PEL_PROFILE_SKIN;
     std::string name;
@@ -65,8 +65,8 @@ struct CapturedFrame {
     std::array<float, 9> environmentAxes{};
 };
 
-// The module's function, named "pellucidCapture": writes a scene into an empty folder. Returns what went
-// wrong; "": nothing.
+// The module's function, named "pellucidCapture": writes a scene into an empty folder. Returns an error
+// message; "": success.
 using WriteCapture = std::string (*)(const CapturedFrame& frame, const std::string& folder);
 
 }  // namespace pel

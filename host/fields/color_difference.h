@@ -1,4 +1,4 @@
-// How different two colours look.
+// Perceived difference of two colours.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -19,8 +19,8 @@ inline Lab labFromLinear(const std::array<double, 3>& rgb) {
     return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
-// CIEDE2000 (CIE 142-2001) with all parametric factors 1, as spelled out by Sharma, Wu & Dalal 2005. About 1
-// can just be seen.
+// CIEDE2000 (CIE 142-2001) with all parametric factors 1, as spelled out by Sharma, Wu & Dalal 2005. A
+// difference of about 1 is just visible.
 inline double deltaE2000(const Lab& one, const Lab& two) {
     constexpr double degree = std::numbers::pi / 180, pow25to7 = 6103515625.0;
     const double c1 = std::hypot(one[1], one[2]), c2 = std::hypot(two[1], two[2]);

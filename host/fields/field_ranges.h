@@ -21,7 +21,7 @@ struct FieldRange {
     constexpr bool holds(float v) const { return (v >= min && v <= max) || v == special; }
 };
 
-// What would be right, for messages: "it must be ...".
+// The valid values, for messages: "it must be ...".
 inline std::string describe(const FieldRange& r) {
     std::ostringstream text;
     if (r.special == r.special) text << r.special << ", or ";

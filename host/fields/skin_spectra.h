@@ -1,4 +1,4 @@
-// Absorption spectra of skin, matching functions and daylight. All of them are here and nowhere else.
+// Absorption spectra of skin, matching functions and daylight. No other file holds such data.
 //
 // Haemoglobin: molar extinction, 1/(cm M), per molecule of 64500 g/mol; S. Prahl, Tabulated Molar Extinction
 // Coefficient for Hemoglobin in Water, OMLC 1998, from Gratzer and Kollias.

@@ -11,7 +11,7 @@ namespace pellucid::io {
 // writer lives. commit() renames it and flushes the folder; without it the destructor removes the file.
 class AtomicFile {
   public:
-    // Throws FileError if the folder is missing or not writable, or the name that of something else.
+    // Throws FileError if the folder is missing or not writable, or if the name is not that of a file.
     explicit AtomicFile(std::string target);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
@@ -39,8 +39,8 @@ void flushFolder(const std::string& path);
 // including containers. 8 hexadecimal digits.
 const std::string& machineTag();
 
-// Removes what killed programs left in a folder, and returns how many: temporary files that nobody locks, a
-// minute after the last write; after a day those of other machines, whose locks may not be visible.
+// Removes temporary files of killed programs from a folder, and returns how many: those that nobody locks, a
+// minute after the last write, and those of other machines, whose locks may not be visible, after a day.
 size_t removeAbandonedFiles(const std::string& folder);
 
 // Throws FileError unless `path` can be written; call it before long work. Removes abandoned files, too.

@@ -1,4 +1,4 @@
-// Texts put together for messages.
+// Concatenates texts for messages.
 #pragma once
 #include <charconv>
 #include <iterator>
@@ -8,7 +8,7 @@
 
 namespace pellucid::io {
 
-// The parts as one text; numbers in the fewest digits that give them back, in every locale.
+// The parts as one text; numbers with the fewest digits that read back as the same value, in every locale.
 template <class... Parts>
 std::string concat(const Parts&... parts) {
     const auto text = [](const auto& part) {

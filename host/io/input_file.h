@@ -34,8 +34,8 @@ std::string otherThanFile(const std::string& path);
 // The extension in lower case, without the dot; "" if there is none.
 std::string extensionOf(const std::string& path);
 
-// The name of a file has an extension that stands for no format. The command calls it wrong use where the
-// name is one of its arguments, whether for input or output.
+// The name of a file has an extension that stands for no format. The command reports a usage error if the
+// name is one of its arguments, for input or output.
 class ExtensionError : public FileError {
     using FileError::FileError;
 };

@@ -1,7 +1,7 @@
 #include "io/toml_reader.h"
 
-// Damaged text breaks some of toml++'s assertions, which NDEBUG has the compiler take for granted; the
-// checks behind them say what is wrong with the text.
+// Damaged text violates some of toml++'s assertions, which the compiler takes as given under NDEBUG; the
+// checks behind them report the fault in the text.
 #pragma push_macro("NDEBUG")
 #undef NDEBUG
 #define TOML_ASSERT(expr) static_cast<void>(0)
@@ -83,7 +83,7 @@ struct TomlReader::Nodes {
 };
 
 // toml++ limits brackets inside one another, but not the parts of a key. It makes and destroys a table for
-// each part by recursion. Dots in strings and comments count too: no sane ones have so many.
+// each part by recursion. Dots in strings and comments count too: real files do not have that many.
 static void refuseLongKeys(const std::string& file, std::string_view text) {
     constexpr int mostParts = 1000;
     int line = 1, dots = 0;

@@ -10,7 +10,7 @@ class Lut final : public Object {
   public:
     static constexpr Kind kind = Kind::lut;
 
-    // Allocates the texels, uninitialised, but for a table of a stack, whose texels lie elsewhere. `info`
+    // Allocates the texels, uninitialised, except for a table of a stack, whose texels are elsewhere. `info`
     // must be valid (see below). Its profile is retained, and its defaults (no profile, radius 0) are filled
     // in.
     Lut(Ref<Device> device, const PelLutInfo& info, bool ofStack = false);
@@ -27,7 +27,7 @@ class Lut final : public Object {
     uint32_t width() const { return layout_.width; }
     uint32_t height() const { return layout_.height; }
     float diffusionRadius() const { return layout_.radius; }
-    // Whether that is the profile's own, in the profile's unit, since the description left it out.
+    // Whether the description has no diffusion radius: then it is the profile's own, in the profile's unit.
     bool hasOwnRadius() const { return ownRadius_; }
 
   private:
@@ -45,7 +45,7 @@ class Lut final : public Object {
 void checkCurvatureDesc(const PelCurvatureLutDesc& desc);
 void checkShadowDesc(const PelShadowLutDesc& desc);
 void checkSpecularDesc(const PelSpecularLutDesc& desc);
-// That the ends of its range are in order, once lengths that were left out are known.
+// Checks that min <= max after defaults have been filled in.
 void checkOrder(const PelLutInfo& info);
 
 }  // namespace pel

@@ -31,7 +31,7 @@ struct RowAxis {
 RowAxis rowAxis(PelLutAxis axis, uint32_t height, double least, double most);
 
 // 1/length of the first and the last row of a curvature or shadow table, 1/diffusion radii, limited to what
-// float arithmetic on squares can hold. Tables are at their limits beyond.
+// float arithmetic on squares can hold. Beyond, tables have reached their limits.
 struct RowRange {
     double least, most;
 };
@@ -68,8 +68,8 @@ std::vector<cl_float4> antipodes(const Profile& profile, bool radial, const std:
 // The intervals of the mesh of curvature tables (lut_terms.h). `chord`: distances are chords, not arcs.
 std::vector<TableInterval> tableMesh(int nodes, bool chord);
 
-// Of samples PEL_RAMP_PARTS to a half width of the ramp 3/4 (1 - y^2), -1 <= y <= 1, of a function that is
-// cubic between them.
+// Weights of samples, PEL_RAMP_PARTS to a half width of the ramp 3/4 (1 - y^2), -1 <= y <= 1, for a function
+// that is cubic between them.
 std::vector<RampWeight> rampWeights();
 
 // Points (weight R, G, B; distance) that represent the table with those knots on a sphere of that diameter,

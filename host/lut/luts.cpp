@@ -10,13 +10,13 @@
 namespace pel {
 namespace {
 
-// Of a row: with two Gauss points between two of them the error is about 1e-7.
+// Nodes of a row: with two Gauss points between neighbours the error is about 1e-7.
 constexpr int curvatureNodes = 64;
 
-// What the kernel calls the forms.
+// The kernel's names of the forms.
 #define FORM_NUMBER(name, number, key) {"PEL_FORM_" #name, #number},
 
-// Tables of sums of Gaussians that one launch makes: they differ in their profiles and ranges of rows alone.
+// Tables of sums of Gaussians that one launch makes: they differ only in their profiles and ranges of rows.
 struct Stack {
     std::vector<StackedLut> tables;
     std::vector<LutGaussian> gaussians;
@@ -192,8 +192,8 @@ Encoding encodingOf(const Lut& lut, PelLutEncoding encoding) {
                     " is unknown; PEL_LUT_FLOAT (0), PEL_LUT_HALF (1) or PEL_LUT_FACEWORKS8 (2) is needed");
 }
 
-// Nothing is computed for this encoding: copying here spares a program, which takes a CPU longer to compile
-// than a table to make.
+// This encoding needs no computation, so the host copies: compiling a program takes a CPU longer than making
+// a table.
 void readFloats(const Lut& lut, float* destination) {
     const size_t rowTexels = lut.layout().rowTexels, width = lut.width(), height = lut.height();
     std::vector<cl_float4> texels(rowTexels * height);
@@ -233,7 +233,7 @@ size_t packedBytes(const Lut& lut, PelLutEncoding encoding) {
 
 namespace {
 
-// Of `tables` tables as `lut` whose texels follow one another.
+// Encodes and reads `tables` tables like `lut`, stored one after another.
 void encodeAndRead(const Lut& lut, const cl::Memory& texels, size_t tables, PelLutEncoding encoding,
                    void* destination, bool blocking) {
     Device& device = lut.device();
@@ -293,7 +293,7 @@ void readLutStack(const Ref<Device>& device, std::span<const PelLutInfo> tables,
     if (bytes / tables.size() < each)
         invalidArgument("the stack takes ", tables.size(), " x ", each,
                         " bytes in this encoding; destination has ", bytes);
-    // Of the texels of one launch: so they and the records of rows stay in a processor's cache.
+    // Limit for the texels of one launch, so that they and the records of rows stay in a processor's cache.
     constexpr size_t bytesTogether = 1 << 19;
     const size_t most = std::max<size_t>(1, bytesTogether / like->texelBytes());
     std::vector<Ref<Lut>> luts;

@@ -59,7 +59,7 @@ class Profile final : public Object {
     }
     void setName(const char* name);
     void setSource(const char* source) { source_ = source; }  // static storage; before the profile is used
-    // What skin of pelProfileCreateSkinLayers is made of; NULL for other profiles.
+    // The composition of skin of pelProfileCreateSkinLayers; NULL for other profiles.
     const PelSkin* pigments() const { return pigments_ ? &*pigments_ : nullptr; }
     void setPigments(const PelSkin& skin) { pigments_ = skin; }  // before the profile is used
     ProfileRecipe recipe() const;

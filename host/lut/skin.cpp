@@ -84,7 +84,7 @@ class Table {
             }
         });
     }
-    // The ranges of PelSkin reach so far at the wavelengths of the table of spectra.
+    // The limits cover the ranges of PelSkin at the wavelengths of the table of spectra.
     const Axis thickness_{8, std::log1p(0.016 / thicknessUnit), std::log1p(10 / thicknessUnit)},
         upper_{16, 0, std::log1p(45 / opticalUnit)}, lower_{9, std::log(0.0025), std::log(32)};
     std::vector<Spectrum> rows_;
@@ -161,7 +161,7 @@ Computed compute(const PelSkin& skin, bool radial) {
     for (int n = 0; n < 3; ++n) {
         out.freePath[n] /= total[n];
         out.scattered[n] /= total[n];
-        // What is out of the gamut of sRGB counts as nothing.
+        // Values outside the gamut of sRGB are clamped.
         out.albedo[n] = std::clamp(out.albedo[n], 1e-4, 1.0);
         for (float& value : out.spectrum[n]) value /= float(total[n]);
     }
@@ -192,7 +192,7 @@ struct Basis {
 };
 
 // The weights of 0 or more with the smallest squared error over the frequencies [LH74].
-// Those that are not 0 solve their normal equations; more are let in as long as the error falls.
+// The weights above 0 solve their normal equations; further ones join as long as the error falls.
 std::array<double, terms> weightsOf(const Basis& basis, const std::array<double, terms>& wanted) {
     std::array<double, terms> weights{};
     std::array<int, terms> in{};  // the first `count`: those that are not 0
@@ -224,7 +224,7 @@ std::array<double, terms> weightsOf(const Basis& basis, const std::array<double,
                 for (int k = a + 1; k < count; ++k) x[a] -= l[k][a] * x[k];
                 x[a] /= l[a][a];
             }
-            // As far towards it as all weights remain 0 or more.
+            // Goes as far towards the solution as all weights remain 0 or more.
             double step = 1;
             for (int a = 0; a < count; ++a)
                 if (x[a] <= 0) step = std::min(step, weights[in[a]] / (weights[in[a]] - x[a]));
@@ -310,7 +310,7 @@ struct Maps {
                 (1 - t) * ((1 - s) * a[0][3] + s * a[every][3]) + t * ((1 - s) * b[0][3] + s * b[every][3]);
         }
     }
-    // Of the skin used last: callers come with one picture in many pieces.
+    // The maps of the last skin are kept: callers convert one picture in many pieces.
     static std::shared_ptr<const Maps> of(PelSkin skin) {
         static std::mutex mutex;
         static std::shared_ptr<const Maps> last;

@@ -41,8 +41,8 @@ double asymptoticDecay(double albedo) {
     return low;
 }
 
-// Of a source that is linear over a cell of optical length y: the share of light that comes through, and what
-// the two ends of the source add to the light that leaves the cell.
+// For a source that is linear over a cell of optical length y: the share of light that passes the cell, and
+// the weights of both ends of the source in the light that leaves it.
 struct Cell {
     Complex through, near, far;
 };
@@ -138,7 +138,7 @@ double skinReflected(const SkinLayers& layers, double k) {
             }
             for (int j = 0; j < n; ++j)
                 leaving[j] += 2 * std::numbers::pi * (1 - inside) * mu * node.weight / turns * row.re[j];
-            // Downwards: what the surface reflects, and light from outside.
+            // Downwards: light that the surface reflects, and light from outside.
             Complex direct = entering;
             row.scale(0, n, inside);
             for (int i = 0; i < n; ++i) {

@@ -1,4 +1,4 @@
-// Light in two layers that scatter isotropically, the lower one without end, below a smooth surface.
+// Light in two layers that scatter isotropically, the lower one infinitely thick, below a smooth surface.
 #pragma once
 
 namespace pel {

@@ -45,7 +45,7 @@ Rgb lineSpread(const Profile& profile, double distance) {
 
 // visit(distance from a, total) for the points that stand for P from a to b. P behaves like the root of the
 // distance before each distance where the slope of R changes or R ends, so a and b are such distances or have
-// none between them, and points are even over that root.
+// none between them, and points are evenly spaced in that root.
 void eachPoint(const Profile& profile, double a, double b, auto&& visit) {
     const double h = b - a;
     for (int q = 0; q < 4; ++q) {

@@ -12,12 +12,12 @@ namespace {
 
 // Intervals of the mesh. Corners of tabulated profiles need a finer one than Gaussians do.
 constexpr int sweptNodes = 128, sphereNodes = 79;
-// Of the sums of R, whose corners lie within cells; P is smoother, and dearer.
+// Cells of the sums of R, whose corners lie within cells; P is smoother, and more expensive.
 constexpr int radialCells = 4096;
-// Rows of shadow tables have nodes up to so many for each texel.
+// Rows of shadow tables have nodes unless these outnumber the texels by this factor.
 constexpr double nodesPerTexel = 2;
 
-// Of each row, in diffusion radii.
+// The radius of each row, in diffusion radii.
 std::vector<double> radiiOf(const PelCurvatureLutDesc& desc, const RowAxis& axis) {
     std::vector<double> radii;
     for (uint32_t row = 0; row < desc.height; ++row) {

@@ -8,10 +8,10 @@
 namespace pel {
 namespace {
 
-// What the kernel calls the quantities.
+// The kernel's names of the quantities.
 #define QUANTITY_NUMBER(name, number, key) {"PEL_QUANTITY_" #name, #number},
 
-// Beside what estimators have counted in `memory`.
+// Faults of the data, in addition to those that estimators have counted in `memory`.
 MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, const VertexView& given,
                        const SlotData& data, const cl::Memory& memory) {
     const VertexView& normals = given.memory ? given : positions;
@@ -99,7 +99,7 @@ void estimateQuadric(MeshTopology& topology, const cl::Defines& common, const Sl
     cl::Defines defines = common;
     const uint32_t lanes = rows.list ? width(topology.device()) : topology.device().info().mathWidth;
     defines["PEL_WIDTH"] = lanes;
-    // In one program, for each one costs a CPU's compiler a tenth of a second before its first kernel.
+    // In one program, because each one costs a CPU's compiler 0.1 s before its first kernel.
     const cl::Program program =
         topology.device().programs().get({{"mesh/curvature_quadric.cl", "mesh/two_ring.cl"}, defines});
     const MeshTopology::TwoRings& lists = twoRings(topology, program);
@@ -160,7 +160,7 @@ void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, con
     SlotPlanes values{std::min(planes, 2u), planeStride, estimated, {}, {}, {}};
     if (params.smoothingPasses > 0 || params.smoothingRadius > 0)
         values.to = scratch(MeshTopology::scratchTo, planeBytes * values.planes);
-    // Before the uniform passes: if this throws, nothing of them is lost.
+    // Before the uniform passes, so that none of their work is lost if this throws.
     const Diffusion diffusion = planDiffusion(topology, data, params, scratch);
     smoothUniform(topology, passDefines(topology, params, data.stride), params.smoothingPasses, values);
     if (diffusion.passes() > 0) smoothToRadius(topology, data, diffusion, values, scratch);

@@ -9,7 +9,7 @@
 namespace pel {
 
 // Takes large arrays from the system in whole pages at once: touching them page by page takes longer than
-// to sort into them. New elements are not set, where std::vector writes zeros first.
+// to sort into them. New elements are uninitialised, where std::vector would write zeros first.
 template <class T>
 struct LargeAllocator {
     using value_type = T;

@@ -2,7 +2,7 @@
 // (0); normals that are made, and smoothing weights (1; one more at creases, two more for area weights);
 // estimates (`estimateReach_`); and one more for each smoothing pass, the first of which reaches as far as
 // weights do. The estimates of all other rows are kept. Values between passes are not kept, so pass p of P
-// works on P - p more rows than it must, from which the later passes read. Work is done in whole slices of
+// also works on rows up to P - p edges further away, which later passes read. Work is done in whole slices of
 // rows.
 #include "mesh/live_mesh.h"
 

@@ -6,7 +6,7 @@ namespace pel {
 
 // How far a change of vertices reaches: slots by their distance from the changed ones, in edges.
 
-// The first `upTo[d]` of `slices` are the slices that hold a slot of distance <= d. A level that would be
+// The first `upTo[d]` of `slices` are the slices that hold a slot of distance <= d. A level that would cover
 // most of the mesh is left out, with all later ones.
 struct MeshReach {
     std::vector<uint32_t> slices;
@@ -16,7 +16,7 @@ struct MeshReach {
     uint64_t storedSlots = 0;
 };
 
-// The neighbour lists of a topology on the host, and what a search over them needs.
+// The neighbour lists of a topology on the host, and the state of a search over them.
 class MeshReacher {
   public:
     explicit MeshReacher(const MeshTopology& topology);

@@ -126,14 +126,14 @@ CornerTable renumbered(const CornerTable& table, std::vector<uint32_t>& numbers)
         if (numbers[first] != none) continue;
         number(first);
         for (; next < known; ++next) {
-            // Lists lie anywhere in memory: those of the next slots are asked for before their turn.
+            // Lists are scattered in memory, so those of the next slots are prefetched.
             if (next + 24 < known) __builtin_prefetch(table.begins.data() + queue[next + 24]);
             if (next + 12 < known) {
                 const Corner* list = table.corners.data() + table.begins[queue[next + 12]];
                 __builtin_prefetch(list);
                 __builtin_prefetch(list + 6);
             }
-            if (next + 6 < known) {  // this list has come meanwhile
+            if (next + 6 < known) {  // this list has been fetched by now
                 const uint32_t slot = queue[next + 6];
                 for (uint32_t i = table.begins[slot]; i < table.begins[slot + 1]; ++i)
                     __builtin_prefetch(numbers.data() + table.corners[i].from);

@@ -23,8 +23,8 @@ class RingBuilder {
             return *this;
         }
     };
-    // Appends the list of `slot` to `out`. Of `corners` (count of them) the first
-    // `readAhead` are read, whatever is there.
+    // Appends the list of `slot` to `out`. The first `readAhead` elements of `corners` are read even if
+    // `count` is smaller.
     static constexpr uint32_t readAhead = 8;
     Edges build(uint32_t slot, const Corner* corners, uint32_t count, LargeVector<uint32_t>& out);
 

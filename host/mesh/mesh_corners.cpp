@@ -27,7 +27,7 @@ class Buckets {
     size_t count_;
 };
 
-// What one thread finds in its part of the triangles.
+// Results of one thread for its part of the triangles.
 struct Seen {
     std::vector<uint32_t> corners;  // per bucket; then where the next one goes
     std::vector<bool> vertices;
@@ -58,8 +58,8 @@ void look(const Triangles& triangles, const Buckets& buckets, size_t begin, size
 // Sorts the corners of one bucket, a run of slots from `first` on.
 void sortBucket(const PlacedCorner* placed, size_t count, uint32_t* begins, size_t slots, size_t first,
                 size_t before, bool byFrom, Corner* out) {
-    // Counts of the next slot, so that the places that move on while corners are written end as the places
-    // where slots begin.
+    // Counts are stored one slot later: after the sums places[s] is where slot s begins, and after writing,
+    // where it ends.
     std::vector<uint32_t> places(slots + 1);
     for (size_t i = 0; i < count; ++i) ++places[placed[i].slot - first + 1];
     for (size_t s = 0; s < slots; ++s) places[s + 1] += places[s];

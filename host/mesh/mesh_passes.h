@@ -1,4 +1,4 @@
-// What all passes over a topology's slots share.
+// Helpers shared by all passes over a topology's slots.
 #pragma once
 #include "mesh/mesh_topology.h"
 #include "mesh/vertex_view.h"

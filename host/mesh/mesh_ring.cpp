@@ -9,7 +9,7 @@
 namespace pel {
 namespace {
 
-// Up to here all triangles are compared with one at once.
+// Up to this size, one triangle is compared with all others at once.
 constexpr uint32_t smallFan = RingBuilder::readAhead;
 
 }  // namespace
@@ -118,7 +118,7 @@ void RingBuilder::buildTrails(const Corner* corners, uint32_t count, LargeVector
     }
     std::vector<uint32_t> firsts;
     for (const Node& n : nodes_) firsts.push_back(n.next);
-    for (uint32_t backward : {0u, 1u})  // an open fan is gone round forwards
+    for (uint32_t backward : {0u, 1u})  // an open fan is walked forwards
         for (Node& n : nodes_)
             if (n.free % 2 && ends_[n.next].backward == backward) walk(n, out);
     for (Node& n : nodes_)

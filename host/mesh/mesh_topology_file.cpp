@@ -1,5 +1,5 @@
 // A topology as bytes: a header, then its arrays one after another. Loading checks everything, because
-// kernels follow these numbers without checks of their own.
+// kernels use these numbers as indices without checks.
 #include <algorithm>
 #include <cstring>
 
@@ -23,7 +23,7 @@ constexpr uint32_t version = 3;
 
 // XXH32 [Collet] finds damage. The checks below find wrong values.
 uint32_t checksumOf(const uint32_t* words, size_t count) {
-    static constexpr uint32_t none = 0;  // there is no address of nothing
+    static constexpr uint32_t none = 0;  // an empty array may have no address
     return XXH32(words ? words : &none, count * sizeof *words, 0);
 }
 

@@ -212,7 +212,7 @@ std::vector<double> stepOf(const Samples& s, const Mixture& m, double damping) {
     const size_t rows = 3 * sampleCount + n;
     Columns jacobian{rows, unknowns, std::vector<double>(rows * unknowns)};
     std::vector<double> target(rows, 0.0);
-    // The weights' columns first: those of the variances then hold only what weights cannot do
+    // The weights' columns come first: those of the variances then hold only changes that weights cannot make
     size_t next = 0;
     const size_t firstVariance = unknowns - n;
     for (size_t c = 0; c < 3; ++c) {

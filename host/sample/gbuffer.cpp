@@ -96,7 +96,7 @@ class Renderer {
         }
         return normalize(cross(p[1] - p[0], p[2] - p[0]));
     }
-    // That of the sheet that loses as much light as the body does, measured along the inward normal of the
+    // Thickness of the sheet that loses as much light as the body, measured along the inward normal of the
     // triangle. A body with a curvature (1/mm) of 2 over its thickness is a ball, which the gain of curved
     // bodies describes already; where faces meet at 60 degrees or more, light comes in through both.
     double thicknessBelow(Vec3 position, Vec3 face, double curvature) const {

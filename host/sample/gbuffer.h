@@ -1,4 +1,4 @@
-// Renders what a deferred renderer hands to Pellucid: one sample through each pixel's centre.
+// Renders the G-buffer that a deferred renderer gives Pellucid: one sample through each pixel's centre.
 #pragma once
 #include <cstddef>
 
@@ -30,7 +30,7 @@ struct SkinDetail {
     double poreWavelength = 1.2;  // mm
     double poreSlope = 0.12;      // root mean square of the slope
     double roughness = 0.35;      // of the material: slopes too fine for a pixel add to it
-    double foldWavelength = 9;    // mm: what is left in the blurred normal
+    double foldWavelength = 9;    // mm: relief that stays in the blurred normal
     double foldSlope = 0.05;
     double furrowWavelength = 1.3;  // mm, where a zone has furrows
     double blotchWavelength = 14;   // mm, of pigment and blood
@@ -40,7 +40,7 @@ struct SkinDetail {
 
 struct GBufferOptions {
     SkinDetail detail;
-    double diffusionRadius = 2.7;  // mm: what the blurred normal is blurred over
+    double diffusionRadius = 2.7;  // mm: radius of the blurred normal's blur
     std::vector<Look> looks;       // of material ids 1, 2, ...; ids beyond are skin
     std::vector<SkinZone> zones;   // of skin
     std::vector<EyeLook> eyes;     // an eye's pixel belongs to the nearest

@@ -39,8 +39,8 @@ Surface surfaceAt(const Mesh& mesh, const SurfacePoint& point);
 std::vector<SurfacePoint> nearestPoints(const Scene& scene, std::span<const float> positions,
                                         std::vector<double>& distances);
 
-// RGB per point. The cosine is that of the interpolated normals. Shadow rays begin at the surface that these
-// mean, so that facets throw no shadows on each other [Hanika 2021, "Hacking the shadow terminator"].
+// RGB per point. The cosine is that of the interpolated normals. Shadow rays begin at the smooth surface that
+// these imply, so that facets cast no shadows on each other [Hanika 2021, "Hacking the shadow terminator"].
 std::vector<float> irradianceAt(const Scene& scene, const Lighting& lighting,
                                 std::span<const SurfacePoint> points);
 
@@ -66,10 +66,10 @@ struct LitMeshOptions {
 LitMesh lightMesh(const Scene& scene, const Lighting& lighting, const LitMeshOptions& options,
                   const std::function<void(double)>& progress = {});
 
-// What light leaves a lit mesh after scattering in it (docs/mathematics.md, section 9), by the library.
+// Light that leaves a lit mesh after scattering in it (docs/mathematics.md, section 9), by the library.
 
-// RGB per point. `points`: xyz each; none give none. `desc` says how: profile, radius, unit, cut and
-// tolerance; mesh, points and result are filled in here.
+// RGB per point. `points`: xyz each; may be empty. `desc` gives profile, radius, unit, cut and tolerance;
+// mesh, points and result are filled in here.
 std::vector<float> scatteredAt(const Device& device, const LitMesh& lit, const std::vector<float>& points,
                                PelSurfaceIntegralDesc desc);
 

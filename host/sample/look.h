@@ -1,4 +1,4 @@
-// What the surfaces of the sample renderer look like: skin with zones of its own, eyes, teeth.
+// Appearance of surfaces in the sample renderer: skin with zones, eyes, teeth.
 #pragma once
 
 #include "sample/vector.h"
@@ -29,7 +29,7 @@ struct EyeLook {
     LinearColor at(Vec3 p) const;  // the albedo
 };
 
-// What a material id looks like.
+// Appearance of a material id.
 struct Look {
     enum class Kind { Skin, Eye, Plain } kind = Kind::Skin;
     std::array<float, 3> albedo{0.72f, 0.49f, 0.39f};  // linear; of skin the mean, of eyes unused

@@ -1,5 +1,5 @@
 // Triangle meshes as the sample renderer takes them, and analytic ones for tests. Lengths are in mm by
-// habit; any unit serves when it is used throughout.
+// convention; any unit works if it is used throughout.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -42,7 +42,7 @@ Bounds boundsOf(const MeshView& mesh);  // of the vertices that triangles use
 // Throws std::invalid_argument unless array lengths fit together, indices exist and positions are finite.
 void checkMesh(const MeshView& mesh);
 
-// Normals, UVs and curvature are those of the surface meant, at the vertices exactly.
+// Normals, UVs and curvature are those of the smooth surface, exact at the vertices.
 Mesh makeSphere(double radius, int rings, int segments, Vec3 centre = {});
 // A rectangle in the plane z, facing +z.
 Mesh makeRectangle(double x0, double x1, double y0, double y1, double z);

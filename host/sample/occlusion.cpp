@@ -6,7 +6,7 @@
 namespace pellucid::sample {
 
 constexpr int pattern = 4;             // pixels along a side
-constexpr double normalOffset = 0.05;  // mm from the surface, for the vertex normals lean from the triangles'
+constexpr double normalOffset = 0.05;  // mm from the surface: vertex normals differ from the triangles'
 constexpr double facetOffset = 0.3;    // facets at a slant to the light throw no shadow on their neighbours
 constexpr double hairReach = 25;       // mm: further away, single hairs throw no shadow that shows
 constexpr double alikeNormal = 0.8;    // cosine
@@ -18,7 +18,7 @@ Vec3 across(Vec3 n) {
     return normalize(std::abs(n.x) < 0.5 ? cross(n, {1, 0, 0}) : cross(n, {0, 1, 0}));
 }
 
-// The place in the unit disk within whose distance from the middle lies that share of the area.
+// The point of the unit disk in this direction, at the radius that encloses this share of the area.
 std::array<double, 2> onDisk(double area, double turns) {
     const double radius = std::sqrt(area), angle = 2 * std::numbers::pi * turns;
     return {radius * std::cos(angle), radius * std::sin(angle)};
@@ -37,8 +37,8 @@ bool isAlike(const GBuffer& g, int x, int y, Vec3 p, Vec3 n) {
 
 // Means over rays of similar pixels of a pattern; `empty` where no ray is above the horizon. Each ray starts
 // `offset` from the surface in directionAt(normal, x, y), (x, y) in the unit disk; addTo(sum, ray, step) adds
-// what one with this number in the pattern brings. All pixels of the pattern share a set of points: equal
-// steps of the area, golden azimuths.
+// the light of the ray with this number in the pattern. All pixels of the pattern share a set of points:
+// equal steps of the area, golden azimuths.
 template <int Planes, class DirectionAt, class AddTo>
 Image meanOverRays(const GBuffer& g, int rays, double offset, float empty, DirectionAt&& directionAt,
                    AddTo&& addTo) {
@@ -93,7 +93,7 @@ Image unoccluded(const Scene& scene, const Scene* hair, const GBuffer& g, int ra
                            });
 }
 
-// What comes back along a ray after one to three reflections.
+// Light that comes back along a ray after one to three reflections.
 Rgb reflectedLight(const Scene& scene, const Bounces& b, const Lighting& lamps, Ray ray, int step) {
     constexpr int most = 3;
     Rgb sum{}, part{1, 1, 1};

@@ -300,7 +300,7 @@ WalkedLight walkLight(const WalkBody& body, const Lighting& lighting, std::span<
     const Walker walker(body, lighting, medium);
     uint32_t samples = options.samples;
     if (options.noise > 0 && !points.empty()) {
-        // The noise of a few points tells how many samples all of them need.
+        // The noise of a few points determines how many samples all points need.
         std::vector<SurfacePoint> some;
         const size_t stride = (points.size() + pilotPoints - 1) / pilotPoints;
         for (size_t i = 0; i < points.size(); i += stride) some.push_back(points[i]);

@@ -1,4 +1,4 @@
-// Light that walks through a body (docs/mathematics.md, section 14): what the surface integral approximates.
+// Random walks of light in a body (docs/mathematics.md, section 14), which the surface integral approximates.
 #pragma once
 #include "sample/lit_mesh.h"
 

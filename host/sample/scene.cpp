@@ -172,7 +172,7 @@ bool visitTriangle(RTCPointQueryFunctionArguments* arguments) {
     nearestOfTriangle(query.p, a, b, c, hit.weights);
     hit.triangle = arguments->primID;
     hit.distance = length(a * hit.weights[0] + b * hit.weights[1] + c * hit.weights[2] - query.p);
-    // Of equally near points that of the first triangle, whatever the order of the walk.
+    // Of equally near points, takes that of the first triangle, whatever the order of the walk.
     if (hit.distance > query.best->distance ||
         (hit.distance == query.best->distance && hit.triangle > query.best->triangle))
         return false;
@@ -203,7 +203,7 @@ void Scene::refine(const Ray& ray, Hit& hit) const {
     };
     const Vec3 a = vertex(0), ab = vertex(1) - a, ac = vertex(2) - a, across = cross(ray.direction, ac);
     const double determinant = dot(ab, across);
-    // A triangle seen edge-on keeps what Embree found.
+    // A triangle seen edge-on keeps Embree's result.
     if (std::abs(determinant) > 1e-9 * length(ab) * length(ac)) {
         const Vec3 s = ray.origin - a, q = cross(s, ab);
         hit.weights[1] = dot(s, across) / determinant;

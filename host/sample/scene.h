@@ -30,7 +30,7 @@ class Scene {
   public:
     // Copies the mesh. Throws std::invalid_argument as checkMesh does, std::runtime_error when Embree fails.
     explicit Scene(const MeshView& mesh);
-    // Of `occluded` alone: all other queries need a mesh.
+    // For `occluded` only: all other queries need a mesh.
     explicit Scene(const Curves& curves);
     ~Scene();
     Scene(const Scene&) = delete;

@@ -93,7 +93,7 @@ ShadowMap renderShadowMap(const Scene& scene, const SpotLight& light, int size) 
         [&](double tu, double tv) {
             const Vec3 direction =
                 map.forward + map.right * ((tu - 0.5) * map.extent) + map.down * ((tv - 0.5) * map.extent);
-            // From the near plane on: what is closer to the light throws no shadow.
+            // From the near plane on: surfaces closer to the light cast no shadow.
             return Ray{light.position + direction * nearPlane, normalize(direction)};
         },
         [&](const Ray& ray, const Hit& hit) {

@@ -36,7 +36,7 @@ struct ShadowMap {
 
 // The map encloses the scene with `margin` mm to spare. Throws std::invalid_argument for a negative size.
 ShadowMap renderShadowMap(const Scene& scene, const DirectionalLight& light, int size, double margin = 1);
-// Near and far plane are fitted to the scene; what is nearer than a thousandth of the far plane is not seen.
+// Near and far plane are fitted to the scene; the near plane is at least a thousandth of the far plane.
 ShadowMap renderShadowMap(const Scene& scene, const SpotLight& light, int size);
 
 }  // namespace pellucid::sample

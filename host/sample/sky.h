@@ -1,4 +1,4 @@
-// A studio sky, as an image that stands for light from all round.
+// A studio sky, as an image of the light from all directions.
 #pragma once
 #include <vector>
 

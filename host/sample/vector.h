@@ -26,7 +26,7 @@ inline Vec3 normalize(Vec3 a, Vec3 otherwise = {0, 0, 1}) {
     return l > 0 ? a * (1 / l) : otherwise;
 }
 
-// A unit vector across `direction`, as near to `wish` as can be, or to an axis where they are parallel.
+// A unit vector across `direction`, as near to `wish` as possible, or to an axis if they are parallel.
 Vec3 perpendicular(Vec3 direction, Vec3 wish);
 
 // Row-major, multiplies column vectors: out[i] = sum over j of m[4 i + j] in[j], as in pellucid.h.

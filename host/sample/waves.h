@@ -9,8 +9,8 @@
 
 namespace pellucid::sample {
 
-// What a point on a surface averages over, in its tangent plane: a Gaussian of standard deviation sigma,
-// longer by `stretch` along `along`.
+// The footprint of a point on a surface, in its tangent plane: a Gaussian of standard deviation sigma, longer
+// by `stretch` along `along`.
 struct Footprint {
     Vec3 normal;          // unit
     double sigma = 0;     // mm

@@ -3,7 +3,7 @@
 namespace pellucid::io {
 namespace {
 
-// The full names of those channels; empty if one is not there. "" is the only channel.
+// The full names of these channels; empty if one is missing. "" is the only channel.
 ChannelGroup fullNames(const Image& image, const ChannelGroup& group) {
     ChannelGroup names;
     for (const std::string& name : group)

@@ -46,7 +46,7 @@ void clear(const Buffer& buffer) {
     buffer.unmap();
 }
 
-// R, G and B, or the first three channels; `need` says what the image should have.
+// R, G and B, or the first three channels; `need`: the requirement, for messages.
 std::vector<std::string> colorChannels(const std::string& file, const Image& image, const char* need) {
     if (image.channels.size() < 3)
         throw FileError(file, concat("has ", image.channels.size(), " channels; ", need));
@@ -196,7 +196,7 @@ PelShaderOptions withOptionsOf(const SceneFile& scene, PelShaderOptions options)
 }
 
 void SceneFrame::update(const SceneFile& scene, LutStore& luts, const PelShaderOptions& options) {
-    // Of the same moment: the motion in the G-buffer does not lead to the frame before.
+    // The moment is the same, so the motion in the G-buffer does not refer to the previous execution.
     PelShaderOptions anew = options;
     anew.historyCut += ++updates_;
     set(scene, luts, anew);
@@ -379,7 +379,7 @@ const std::vector<PelImageDesc>& SceneFrame::normalMap(const std::string& file) 
 
 const std::vector<PelImageDesc>& SceneFrame::normalMapLevels(const std::vector<std::string>& files) {
     std::vector<std::string> key = files;
-    key.emplace_back();  // unlike that of a map whose levels are made
+    key.emplace_back();  // differs from the key of a map whose levels are made
     std::vector<PelImageDesc>& levels = normalMaps_[key];
     if (!levels.empty()) return levels;
     std::vector<Image> images;
@@ -445,7 +445,7 @@ PelImageDesc SceneFrame::upload(const Image& image, const std::vector<std::strin
                                 std::vector<Buffer>& to) {
     if (deviceImages_)
         if (const OwnedImage* known = deviceImages_->find(image, channels)) return **known;
-    for (const std::string& name : channels) image.channel(name);  // an error before memory is taken
+    for (const std::string& name : channels) image.channel(name);  // throws before memory is allocated
     const Buffer& buffer = to.emplace_back(device_, channels.size() * image.pixelCount() * sizeof(float));
     image.interleave(channels, MappedBuffer(buffer).at());
     return imageDesc(buffer, groupFormats[channels.size() - 1], uint32_t(image.width),

@@ -68,7 +68,7 @@ class LutStore {
     explicit LutStore(const Device& device) : device_(device) {}
     // The name "" gives an empty handle.
     Lut get(const SceneFile& scene, const std::string& name, PelLutKind kind);
-    // Made by the formulas of FaceWorks.
+    // A table made by the formulas of FaceWorks.
     Lut faceworks(const Profile& profile, PelLutKind kind);
 
   private:
@@ -137,13 +137,13 @@ class SceneFrame {
     PelImageDesc mapOf(const std::string& file, const std::string& channel, const std::string& second);
     const std::vector<PelImageDesc>& normalMap(const std::string& file);
     const std::vector<PelImageDesc>& normalMapLevels(const std::vector<std::string>& files);
-    // Each name or file is one profile, also where several materials have it.
+    // One profile per name or file, also if several materials use it.
     Profile profileOf(const std::string& nameOrPath);
     PelImageDesc colorImage(const std::string& file, const char* need);
     // Curvature from normals and positions or depth of the G-buffer (pelScreenCurvature).
     PelImageDesc measureCurvature(const SceneFile& scene);
     PelImageDesc cubeImage(const std::string& file);
-    // What is set, file and axes: setting it again would have it reduced again.
+    // The environment that is set, as file and axes: setting it again would reduce it again.
     std::pair<std::string, std::array<float, 9>> environment_;
     void setEye(const SceneFile& scene, const SceneEye& e);
     PelImageDesc upload(const Image& image, const std::vector<std::string>& channels,
@@ -152,7 +152,7 @@ class SceneFrame {
     Device device_;
     std::vector<PelImageSlot> wanted_;  // beside radiance
     const Image* gbuffer_ = nullptr;
-    std::vector<float> before_;  // what radiance holds at first; empty: 0
+    std::vector<float> before_;  // initial content of radiance; empty: 0
     // While the constructor or show() runs.
     const ShadowMaps* shadowMaps_ = nullptr;
     const DeviceImages* deviceImages_ = nullptr;
@@ -192,7 +192,7 @@ void writeThickness(const std::string& path, int width, int height, const std::v
 SceneFrame prepareFrame(const Device& device, const SceneFile& scene, LutStore& luts,
                         const PelShaderOptions& options = pelShaderOptionsDefaults(),
                         const std::vector<PelImageSlot>& outputs = {});
-// Fills the driver's cache of programs, and `luts`. `images`: those of the scene that are in no file yet.
+// Fills the driver's cache of programs, and `luts`. `images`: images of the scene that are not in files yet.
 void buildPrograms(const Device& device, const SceneFile& scene, LutStore& luts,
                    const ShadowMaps& images = {});
 

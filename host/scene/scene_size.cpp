@@ -58,7 +58,7 @@ std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene, 
     const bool fromDepth = scene.channels[PEL_SLOT_POSITION].empty();
     if (fromDepth && scene.channels[PEL_SLOT_DEPTH].empty()) return found;
     if (fromDepth) {
-        float furthest = 0;  // beyond what device depth can be, on whichever side
+        float furthest = 0;  // distance outside the range of device depth, on either side
         eachPixel(gbuffer, scene, images, PEL_SLOT_DEPTH, [&](const float* v, size_t) {
             if (std::isfinite(v[0]) && std::abs(v[0]) > std::abs(furthest)) furthest = v[0];
         });

@@ -8,7 +8,7 @@
 namespace pel {
 namespace {
 
-// Those that run. A process that ends with some of them stops them first, for drivers end with it.
+// The running builds. A process that exits stops them first, because drivers shut down with it.
 struct Running {
     std::mutex mutex;
     std::set<std::jthread*> threads;

@@ -1,4 +1,4 @@
-// Programs of a shader that are built while the caller goes on (PelShaderOptions.buildInBackground).
+// Builds the programs of a shader in the background (PelShaderOptions.buildInBackground).
 #pragma once
 #include <exception>
 #include <thread>
@@ -9,15 +9,15 @@ namespace pel {
 
 class BackgroundBuild {
   public:
-    // Begins. `shader`: nobody else uses it until the end; its images may go meanwhile. `autoPixels`: as a
-    // commit counted them.
+    // Starts the build. `shader`: used by nothing else until the end; its images may be released meanwhile.
+    // `autoPixels`: as a commit counted them.
     BackgroundBuild(Ref<Shader> shader, uint64_t autoPixels, std::shared_ptr<cl::BuildHelpers> helpers,
                     unsigned threads);
-    // Stops what has not been built by then.
+    // Stops the builds that have not finished.
     ~BackgroundBuild();
 
     bool done() const { return done_; }
-    // With the tables that were made, once it is done. Throws what stopped it.
+    // The shader with its tables, once the build is done. Throws the error that stopped it.
     const Shader& built() const;
 
   private:

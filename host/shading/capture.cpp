@@ -120,7 +120,7 @@ Capture::Capture(Device& device, const ShaderState& state, const ScatterInput* s
     frame.environmentAxes = state.environmentAxes;
 }
 
-// What a scene cannot hold, one sentence a line.
+// Settings that a scene file cannot represent, one sentence a line.
 std::string lost(const ShaderState& state) {
     std::string lines;
     const auto say = [&](auto&&... parts) {

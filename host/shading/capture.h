@@ -5,7 +5,7 @@
 
 namespace pel {
 
-// What a PelScatter has beside images and materials.
+// Inputs of a PelScatter besides images and materials.
 struct ScatterInput {
     PelScatterParams params;
     std::map<uint32_t, float> scales;  // by material
@@ -15,9 +15,9 @@ struct ScatterInput {
 // `asked`: whether this is not the first.
 const char* captureFolder(bool& asked);
 
-// Writes the frame into a new folder below `folder`, named after the object. Waits for the device. What went
-// wrong, and what a scene cannot hold, goes to the log callback, or to standard error: the frame goes on.
-// `scatter`: of a PelScatter; nullptr: the state is a shader's.
+// Writes the frame into a new folder below `folder`, named after the object. Waits for the device. Errors,
+// and settings that a scene cannot represent, are reported to the log callback or to standard error, and the
+// frame continues. `scatter`: of a PelScatter; nullptr: the state is a shader's.
 void captureFrame(Device& device, const ShaderState& state, const std::string& folder,
                   const ScatterInput* scatter = nullptr);
 

@@ -292,7 +292,7 @@ void checkCascades(const ShaderLight& light, const std::string& name) {
             invalidArgument(name, ".", range, " is ", c.depthRange,
                             ": the length that depths 0 to 1 span is needed, of one sign for all cascades");
         const float* m = *c.worldToShadow;
-        double volume = 0;  // what a unit cube becomes
+        double volume = 0;  // of the image of a unit cube
         for (int k = 0; k < 3; ++k) {
             const int p = (k + 1) % 3, q = (k + 2) % 3;
             volume += m[k] * (double(m[4 + p]) * m[8 + q] - double(m[4 + q]) * m[8 + p]);

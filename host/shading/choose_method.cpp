@@ -19,7 +19,7 @@ bool bringsTables(const ShaderMaterial& material) {
 
 // Whether every light's shadow is sharp where irradiance is made, or can be made so.
 bool shadowsAreSharp(const ShaderState& state) {
-    // by materials that keep to tables
+    // by materials that are shaded by tables
     const bool wanted = std::ranges::any_of(
         state.materials, [](const auto& m) { return !isAuto(m.second) && !readsIrradiance(m.second); });
     return std::ranges::all_of(state.lights, [&](const ShaderLight& light) {
@@ -46,7 +46,7 @@ std::string chooseMethods(ShaderState& state, uint32_t methods, uint64_t tooMany
         if (onScreen) {
             material.params.scattering = PEL_SCATTERING_SCREEN;
             scatters = true;
-            const bool border = hasBorder(material.params);  // which blocks of pixels do not know
+            const bool border = hasBorder(material.params);  // not supported by blocks of pixels
             material.params.scatterTaps = border ? diskTapsForBlocks : 0;
             if (border)
                 say("material ", id, " scatters by ", diskTapsForBlocks,
@@ -67,7 +67,7 @@ std::string chooseMethods(ShaderState& state, uint32_t methods, uint64_t tooMany
                 "to light");
         }
     }
-    // What has nothing to scatter by takes the same light and the same shadows as what does.
+    // Materials without a profile and tables use the same irradiance and shadows as those that scatter.
     for (auto& [id, material] : state.materials)
         if (isAuto(material) && !material.profile && !bringsTables(material) && (scatters || given))
             material.params.scattering = PEL_SCATTERING_NONE;

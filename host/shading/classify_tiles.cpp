@@ -39,7 +39,7 @@ class ClassifyTiles final : public Pass {
 
     std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
         if (!listsTiles(plan)) return {};
-        // A program of its own, since all shaders with ids of this format share it.
+        // A separate program, since all shaders with ids of this format share it.
         const ShaderState& state = plan.state;
         return {
             {{"shading/classify_tiles.cl"},

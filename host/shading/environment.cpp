@@ -13,13 +13,13 @@ namespace pel {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-// Of the lobes. With 32, small lamps show as patterns of dots in rough levels.
+// Samples per lobe. With 32, small lamps show as patterns of dots in rough levels.
 constexpr cl_uint lobeSamples = 128;
 constexpr cl_uint shareSamples = 512;
 constexpr size_t mostSamples = PEL_ENVIRONMENT_LEVELS * lobeSamples + shareSamples;
 constexpr cl_uint irradianceMip = 2;  // 16 x 16 texels a face
 
-// Hammersley's second coordinate, which is evenly spread: the digits of k in base 2, reversed.
+// Hammersley's second coordinate, evenly spread: the reversed binary digits of k.
 double radicalInverse(unsigned k) {
     double value = 0;
     for (double digit = 0.5; k; k >>= 1, digit *= 0.5) value += digit * (k & 1);

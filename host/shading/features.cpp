@@ -117,7 +117,7 @@ bool makesLightFromBehind(const ShaderState& state, uint32_t features) {
                                [](const auto& m) { return m.second.params.thinThickness > 0; });
 }
 
-// Irradiance that has to be made, or specular light beside it.
+// True if irradiance is made, or if materials that read it have specular light.
 static bool takesSharpShadows(const ShaderState& state) {
     return makesIrradiance(state) || std::ranges::any_of(state.materials, [](const auto& m) {
                return readsIrradiance(m.second) && m.second.params.specular > 0;
@@ -149,7 +149,7 @@ bool isBlack(const PelAmbient& a) {
            std::all_of(std::begin(a.sh), std::end(a.sh), [](auto& c) { return isBlack(c); });
 }
 
-// By PelAmbient, a cube map or an environment.
+// Whether PelAmbient, a cube map or an environment gives light.
 static bool isSurrounded(const ShaderState& state) {
     return !isBlack(state.ambient) || state.ambientCube || state.environment;
 }

@@ -16,7 +16,7 @@ ShaderState inRegion(ShaderState state);
 uint32_t deriveFeatures(const ShaderState& state);
 // The features that one material needs, as far as their other inputs exist.
 uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material);
-// The features of the forms that a light's shadow map has.
+// The features for the projection, cascades and content of a light's shadow map.
 uint32_t formFeatures(const PelLight& light);
 
 // Whether a light's shadow image is made from its shadow map.
@@ -27,7 +27,7 @@ bool filtersWide(const ShaderState& state, const ShaderLight& light);
 inline bool readsIrradiance(const ShaderMaterial& material) {
     return material.params.scattering != PEL_SCATTERING_PREINTEGRATED;
 }
-// Whether that irradiance has to be made, which needs sharp shadows.
+// Whether the shader makes that irradiance, which needs sharp shadows.
 bool makesIrradiance(const ShaderState& state);
 // Whether light from behind thin sheets is made: where the host gives it, it is added later.
 bool makesLightFromBehind(const ShaderState& state, uint32_t features);
@@ -42,7 +42,7 @@ bool isBlack(const PelAmbient& ambient);
 // Whether a light has a shadow map and a colour, so that its light may be summed over the map
 // (docs/mathematics.md, section 10, "Light space").
 bool shines(const ShaderLight& light);
-// How many maps that is: cascades and faces of cubes one by one.
+// The number of those maps; each cascade and each face of a cube counts.
 uint32_t mapsOf(const ShaderLight& light);
 // Spheres and rectangles.
 bool isArea(const PelLight& light);
@@ -57,24 +57,24 @@ inline bool takesSkinMaps(const ShaderMaterial& material) {
 }
 bool usesSkinMaps(const ShaderState& state);
 
-// Puts a method in the place of auto in each material's params, and takes away the wide shadow images that
-// sharp shadows from maps replace. `methods`: bit i: the build has the PelScattering i. Returns sentences,
-// one a line, about what auto had to do without. `tooMany`: bytes that scattering on the screen takes, where
-// they are more than PelShaderOptions.scratchBudget; else 0.
+// Replaces auto by a method in each material's params, and removes the wide shadow images that sharp shadows
+// from maps replace. `methods`: bit i: the build has the PelScattering i. Returns warnings, one a line, about
+// inputs that auto lacked. `tooMany`: bytes that scattering on the screen takes, where they are more than
+// PelShaderOptions.scratchBudget; else 0.
 std::string chooseMethods(ShaderState& state, uint32_t methods, uint64_t tooMany);
 
 // Throws if a control cannot be honoured.
 void checkScattering(const ShaderState& state);
 
-// The state with "none" for each material's method, and without whatever else needs further programs:
+// The state with "none" for each material's method, and without other features that need further programs:
 // specular light, light through thin parts, normal maps, eyes.
 ShaderState standInOf(const ShaderState& state);
 
 // Ambient light on each iris, and the table of each eye that brought none; eyes of one shape share them.
 void prepareEyes(const Ref<Device>& device, std::map<uint32_t, ShaderMaterial>& materials);
-// Both from eyes of the same shape among others.
+// Takes both from eyes of the same shape in `from`.
 void adoptEyes(std::map<uint32_t, ShaderMaterial>& materials, const std::map<uint32_t, ShaderMaterial>& from);
-// Tables without content for a warm-up; false if there is no eye that needs one.
+// Sets empty tables for a warm-up; false if no eye needs one.
 bool pretendEyes(const Ref<Device>& device, std::map<uint32_t, ShaderMaterial>& materials);
 
 }  // namespace pel

@@ -1,5 +1,5 @@
 // The irises of all eyes in one buffer, in the form that shading samples (kernels/eye/iris_texels.cl). An
-// execution makes those that differ from what was made before.
+// execution makes only irises that have changed.
 #include "shading/features.h"
 
 #include "core/handle_table.h"
@@ -74,7 +74,7 @@ class Irises final : public Pass {
     }
 
   private:
-    // What an iris was made of.
+    // The inputs that an iris was made from.
     struct Made {
         cl_uint first = 0, side = 0, seed = 0;
         uint64_t texture = 0;  // ShaderEye.textureNumber

@@ -23,7 +23,7 @@ void MapsKey::addMap(const ShaderLight& light, uint32_t cascade) {
 }
 
 void KeptMaps::allocate(const Ref<Device>& device, MapsKey key, size_t bytes) {
-    if (!key.rests() || CountedRun::on()) {  // others must not get what is only counted
+    if (!key.rests() || CountedRun::on()) {  // results that are only counted must not be shared
         shared_.reset();
         resize(own_, device, bytes);
         return;
@@ -47,7 +47,7 @@ bool KeptMaps::made() const {
     const std::lock_guard lock(shared_->mutex);
     if (!shared_->made || !shared_->last) return shared_->made;
     const cl_int status = cl::info<cl_int>(shared_->last.get(), CL_EVENT_COMMAND_EXECUTION_STATUS);
-    if (status < 0) shared_->made = false;  // what it had to wait for failed
+    if (status < 0) shared_->made = false;  // a command that it waited for failed
     if (status <= CL_COMPLETE) shared_->last = cl::Event();
     return shared_->made;
 }

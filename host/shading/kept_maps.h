@@ -1,11 +1,11 @@
-// What passes compute from shadow maps alone: kept while PelLight.shadowMapVersion says that they rest, and
+// Results that passes compute only from shadow maps: kept while PelLight.shadowMapVersion is unchanged, and
 // shared by the shaders of a device, such as those of two eyes.
 #pragma once
 #include "shading/pass.h"
 
 namespace pel {
 
-// All that such a result follows from.
+// All inputs of such a result.
 class MapsKey {
   public:
     explicit MapsKey(const char* pass) : bytes_(pass) {}
@@ -26,7 +26,7 @@ class KeptMaps {
   public:
     void allocate(const Ref<Device>& device, MapsKey key, size_t bytes);
     const cl::Memory& memory() const { return shared_ ? shared_->buffer->memory() : own_->memory(); }
-    // Of this shader; not of another that made the same before it.
+    // Bytes of this shader; 0 if another shader made the shared results before it.
     size_t bytes() const {
         return shared_ ? first_ ? shared_->buffer->bytes() : 0 : own_ ? own_->bytes() : 0;
     }

@@ -6,7 +6,7 @@ namespace pel {
 
 // On CPUs each work-item runs one vector of pixels after another; on GPUs a tile takes a full work-group.
 uint32_t tileGroup(const Device& device);
-// Enough work-items to keep every unit busy to the end; each group takes a run of the tiles.
+// Enough work-items to keep every compute unit busy to the end; each group takes a run of the tiles.
 cl::Range tileRange(const Device& device, uint32_t tiles);
 
 // Sets a kernel's last arguments (kernels/lib/image/light_buffers.clh): PEL_LIGHT_BUFFERS at most.

@@ -11,7 +11,7 @@ namespace pel {
 namespace {
 
 // How far before a surface an occluder counts, in standard deviations of the widest line spread:
-// docs/guide/shading.md, "Materials", has what others give. Softness and slope are no lengths.
+// docs/guide/shading.md, "Materials", compares other values. Softness and slope are not lengths.
 constexpr double biasWidths = 0.1;
 constexpr float softness = 0.1f, coneSlope = 0.8f;
 // Without a profile, mm.
@@ -25,7 +25,7 @@ double widest(const PelProfileInfo& profile) {
     return std::max({profile.width[0], profile.width[1], profile.width[2]});
 }
 
-// In the scene's unit. A table whose description leaves it out has its profile's, in mm.
+// A table's radius in the scene's unit. A description without one means the profile's, in mm.
 float radiusOf(const Lut& lut, double unit) {
     return lut.hasOwnRadius() ? float(lut.diffusionRadius() / unit) : lut.diffusionRadius();
 }

@@ -22,8 +22,7 @@ class ProfileTables {
     std::vector<Tables> all_;
 };
 
-// The mean free path of the profile's medium in the profile's unit, per channel; 0: the profile does not
-// say.
+// The mean free path of the profile's medium in the profile's unit, per channel; 0: unknown.
 double meanFreePath(const PelProfileInfo& profile, int channel);
 constexpr double windowOfPath = 2.75;  // length over which curvature is measured, in mean free paths
 
@@ -35,11 +34,11 @@ double transmissionReach(const Profile& profile);
 void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const PelShaderOptions& options,
                      ProfileTables& tables);
 
-// Gives the materials that are shaded by tables, and brought none, those of their profiles.
+// Sets the tables of their profiles for materials that are shaded by tables and have none.
 void withTables(ShaderState& state, const Ref<Device>& device, ProfileTables& tables);
 
-// Sentences, one a line, about what is set without effect or is unlikely (pelShaderGetWarnings). `given`: as
-// the caller set it, `state`: with what auto came to.
+// Sentences, one a line, about settings that are unlikely or have no effect (pelShaderGetWarnings). `given`:
+// as the caller set it, `state`: with the methods that auto chose.
 std::string warningsOf(const ShaderState& given, const ShaderState& state, uint32_t features);
 
 }  // namespace pel

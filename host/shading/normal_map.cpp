@@ -29,7 +29,7 @@ class NormalMap final : public Pass {
   public:
     static bool needed(const ShaderPlan& plan) { return plan.features & PEL_FEATURE_NORMAL_MAP; }
 
-    // A blur has made the image already; its halo and its list of tiles are the same.
+    // If there is a blur, it has made the image already; its halo and its list of tiles are the same.
     PassScratch scratch(const ShaderPlan& plan) const override {
         return alsoBlurs(plan) ? PassScratch{} : PassScratch{3 * sizeof(float), 3 * planeGuardBytes, 0};
     }

@@ -29,7 +29,7 @@ struct PassWork {
     bool written = false;        // set by the pass that writes the caller's images
     bool codeAlone = false;      // a warm-up: kernels are launched so that the driver compiles or loads them
 
-    // Whether the band has no halo: the launch around it was a launch for it.
+    // Whether the band has no halo: then the launch around it also covered it.
     bool alone() const { return rows.begin == around.begin && rows.end == around.end; }
     uint32_t tiles() const { return (rows.end - rows.begin) * plan.tilesX; }
     void launch(cl::Launch& launch, const cl::Range& range) {
@@ -63,7 +63,7 @@ class Pass {
 
     // Constants, sent if they changed. Returns the bytes sent.
     virtual size_t upload(Device&, ShaderPlan&) { return 0; }
-    // Writes into them that images of passes begin at this row of pixels; after `upload` it is 0.
+    // Sets the first pixel row of scratch images in the constants; after `upload` it is 0.
     virtual void moveScratch(Device&, const ShaderPlan&, const ShadingConstants&, uint32_t /*row*/) {}
 
     // Launches: once in an execution; for a band with its halo; for a band.
@@ -86,7 +86,7 @@ struct PassKind {
     bool (*needed)(const ShaderPlan& plan);
     std::unique_ptr<Pass> (*make)();
     std::string_view name;  // PelPassStats.name
-    uint32_t methods = 0;   // bit i: materials may name the PelScattering i because of it
+    uint32_t methods = 0;   // bit i: the pass provides the PelScattering i
 };
 template <class P>
 constexpr PassKind passKind(std::string_view name, uint32_t methods = 0) {
@@ -103,7 +103,7 @@ class PassList {
     // PelShaderOptions.scratchBudget, memory and `mostRows` allow.
     void allocate(const Ref<Device>& device, ShaderPlan& plan, uint32_t mostRows);
     size_t bytes() const;
-    // That the passes of a plan will take, if one of them works on the whole frame at a time; else 0.
+    // Bytes that the passes of a plan will take, if one of them works on the whole frame at once; else 0.
     uint64_t bytesOfWholeFrame(const ShaderPlan& plan);
     bool empty() const { return kinds_.empty(); }
 

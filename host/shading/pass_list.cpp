@@ -69,7 +69,7 @@ void PassList::allocate(const Ref<Device>& device, ShaderPlan& plan, uint32_t mo
     for (;;) {
         try {
             return each([&](Pass& pass) { pass.allocate(device, plan); });
-        } catch (const Error& e) {  // less at a time may still be had
+        } catch (const Error& e) {  // a smaller band may still fit
             if (e.code() != PEL_ERROR_OUT_OF_MEMORY || !plan.scratch || plan.wholeFrame || plan.bandRows == 1)
                 throw;
             plan.bandRows = (plan.bandRows + 1) / 2;

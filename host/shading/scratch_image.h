@@ -33,13 +33,13 @@ class CachedUpload {
 class ShadingConstants;
 
 constexpr size_t planeGuardBytes = 2 * PEL_PLANE_GUARD * sizeof(float);
-// Of one plane of a value per pixel of a band, with its guards.
+// Bytes of one plane with a value per pixel of a band, and of its guards.
 size_t scratchPlaneBytes(const ShaderPlan& plan);
 
 class ScratchPlanes {
   public:
     explicit ScratchPlanes(PelImageSlot slot) : slot_(slot) {}
-    // And puts them into their slot.
+    // Allocates the planes and puts them into their slot.
     void allocate(const Ref<Device>& device, ShaderPlan& plan);
     // Pass::moveScratch; not if another pass has replaced the slot.
     void move(Device& device, const ShaderPlan& plan, const ShadingConstants& constants, uint32_t row) const;

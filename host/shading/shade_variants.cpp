@@ -93,7 +93,7 @@ std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t feature
     }
     std::ranges::stable_sort(partial, std::greater{}, [](uint32_t f) { return std::popcount(f); });
     std::erase(partial, variants.back());
-    // The cheapest ones.
+    // Keeps the cheapest ones.
     const size_t most = PEL_TILE_VARIANTS - variants.size();
     if (partial.size() > most) partial.erase(partial.begin(), partial.end() - ptrdiff_t(most));
     variants.insert(variants.end(), partial.begin(), partial.end());

@@ -96,7 +96,7 @@ void Shader::commit() {
     background_ = std::make_unique<BackgroundBuild>(copy(state_), autoPixels, helpers, builders);
 }
 
-// By programs that take little time to build, while others build those of the state.
+// Commits substitutes whose programs build quickly, while helpers build those of the state.
 void Shader::commitStandIn() {
     uint64_t autoPixels = 0;
     commitState(standInOf(state_), autoPixels);
@@ -121,7 +121,7 @@ Ref<Shader> Shader::copy(const ShaderState& state) const {
 
 ShaderPlan Shader::plan(const ShaderState& given, uint64_t& autoPixels) {
     ShaderPlan plan = planOf(given, methods(), 0, device_, autoPixels, profileTables_);
-    // What scatters on the screen because it was chosen to must fit.
+    // Scattering on the screen that auto chose must fit into the budget.
     const uint64_t budget = given.options.scratchBudget,
                    bytes = budget ? PassList(passKinds_).bytesOfWholeFrame(plan) : 0;
     if (bytes > budget) plan = planOf(given, methods(), bytes, device_, autoPixels, profileTables_);
@@ -132,8 +132,8 @@ ShaderPlan Shader::plan(const ShaderState& given, uint64_t& autoPixels) {
 
 // Makes the memory of the plan's passes, in bands of at most this many rows of tiles.
 void Shader::allocate(ShaderPlan plan, uint32_t mostRows) {
-    // Old images go before new ones are made: both together would not keep to a budget. After a failure
-    // nothing is held.
+    // Old images are released before new ones are made: both together could exceed the budget. After a
+    // failure nothing is held.
     committed_ = false;
     plan_ = ShaderPlan();
     PassList passes = std::exchange(passes_, PassList());
@@ -147,7 +147,7 @@ void Shader::allocate(ShaderPlan plan, uint32_t mostRows) {
     passes_ = std::move(passes);
 }
 
-// Those that this build has.
+// Bits of the methods that this build has.
 uint32_t Shader::methods() const {
     uint32_t methods = 1u << PEL_SCATTERING_NONE | 1u << PEL_SCATTERING_PREINTEGRATED;
     for (const PassKind& kind : passKinds_) methods |= kind.methods;
@@ -186,7 +186,7 @@ void Shader::send() {
 bool Shader::halveBand(bool blocking) {
     const uint32_t rows = std::min(plan_.bandRows, plan_.tileRows);
     if (!plan_.scratch || plan_.wholeFrame || rows <= 1) return false;
-    if (blocking) device_->finish();  // then what is queued gives its memory back
+    if (blocking) device_->finish();  // then queued work releases its memory
     committed_ = false;
     passes_.allocate(device_, plan_, rows / 2);
     send();
@@ -247,7 +247,7 @@ void Shader::execute(bool blocking) {
     executed_ = true;
 }
 
-// Of all images, or back to those that are written.
+// Copies from the textures of all images, or back to those of written images.
 void Shader::copyTextures(bool back) const {
     std::vector<ImageView> all;
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
@@ -274,7 +274,7 @@ void Shader::setRows(const PassWork& work, TileRows rows) {
                        work.around.begin * PEL_TILE_HEIGHT);
 }
 
-// Runs one band: passes make what they need in it and around it; the last pass shades it.
+// Runs one band: passes make their images in it and around it; the last pass shades it.
 void Shader::runBand(PassWork& work) {
     const TileRows rows = work.rows;
     work.around = {rows.begin - std::min(rows.begin, plan_.haloRows),
@@ -305,8 +305,8 @@ void Shader::addBuildJobs(BuildJobs& jobs, uint64_t autoPixels) {
         std::ranges::move(pass.programs(*device_, shader->plan_), std::back_inserter(keys));
     });
     addProgramJobs(device_, std::move(keys), jobs);
-    // A job for each pass, for drivers compile kernels when they are launched first. Whichever job comes next
-    // launches the next pass: passes read what those before them made.
+    // One job per pass, because drivers compile kernels at their first launch. Whichever job runs next
+    // launches the next pass: passes read the results of earlier ones.
     struct Launches {
         std::mutex alone;
         std::vector<Pass*> passes;
@@ -384,7 +384,7 @@ PelShaderStats Shader::stats() {
     return stats;
 }
 
-// Beside that of passes.
+// Device memory besides that of the passes.
 uint64_t Shader::ownBytes() const {
     return constants_.scratchBytes() + (counters_ ? PEL_COUNTERS * sizeof(cl_uint) : 0);
 }
@@ -413,7 +413,7 @@ std::vector<PelPassMemory> Shader::memory() {
     return all;
 }
 
-// The queue is in order: what was launched last finishes last.
+// The queue is in order, so the last launch finishes last.
 bool Shader::hasFinished(const Frame& frame) const {
     for (size_t i = frame.events.size(); i-- > 0;)
         if (const cl::Event& last = frame.events[i])

@@ -33,7 +33,7 @@ class Shader final : public Object {
     void setAmbient(const PelAmbient& ambient);
     void setAmbientCube(const PelImageDesc* faces);
     void setCamera(const PelCamera& camera);
-    // As it is shaded. Throws for an id without a material.
+    // The material as it is shaded. Throws for an id without a material.
     const PelMaterial& material(uint32_t id) const;
 
     // shader.cpp
@@ -41,14 +41,14 @@ class Shader final : public Object {
     // `blocking`: the caller waits, and may want progress.
     void execute(bool blocking);
     PelShaderStats stats();
-    // Of the newest execution that has finished, each pass that launched something, in order. Does not wait.
+    // The passes that launched something in the newest finished execution, in order. Does not wait.
     std::vector<PelPassStats> passStats();
     std::vector<PelPassMemory> memory();
     // Warnings of the last commit, one sentence a line.
     const std::string& warnings() const { return warnings_; }
-    // Jobs for a warm-up: they build what a commit would, and launch each kernel on no tile. Tables of
-    // profiles are made here, those of eyes by a job, and kept. The caller's images are not read, except to
-    // count `autoPixels` (keepToBudget()) if it is 0. Throws what a commit would.
+    // Jobs for a warm-up: they build the programs of a commit, and launch each kernel without tiles. Tables
+    // of profiles are made here, those of eyes by a job; both are kept. The caller's images are not read,
+    // except to count `autoPixels` (keepToBudget()) if it is 0. Throws the errors of a commit.
     void addBuildJobs(BuildJobs& jobs, uint64_t autoPixels = 0);
     Device& device() const { return *device_; }
 
@@ -89,7 +89,7 @@ class Shader final : public Object {
     std::string warnings_;
     bool committed_ = false, executed_ = false;
     std::unique_ptr<BackgroundBuild> background_;
-    bool standsIn_ = false;  // what is committed
+    bool standsIn_ = false;  // the committed state is a substitute
     bool captureAsked_ = false;
     uint64_t bands_ = 0, programsBuilt_ = 0, launches_ = 0, bytesUploaded_ = 0, uploadedBefore_ = 0;
 

@@ -1,4 +1,4 @@
-// What a commit makes of a shader's state (shader_state.h), and what its passes pass on to each other.
+// The plan that a commit makes from a shader's state (shader_state.h), and the data that passes exchange.
 #pragma once
 #include "shading/shader_state.h"
 #include "shading/time_budget.h"
@@ -22,12 +22,12 @@ struct BoundedMap {
 struct ShaderPlan {
     ShaderState state;  // as of the commit, with the images that passes make in their slots
     uint32_t features = 0;
-    std::string warnings;            // of what auto had to do without
+    std::string warnings;            // about inputs that auto lacked
     TakenSetting taken;              // by auto, for PelShaderOptions.timeBudget
     std::vector<uint32_t> variants;  // features of each variant of the shading kernel
     uint32_t tilesX = 0, tileRows = 0;
 
-    // Bands: rows of tiles that are shaded at a time, and that passes need before and after them.
+    // Bands: rows of tiles that are shaded at once, and rows that passes need before and after them.
     uint32_t bandRows = 0, haloRows = 0;
     bool wholeFrame = false;
     bool scratch = false;  // whether a pass makes images, which hold the rows of a band and of its halo
@@ -38,7 +38,7 @@ struct ShaderPlan {
     cl::Memory reflectionNodes;   // of the cube that eyes reflect
     cl::Memory environmentNodes;  // of shared/environment.h
     cl::Memory irises;            // texels of all eyes' irises
-    cl::Memory tapCells;          // what thickness taps read, at nodes (tap_cells.h)
+    cl::Memory tapCells;          // occluder-depth grids (tap_cells.h)
     uint32_t scratchPlane = 0;    // floats from plane to plane of images that passes make (scratch_image.h)
     ImageView radii;              // factors of the profile's radius, where maps of skin make them
     ImageView arriving;           // irradiance before it is scattered, where a pass needs it later

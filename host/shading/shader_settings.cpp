@@ -1,4 +1,4 @@
-// What the caller sets on a PelShader: checked, and kept until the next commit.
+// Settings of a PelShader: checked, and kept until the next commit.
 #include "core/handle_table.h"
 #include "core/struct_size.h"
 #include "shading/check_settings.h"
@@ -6,7 +6,7 @@
 
 namespace pel {
 
-// Of an image that is made into something else once: no other call gets it.
+// A unique number for an image that is converted once.
 static uint64_t nextNumber() {
     static std::atomic<uint64_t> last;
     return ++last;

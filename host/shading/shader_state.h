@@ -1,4 +1,4 @@
-// What the caller set on a PelShader. A commit makes a ShaderPlan of it (shader_plan.h).
+// The settings of a PelShader. A commit makes a ShaderPlan from them (shader_plan.h).
 #pragma once
 #include "core/image_view.h"
 #include "eye/eye.h"
@@ -15,7 +15,7 @@ struct ShaderEye {
     AmbientNodes ambient{};
     bool ambientKnown = false;
     ImageView iris;              // texture; none: fibres are drawn
-    uint64_t textureNumber = 0;  // no other call that set a texture has it
+    uint64_t textureNumber = 0;  // different for each call that sets a texture
 };
 
 // Texels along a side of its iris in the form that shading samples.
@@ -24,10 +24,10 @@ inline uint32_t irisTexels(const ShaderEye& eye) {
 }
 
 struct ShaderMaterial {
-    PelMaterial given;  // by the caller, with
+    PelMaterial given;  // as the caller set it, with these
     Ref<Profile> profile;
     Ref<Lut> givenCurvatureLut, givenShadowLut;
-    // with what it leaves to defaults filled in (shading/material.h, features.h), as are
+    // The same with defaults filled in (shading/material.h, features.h), and what follows from it.
     PelMaterial params;
     Ref<Lut> curvatureLut, shadowLut, transmission;
     float through[3];  // share of the light on a sheet's other side
@@ -54,7 +54,7 @@ struct ShaderState {
     ImageView ambientCube, reflectionCube;  // six faces
     ImageView environment;                  // equirectangular, or six faces
     std::array<float, 9> environmentAxes{1, 0, 0, 0, 1, 0, 0, 0, 1};
-    uint64_t environmentNumber = 0;  // no other call that set one has it
+    uint64_t environmentNumber = 0;  // different for each call that sets one
     PelCamera camera = pelCameraDefaults();
 };
 

@@ -11,11 +11,11 @@
 namespace pel {
 namespace {
 
-// A node costs a third of what a pixel does that takes taps, and of a frame of a head a twentieth to a fifth
-// does.
+// A node costs a third of a pixel that takes taps, as a twentieth to a fifth of the pixels in a frame of a
+// head do.
 constexpr uint64_t pixelsPerNode = 8;
-// All cells together, per pixel of the frame: lights with several maps and materials with several disks come
-// to much memory.
+// Limit of all grids together, per pixel of the frame: lights with several maps and materials with several
+// disks would take much memory.
 constexpr uint64_t floatsPerPixel = 16;
 
 bool hasDisk(const ShaderState& state, const ShaderMaterial& material) {
@@ -94,7 +94,7 @@ class TapCells final : public Pass {
 }  // namespace
 
 uint64_t MapCells::samples() const {
-    constexpr uint64_t lanes = 16;  // the most that a vector has
+    constexpr uint64_t lanes = 16;  // max lanes of a vector
     return (samplesAlong(cells.columns) + lanes - 1) / lanes * lanes * samplesAlong(cells.rows);
 }
 

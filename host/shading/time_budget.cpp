@@ -16,19 +16,19 @@ namespace pel {
 namespace {
 
 // Two cores of an AMD EPYC with PoCL (bench/results/pocl-3.1-amd-epyc.json). Errors: over all scenes. Times:
-// by these 77 of that report's 80 frames kept their budget; of light, that of nine scenes of ten.
+// with these, 77 of that report's 80 frames kept their budget; for light, the 90th percentile of scenes.
 constexpr TunedSetting guessed[] = {{PEL_SCATTERING_NONE, 0, 0, 0, 0.14},
                                     {PEL_SCATTERING_PREINTEGRATED, 0, 79, 0, 0.09},
                                     {PEL_SCATTERING_AUTO, 0.002, 122, 0, 0.0194},
                                     {PEL_SCATTERING_LIGHT, 0, 2612, 0, 0.0183, true},
                                     {PEL_SCATTERING_LIGHT, 0, 8508, 0, 0.0184}};
-// Of that device: cores, lanes, and MHz by bench/results/pocl-3.1-amd-epyc.json.
+// Speed of that device: cores, lanes, and MHz from bench/results/pocl-3.1-amd-epyc.json.
 constexpr double guessedLanes = 2 * 16 * 2596.0;
 
 constexpr size_t mostSettings = 64;
 constexpr const char* halfRateLight = "light-half";  // in records
 
-// Numbers of lanes that work at once, times their clock.
+// Number of lanes that compute at once, times their clock.
 double lanesOf(const PelDeviceInfo& device) {
     const double width = device.type == PEL_DEVICE_GPU ? 64 : std::max(1u, device.mathWidth);
     return width * std::max(1u, device.computeUnits) * std::max(1u, device.clockMhz);
@@ -98,7 +98,7 @@ Tuning tuningOf(const PelDeviceInfo& device) {
 
 namespace {
 
-// As kernels read it (lib/image/image.clh, loadId): 0 for what is no id.
+// The id as kernels read it (lib/image/image.clh, loadId); 0 for values that are not ids.
 uint32_t idOf(const unsigned char* pixel, const FormatInfo& format) {
     uint32_t bits = 0;
     for (uint32_t b = 0; b < format.componentBytes; ++b) bits |= uint32_t(pixel[b]) << 8 * b;
@@ -113,7 +113,7 @@ uint32_t idOf(const unsigned char* pixel, const FormatInfo& format) {
     return value >= 0 && value <= 255 ? uint32_t(value) : 0;
 }
 
-// Of these materials; all of the frame where the image shows none of them yet.
+// Number of pixels of these materials; all pixels of the frame if the image shows none of them yet.
 uint64_t pixelsOf(const std::vector<uint32_t>& ids, const ShaderState& state, Device& device) {
     const ImageView& frame = state.images[PEL_SLOT_RADIANCE];
     const uint64_t all = uint64_t(frame.width) * frame.height;
@@ -166,7 +166,7 @@ TakenSetting keepToBudget(ShaderState& state, uint32_t methods, Device& device, 
         warnings += text(warnings.empty() ? "" : "\n", "PelShaderOptions.timeBudget is ", budget,
                          " ms, and the fastest method that is possible takes ", time(taken), " ms");
     } else {
-        // Of those that are nearest to light, within what cannot be seen, the fastest.
+        // The fastest of the settings whose error cannot be told from the smallest.
         constexpr double alike = 1.02;
         std::erase_if(open, [&](const TunedSetting& s) { return time(s) > budget; });
         const double best = std::ranges::min(open, {}, &TunedSetting::error).error;

@@ -1,4 +1,4 @@
-// What settings of PEL_SCATTERING_AUTO cost on a device, and which of them keeps to
+// The cost of settings of PEL_SCATTERING_AUTO on a device, and the choice of one within
 // PelShaderOptions.timeBudget.
 #pragma once
 #include "core/device.h"
@@ -11,7 +11,7 @@ struct TunedSetting {
     double targetError;         // share of white; 0 where the method has none
     double perPixel, perFrame;  // ns beyond plain lighting: per pixel of the materials, and of the frame
     double error;               // RMS against light, share of white
-    bool halfRate = false;      // PelShaderOptions.halfRate, of light alone
+    bool halfRate = false;      // PelShaderOptions.halfRate, only for light
 };
 
 struct Tuning {
@@ -29,9 +29,9 @@ struct TakenSetting {
     bool own = false, halfRate = false;
 };
 
-// After chooseMethods(): where materials came to scatter on the screen, they get the method and the state the
-// targetError that are nearest to light within options.timeBudget. `pixels`: of those materials; counted in
-// the material image, and set, if it is 0. `warnings`: more of them, one a line.
+// After chooseMethods(): sets the method of materials for which auto chose the screen, and the state's
+// targetError, to those nearest to light within options.timeBudget. `pixels`: number of their pixels; if it
+// is 0, it is counted in the material image and set. `warnings`: receives further ones, one a line.
 TakenSetting keepToBudget(ShaderState& state, uint32_t methods, Device& device, uint64_t& pixels,
                           std::string& warnings);
 

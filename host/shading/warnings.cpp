@@ -28,11 +28,11 @@ MapLengths lengthsOf(const PelLight& l, const ImageView& map) {
     return lengths;
 }
 
-// What is lit and of skin is no smaller than a fingertip: a map that spans less than two reaches of the light
-// holds no such body.
+// A lit body of skin is at least as large as a fingertip: a map that spans less than two reaches of the
+// profile cannot hold it.
 constexpr double leastReaches = 2;
 
-// What is set and does nothing by the method that the material takes; "" if nothing is.
+// The settings that have no effect with the material's method; "" if there are none.
 std::string withoutEffect(const ShaderMaterial& material) {
     const PelMaterial &m = material.params, &given = material.given;
     const bool tables = !readsIrradiance(material);
@@ -65,7 +65,7 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
             const bool unshadowed = light.images[PEL_LIGHT_SHADOW_MAP] &&
                                     !light.images[PEL_LIGHT_WIDE_SHADOW] &&
                                     light.params.shadowFilterTexels == 0;
-            // A map that serves thickness alone is no mistake, unless other materials get a shadow from it.
+            // A map used only for thickness is no mistake, unless other materials get a shadow from it.
             const bool useful =
                 (features & PEL_FEATURE_THICKNESS_TAPS) && !(features & PEL_FEATURE_MAKE_IRRADIANCE);
             if (unshadowed && !useful)

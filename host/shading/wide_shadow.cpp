@@ -11,8 +11,8 @@
 
 namespace pel {
 
-// The one program of wide shadows and of their maps' bounds, because a driver's cost per program is what a
-// first frame waits for.
+// The one program of wide shadows and of their maps' bounds, because the first frame waits for the driver's
+// cost per program.
 static cl::ProgramKey wideShadowKey(const Device& device, const ShaderPlan& plan) {
     const uint32_t lanes = device.info().mathWidth;
     const PelImageSlot normal = geometricNormalSlot(plan.state);
@@ -174,7 +174,7 @@ class WideShadow final : public Pass {
         return plan.interpolates() && filtersWide(plan.state, plan.state.lights[light]);
     }
 
-    // The lights that interpolate, or the others: a launch for those that follow one another.
+    // Filters the lights that interpolate, or the others: one launch for consecutive lights.
     void filter(PassWork& work, bool interpolating, cl_uint pixels) const {
         const ShaderPlan& plan = work.plan;
         const auto takes = [&](size_t k) {
@@ -209,7 +209,7 @@ constinit const PassKind wideShadowPass = passKind<WideShadow>("wide_shadow");
 // Bounds of the blocks of shadow maps, which decide most wide shadows without reading texels.
 namespace {
 
-// How many of the size of PEL_BOUNDS_BLOCK.
+// Number of blocks of PEL_BOUNDS_BLOCK texels.
 uint32_t blocks(uint32_t texels) {
     return (texels + PEL_BOUNDS_BLOCK - 1) / PEL_BOUNDS_BLOCK;
 }

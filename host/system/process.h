@@ -37,7 +37,7 @@ bool errorsAreSeen();
 // Opens the standard streams that are closed, so that no file takes their place; false if that fails. From
 // now on a limit on file sizes is an error, as a full disk is.
 bool prepareStreams();
-// Standard output for this program alone: what libraries print there from now on goes to standard error.
+// Standard output for this program only: from now on, output of libraries goes to standard error.
 std::FILE* keepOutput();
 
 // Another program that runs beside this one. Its standard input and output are a connection to this process;

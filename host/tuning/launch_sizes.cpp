@@ -22,7 +22,8 @@ std::string madeWith(const PelDeviceInfo& device) {
     return text.str();
 }
 
-// The sizes in a line "launch GROUP COLUMNS TABLE_COLUMNS TEXELS VERSION DRIVER"; "" or what is wrong.
+// The sizes in a line "launch GROUP COLUMNS TABLE_COLUMNS TEXELS VERSION DRIVER"; returns an error message,
+// or "".
 std::string readSizes(const std::string& line, const PelDeviceInfo& device, LaunchPolicy& policy) {
     std::istringstream words(line.substr(7));
     words.imbue(std::locale::classic());
@@ -103,7 +104,7 @@ LaunchRule launchRule(const PelDeviceInfo& device) {
     }
     if (number == 0) return ignored("it is empty or cannot be read");
     if (own) return ignored("it has none for this device");
-    return rule;  // a record for time budgets alone
+    return rule;  // the record is only for time budgets
 }
 
 }  // namespace pel

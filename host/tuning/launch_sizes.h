@@ -35,15 +35,16 @@ LaunchPolicy allowedPolicy(LaunchPolicy policy, const PelDeviceInfo& device);
 
 struct LaunchRule {
     LaunchPolicy policy;
-    std::string file;     // whose sizes these are; "": built in
-    std::string warning;  // why a file does not count; ""
+    std::string file;     // the source of these sizes; "": built in
+    std::string warning;  // why the file is ignored; "": it is not
 };
-// By the file that PELLUCID_TUNING names, or else launchFile(); "off": built in. Never throws for a file.
+// Sizes of the file that PELLUCID_TUNING names, or of launchFile(); "off": built in. Faulty files do not
+// throw.
 LaunchRule launchRule(const PelDeviceInfo& device);
 
 // This user's file for the device with its driver and this version of the library; empty: there is no folder.
 std::filesystem::path launchFile(const PelDeviceInfo& device);
-// What such a file holds.
+// The content of such a file.
 std::string launchText(const PelDeviceInfo& device, const LaunchPolicy& policy);
 
 }  // namespace pel

@@ -1,11 +1,11 @@
 // Light of earlier frames in light that is scattered by taps (docs/mathematics.md, section 10, "History").
 //
-// Light from beyond a pixel changes little from one to the next: that from within comes from each frame's own
-// irradiance. Inputs: the surface (gather_surface.cl), tables of profiles, what this frame scatters from
-// beyond pixels (four floats a pixel, the last one unused), where pixels were in the last frame, and the
-// history up to it. Outputs: an image like the irradiance; the history up to this frame. One work-group takes
-// tiles, one work-item columns of their pixels. Variants: PEL_FORMAT_OUT; PEL_FORMAT_MOTION (0: nothing
-// moves), PEL_MOTION_COMPONENTS; PEL_HALF.
+// Only light from beyond a pixel is kept, since it changes little between neighbours; light from within the
+// pixel comes from each frame's own irradiance. Inputs: the surface (gather_surface.cl), tables of profiles,
+// light that this frame scatters from beyond each pixel (four floats a pixel, the last one unused), motion
+// since the last frame, and the history up to it. Outputs: an image like the irradiance; the history up to
+// this frame. One work-group takes tiles, one work-item columns of their pixels. Variants: PEL_FORMAT_OUT;
+// PEL_FORMAT_MOTION (0: nothing moves), PEL_MOTION_COMPONENTS; PEL_HALF.
 #include "lib/diffusion/gather.clh"
 #include "lib/diffusion/item.clh"
 
@@ -14,7 +14,7 @@
 #define MAX_FRAMES 31u
 
 // Standard errors that a change of the mean light round a pixel must exceed to count. Measured on clips of a
-// head: with 1 the noise of taps counts as change, with 3 light that turns lags behind.
+// head: with 1 the noise of taps counts as change, with 3 moving light lags behind.
 #define CHANGE_ERRORS 2.0f
 
 static inline bool outside(__global const PelGatherFrame* frame, int x, int y) {
@@ -65,8 +65,8 @@ static inline float4 lightOf(float4 history) {
     return (float4)(withoutByte(history.x), withoutByte(history.y), history.z, 0.0f);
 }
 
-// Light where a pixel was, between the centres of pixels, and the number of frames in it; 0 where another
-// surface was.
+// Light interpolated at the previous position of a pixel, and the number of frames in it; 0 if another
+// surface was there.
 static inline float4 earlierLight(__global const PelGatherFrame* frame, __global const float* history,
                                   const GatherPixel* p, float4 point, uint id, float3 motion, float3 last,
                                   uint* frames) {
@@ -94,15 +94,14 @@ static inline float4 earlierLight(__global const PelGatherFrame* frame, __global
     return sum > 0.0f ? light / sum : light;
 }
 
-// Of the pixels round one that are on its surface. At half rate those between two that are computed add
-// nothing.
+// Statistics of the pixels around one that are on its surface. At half rate, interpolated pixels add nothing.
 typedef struct Around {
     float4 low, high;  // of this frame's light
-    float4 change;     // of light from the history to this frame, as far as noise does not explain it
+    float4 change;     // of light from the history to this frame, less the part that noise explains
 } Around;
 
-// `earlier`: earlierLight(). The history of the others is read at the pixels nearest to their places, all of
-// which lie beside them by as much as this one's.
+// `earlier`: earlierLight(). The history of the neighbours is read at the pixels nearest to their previous
+// positions, all with the same offset as this pixel's.
 static inline Around lightAround(__global const PelGatherFrame* frame, __global const float* points,
                                  __global const float* fresh, __global const float* history,
                                  const GatherPixel* p, float4 point, uint id, float3 motion, float4 earlier) {

@@ -19,7 +19,7 @@
 #define LEFT_ALONE 0.5f   // of the tolerance: error of a tile that is left as it is
 #define MIN_LIGHT 0.002f  // share of the light below which coarser levels are left out
 
-// Work-items that share a tile, which they all go through, and their number.
+// Number of this work-item among those that share a tile, and how many they are.
 #if PEL_TILE_IS_GROUP
 #define ITEMS PEL_GROUP
 #define ITEM ((int)get_local_id(0))
@@ -31,8 +31,8 @@
 #endif
 #define COLUMNS (ITEMS < 16 ? ITEMS : 16)
 
-// The largest second difference between blocks of level k in and around a tile, of those that are this
-// work-item's.
+// The largest second difference between blocks of level k in and around a tile, over this work-item's share
+// of them.
 static PEL_OUT_OF_LINE float maxDifference2(__global const PelDiffusionFrame* frame,
                                             __global const float* pyramid, uint tileX, uint tileY, int k) {
     __global const PelPyramidLevel* level = &frame->level[k + 1];
@@ -71,8 +71,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void classify_sc
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global uint* tiles, __global uint* restrict counters) {
-    // Of levels; differences as bits, which are ordered as floats are that are not negative. In local memory:
-    // private memory that is indexed lies in global memory on GPUs.
+    // Per level; differences as bits, which are ordered like non-negative floats. In local memory, because
+    // GPUs keep indexed private arrays in global memory.
 #if PEL_TILE_IS_GROUP
     __local uint differences[PEL_PYRAMID_LEVELS];
     __local float beyond[PEL_PYRAMID_LEVELS];
@@ -85,8 +85,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void classify_sc
 #endif
     const uint levelCount = frame->levels, tileX = tile % frame->tilesX, tileY = tile / frame->tilesX;
     __global const PelPyramidLevel* own = &frame->level[PEL_TILE_LEVEL];
-    // No return before the barriers, though it would be the same for all: PoCL 3.1 then runs the end of the
-    // kernel for every work-item.
+    // No return before the barriers, even a uniform one: PoCL 3.1 would then run the end of the kernel for
+    // every work-item.
     const bool covered = pyramid[pyramidRow(own, (int)tileY) + tileX + PEL_PLANE_AREA * own->stride] > 0.0f;
     for (uint k = ITEM; k < levelCount; k += ITEMS) differences[k] = 0;
     SYNCHRONIZE();

@@ -135,7 +135,7 @@ static inline void measurePixel(__global const PelGatherFrame* frame, __global f
     to[PEL_GATHER_PIXEL] = wide, to[PEL_GATHER_PIXEL + 1] = high;
 }
 
-// Measures a pixel. Returns what it adds to the flags of its tile.
+// Measures a pixel. Returns its flags for the tile.
 static inline uint measured(__global const PelGatherFrame* frame, __global float* points,
                             __global const PelGatherMaterial* materials, uint x, uint y) {
     const size_t at = PEL_GATHER_FLOATS * ((size_t)y * frame->width + x);
@@ -145,11 +145,11 @@ static inline uint measured(__global const PelGatherFrame* frame, __global float
     const uint material = frame->materialOf[id];
     if (!material) return PEL_TILE_LIT;
     const float4 pixel = PEL_LOAD4(points + at + PEL_GATHER_PIXEL);
-    // Where all taps would fall into the pixel itself, irradiance is right as it is.
+    // If all taps fall into the pixel itself, its irradiance is already the result.
     const float radius = materials[material - 1].farthest * pixel.z;
     const bool wide = radius > fmin(pixel.x, pixel.y) || frame->everywhere;
     if (pixel.w > 0.0f && pixel.x > 0.0f && wide) return PEL_TILE_LIT | COVERED | PEL_TILE_GATHERS;
-    points[at + PEL_GATHER_PIXEL + 2] = -pixel.z;  // read by others alone
+    points[at + PEL_GATHER_PIXEL + 2] = -pixel.z;  // read only by other work-items
     return PEL_TILE_LIT | COVERED;
 }
 

@@ -5,9 +5,9 @@
 // PEL_TILE_HIDDEN and all levels, since their weight has to be known. Output: the packed flags, and the
 // largest light per tile. Without PEL_HIDDEN: a tile has 4 x 4 parts of 4 x 4 pixels, which are blocks of
 // level 2 of the screen's pyramid. A part counts where the sum over the texels differs from the irradiance,
-// or where classify_scatter has flagged the tile. Output: a bit per part. One work-item is one tile; one
-// lane: a work-group is, whose work-items share the blocks of each ring. Variants: PEL_HIDDEN, PEL_SUM_GROUP
-// (work-items in a group).
+// or where classify_scatter has flagged the tile. Output: a bit per part. One work-item is one tile; with one
+// lane, one work-group is one tile, and its work-items share the blocks of each ring. Variants: PEL_HIDDEN,
+// PEL_SUM_GROUP (work-items in a group).
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/windowed.clh"
 
@@ -105,7 +105,7 @@ static PEL_OUT_OF_LINE float changeByLight(__global const PelDiffusionFrame* fra
     receiver.curvature = 0.0f;
     int table = wholeBlock(frame, pyramid, PEL_TILE_LEVEL, tileX, tileY, &receiver);
     if (table < 0) return 0.0f;
-    // Work-items look at a part each, since these loads wait for each other otherwise.
+    // Each work-item tests its own parts, so that their loads overlap.
     uint apart = 0;
     for (uint k = LANE; k < side * side; k += LANES) {
         Receiver part;
@@ -129,7 +129,7 @@ static PEL_OUT_OF_LINE float changeByLight(__global const PelDiffusionFrame* fra
     }
 }
 #else
-// Of one of its pixels.
+// The curvature of one pixel of a block.
 static inline float curvatureOfBlock(__global const PelDiffusionFrame* frame, __global const float* pyramid,
                                      uint x, uint y) {
     __global const PelPyramidLevel* pixels = &frame->level[0];

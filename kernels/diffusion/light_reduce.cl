@@ -1,17 +1,17 @@
 // One level of a light's pyramid (shared/light_space.h) from the next finer one: blocks of 2 x 2.
 //
 // The flux of a block is stored in two clusters. The first begins at the brightest child. Children far from
-// it, or of another id, go to the second, which begins at the farthest of them. The place of a cluster is the
-// mean of the children near that with which it begins: a mean over several surfaces would lie in the air
-// between them. Input and output: the pyramid; level 1 also clears the marks of light_seen. One work-item:
-// PEL_WIDTH blocks of a row of a map's level; one lane: a work-group is a block of the last of `count`
-// levels. Variants: PEL_HIDDEN.
+// it, or of another id, go to the second, which begins at the farthest of them. The position of a cluster is
+// the mean of the children near its first one: a mean over several surfaces would lie in the air between
+// them. Input and output: the pyramid; level 1 also clears the marks of light_seen. One work-item: PEL_WIDTH
+// blocks of a row of a map's level; one lane: a work-group is a block of the last of `count` levels.
+// Variants: PEL_HIDDEN.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/light_space.clh"
 #include "lib/diffusion/pyramid.clh"
 
 #define APART 1.5f   // widths of a block between two clusters
-#define SPREAD 8.0f  // and from the first child of a cluster to one that its place is a mean of
+#define SPREAD 8.0f  // from the first child of a cluster to others in its mean position
 
 typedef struct Cluster {
     floatw flux, extent;
@@ -67,7 +67,7 @@ static inline Cluster chooseCluster(Cluster a, Cluster b, maskw second) {
     return s;
 }
 
-// Sums are relative to the seed, so that nothing cancels. What is not near counts at the seed's place.
+// Sums are relative to the seed, to avoid cancellation. Children far from it count at its position.
 static inline void addToCluster(Cluster* sum, Cluster seed, Cluster s, maskw on, maskw near) {
     const floatw flux = selectw((floatw)(0.0f), s.flux, on);
     sum->flux += flux;
@@ -115,7 +115,7 @@ static inline bool cellsMatter(__global const PelLightMap* map, __global const u
     return false;
 }
 
-// Blocks wider than so many cells are always made: few have no lit cell, and a search would take longer.
+// Wider blocks, in cells, are always computed: few have no lit cell, and a search would take longer.
 #define MOST_CELLS 4
 
 // PEL_WIDTH blocks of level `to`.

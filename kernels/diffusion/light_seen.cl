@@ -7,8 +7,8 @@
 // texel, set to 0 beforehand: the id of the pixel, or PEL_SEEN_OTHER where the pixel does not scatter.
 // Patches of several work-items meet at a texel, so bytes are merged atomically, and the result does not
 // depend on their order: with PEL_HIDDEN the bits of all ids, since only "not 0" matters, otherwise the
-// smallest id. Also output: the part of the map that the profiles reach from what scatters, which is all
-// that light_texels makes (PEL_LIGHT_REGION). One work-item: PEL_WIDTH pixels of every other row, one lane:
+// smallest id. Also output: the part of the map within reach of scattering pixels, the only part that
+// light_texels computes (PEL_LIGHT_REGION). One work-item: PEL_WIDTH pixels of every other row, one lane:
 // every other pixel of it, in a map. Variants: PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL
 // (0: everything is id 1), PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT, PEL_HIDDEN.
 #include "lib/diffusion/item.clh"
@@ -54,7 +54,7 @@ static inline Vec3w shorterOffset(Vec3w p, Vec3w a, Vec3w b) {
 typedef struct Patch {
     floatw column, row, depth;    // of its middle
     floatw acrossX, acrossY;      // texels to each side
-    floatw slopeX, slopeY, most;  // depth per texel, and how far off
+    floatw slopeX, slopeY, most;  // depth per texel; depth tolerance
 } Patch;
 
 static inline maskw patchOf(__global const PelLightMap* map, Vec3w p, Vec3w right, Vec3w down, Patch* patch) {
@@ -146,8 +146,8 @@ static inline void fetchDepths(__global const PelLightMap* map, __global const u
     }
 }
 
-// Texels around a pixel's own that blocks of texels within a profile's reach may hold, over the reach: a
-// block may be as wide as the reach, and its middle that far away.
+// Width of the region around a pixel's texel, over the profile's reach: a block that the profile reaches may
+// be as wide as the reach, and its middle that far away.
 #define BLOCKS_REACH 3.0f
 #define LEAST_TEXELS 16.0f
 
@@ -236,7 +236,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void light_seen(
     __global const PelPyramidLevel* level = &frame->level[0];
     __global const float* own = pyramid + pyramidRow(level, (int)y) + x;
     const uint stride = level->stride;
-    // That of the group first.
+    // First the region of the work-group.
     __local uint region[4];
     for (uint k = get_local_id(0); k < 4; k += PEL_GROUP) region[k] = 0;
     barrier(CLK_LOCAL_MEM_FENCE);

@@ -73,7 +73,7 @@ static inline Vec3w stepAlong(__global const PelLightMap* map, __global const uc
     return stepOf(p, before, after);
 }
 
-// `region`: what the profiles reach; `first`: the map's first texel.
+// `region`: the texels within reach; `first`: the map's first texel.
 static PEL_OUT_OF_LINE void makeTexels(__global const PelLightMap* map, __global const uchar* first,
                                        __global const uchar* seen, __global const uint* region,
                                        __global const uchar* before, __global uchar* now, uint frameNumber,
@@ -100,7 +100,7 @@ static PEL_OUT_OF_LINE void makeTexels(__global const PelLightMap* map, __global
         const floatw columns = convert_floatw(column), rows = (float)y;
         const Vec3w p = pointOfTexel(map, columns, rows, depth);
         // The derivatives at constant depth. Texels of radial maps lie on a sphere, where one-sided steps
-        // would lean.
+        // would be biased.
         Vec3w left = p, above = p;
         float back = 0.0f;
         if (map->radialRange > 0.0f) {

@@ -73,7 +73,7 @@ static inline floatw laterLanes(floatw v, int by) {
 #undef LATER
 }
 
-// The same of pixels from x on that may be negative, where lanes of it exist.
+// The same from an x that may be negative: its lanes outside the row have no pixel.
 static inline Point pointFrom(const Images* in, int x, uint y) {
     Point point = pointAt(in, (uint)max(x, 0), y);
     if (PEL_WIDTH == 1 || x >= 0) return point;
@@ -93,7 +93,7 @@ static inline floatw stepTo(const Images* in, const Point* here, int x, int y) {
                    inside & (idAt(in, (uint)x, (uint)y) == here->id) & finitew(length2) & (length2 > 0.0f));
 }
 
-// Differences of positions and of normals along one axis. Returns where there are any.
+// Differences of positions and of normals along one axis. Returns the lanes that have them.
 static inline maskw differences(const Images* in, const Point* here, int x, int y, int dx, int dy,
                                 floatw far2, Vec3w* positions, Vec3w* normals) {
     maskw known = (maskw)(0);
@@ -114,7 +114,7 @@ static inline maskw differences(const Images* in, const Point* here, int x, int 
     return known;
 }
 
-// From neighbours that many pixels away; `step`: to the next pixel.
+// Curvature from neighbours `pixels` away; `step`: length to the next pixel.
 static inline floatw curvatureAt(const Images* in, const Point* here, uint x, uint y, float window,
                                  floatw step, int pixels, maskw on) {
     const floatw far = SAME_SURFACE * fmax((floatw)(window), (float)pixels * step), far2 = far * far;
@@ -128,7 +128,7 @@ static inline floatw curvatureAt(const Images* in, const Point* here, uint x, ui
     return selectw((floatw)(0.0f), curvature, sound & finitew(curvature));
 }
 
-// Of pixels of one material, `on`. Lanes whose windows are as many pixels go together.
+// Curvature of the pixels `on`, all of one material. Lanes with equally wide windows, in pixels, go together.
 static inline floatw curvatureOf(const Images* in, const Point* here, uint x, uint y, float window,
                                  maskw on) {
     const floatw step =
@@ -145,7 +145,7 @@ static inline floatw curvatureOf(const Images* in, const Point* here, uint x, ui
     return value;
 }
 
-// Of the pixels from x on, each by the window of its id.
+// Curvature of the pixels from x on, each with the window of its id.
 static PEL_OUT_OF_LINE floatw curvatureFrom(const Images* in, uint x, uint y) {
     floatw value = 0.0f;
     const uintw id = idAt(in, x, y);
@@ -166,7 +166,7 @@ static PEL_OUT_OF_LINE floatw curvatureFrom(const Images* in, uint x, uint y) {
     return value;
 }
 
-// `firstRow`: of the launch; `outRow`: that the output begins with.
+// `firstRow`: of the launch; `outRow`: of the output.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void mean_curvature(
     __global const PelMeanCurvature* restrict frame, __global uchar* normal, __global uchar* position,
     __global uchar* ids, __global uchar* restrict out, uint firstRow, uint rows, uint outRow) {

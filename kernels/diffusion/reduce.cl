@@ -3,8 +3,8 @@
 // A block belongs to one object, that of the child with the largest area, and takes in the other children
 // that have its id and lie near it. So no light bleeds from one object to another, or to a surface behind.
 // Inputs: the finer level. Output: the coarser one. One work-item: PEL_WIDTH blocks of a row. One lane: a
-// work-group is a block of the last of `count` levels; surface_differences follows, for second differences
-// need neighbours that other groups make. There an item is a block of any level.
+// work-group is a block of the last of `count` levels. surface_differences runs afterwards, because second
+// differences need neighbours from other groups; its work-items are the blocks of all levels.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/pyramid.clh"
 

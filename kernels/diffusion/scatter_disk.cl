@@ -4,10 +4,10 @@
 // Taps lie on a disk across the view, at radii that follow the profile. A tap brings its share of the
 // light, times R at its true distance over R on the disk, times the surface of its pixel over that of the
 // disk. Input: the surface (gather_surface.cl), taps and profiles. Output: an image like the irradiance;
-// pixels that nothing changes keep their value. One work-group takes tiles, one work-item columns of their
-// pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT; PEL_HALF: sample_disk gathers at every second
-// pixel of both directions before, and scatter_disk at those without a sample beside them; PEL_HISTORY: light
-// from beyond pixels alone is written (blend_history.cl).
+// pixels that do not gather keep their value. One work-group takes tiles, one work-item columns of their
+// pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT; PEL_HALF: sample_disk first gathers at every
+// second pixel along both axes, and scatter_disk only at pixels without a sample beside them; PEL_HISTORY:
+// only light from beyond the pixel is written (blend_history.cl).
 #include "lib/diffusion/gather.clh"
 #include "lib/diffusion/item.clh"
 

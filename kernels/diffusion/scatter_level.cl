@@ -48,7 +48,7 @@ static inline Sums addOwnLevel(__global const PelDiffusionFrame* frame, __global
                                const Blocks* here, Slope of, maskw on, Sums coarser) {
     Slope slope = of;
     Sums result = coarser;
-    if (PEL_FORMAT_MEAN_CURVATURE && level == 1) {  // that of a pixel
+    if (PEL_FORMAT_MEAN_CURVATURE && level == 1) {  // the curvature of a pixel
         const uint pixels = frame->level[0].stride;
         __global const float* pixel = pyramid + pyramidRow(&frame->level[0], 2 * (int)y) + 2 * x;
         floatw id, unused;
@@ -80,7 +80,7 @@ static inline void storeSums(Sums s, uint stride, __global float* to) {
 }
 
 #if PEL_WIDTH > 1
-// Returns how many blocks there are something to sum for.
+// Returns the number of blocks that sum something.
 static PEL_OUT_OF_LINE uint sumBlocks(__global const PelDiffusionFrame* frame, __global const float* pyramid,
                                       __global const PelProfileTable* tables, __global const float* nodes,
                                       __global const uint* tiles, uint level, __global float* sums, uint x,
@@ -208,7 +208,7 @@ static inline Sums sumsOfBlock(__global const PelDiffusionFrame* frame, __global
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_sums(
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const uint* restrict tiles, __global float* sums) {
-    // Of a level and of the next coarser one, in turn: six planes of light and weight.
+    // Sums of a level and of the next coarser one, alternating: six planes of light and weight.
     __local float values[2][6 * MOST_SUMS];
     const int groupsX = (int)(frame->level[1].width + SUM_SIDE - 1) / SUM_SIDE, group = (int)get_group_id(0);
     Region finest;

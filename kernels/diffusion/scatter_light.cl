@@ -5,8 +5,8 @@
 // weights, is blended in where it is the more reliable one. At the receiver itself irradiance is known.
 // Input: both pyramids, the flags of light_classify. Output: the flagged parts, in an image like the
 // irradiance; other pixels keep their value. One work-item: one pixel, with several lanes a part of
-// a tile. Variants: PEL_HIDDEN is 0, PEL_FORMAT_OUT; PEL_HALF: sample_light sums at every second pixel of
-// both directions before, and scatter_light at those without a sample beside them.
+// a tile. Variants: PEL_HIDDEN is 0, PEL_FORMAT_OUT; PEL_HALF: sample_light first sums at every second pixel
+// along both axes, and scatter_light only at pixels without a sample beside them.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/lit_surface.clh"
 #include "lib/diffusion/windowed.clh"
@@ -14,14 +14,14 @@
 
 #define PART (1 << PEL_PART_LEVEL)         // pixels along a side
 #define PARTS (PEL_DIFFUSION_TILE / PART)  // along a side of a tile
-// Pixels of a work-item: with several lanes a part, which takes a CPU 0.8 of the time.
+// Pixels of a work-item: with several lanes a whole part, which takes 0.8 of the time on a CPU.
 #define EACH(pixelsOfPart) (PEL_WIDTH == 1 ? 1 : (pixelsOfPart))
 #define SAMPLES_ALIKE \
     16.0f  // squared distance over the area of a pixel; farther: another part of the surface
 // Radii of two windows: of the irradiance of the pixel itself, in points of a texel, and of the camera's
-// samples, in texels. Both are lengths on a surface that faces the light at this cosine or a larger one:
-// points lie closer together along the slope, and the ring of texels that are summed as points ends
-// somewhere.
+// samples, in texels. Lengths are measured on the surface, where the cosine to the light counts as at least
+// OWN_COSINE or SHOWN_COSINE: points lie closer together along the slope, and only a limited ring of texels
+// is summed as points.
 #define OWN_WINDOW 2.0f
 #define OWN_COSINE 0.4f
 #define SHOWN_WINDOW 1.0f
@@ -30,10 +30,10 @@
 // A map locates an edge to a fifth of a texel, pixels to a step over the root of 12: the factor of the
 // squared step.
 #define STEP_OVER_TEXEL 2.0f
-// Of the accumulated weight of pixels from that of a plane: fully trusted; not at all from three times
-// that on.
+// Pixels are fully trusted if their accumulated weight deviates from a plane's by at most this, and not at
+// all from three times that on.
 #define WEIGHT_OFF 0.1f
-// Of light at normal incidence: triangles of a mesh lean by so much from its smooth normals.
+// A difference that the tilt of triangles against smooth normals explains, over light at normal incidence.
 #define AGREE 0.02f
 #define NEARLY_PLANE 0.03f  // of the weight
 #define MAX_PARTS 4.0f      // of a block
@@ -132,7 +132,7 @@ static PEL_OUT_OF_LINE bool scatterPixel(__global const PelDiffusionFrame* frame
     receiver.normal = outwardNormal(frame, at, stride);
     const float3 normal = across * rsqrt(fmax(dot(across, across), FLT_MIN));
     float texel = 0.0f, point = 0.0f, shown = 0.0f;  // the longest on the surface
-    float steepest = 1.0f;                           // least cosine
+    float steepest = 1.0f;                           // smallest cosine
     for (uint k = 0; k < mapCount; ++k) {
         const Texel t = texelAt(maps + k, here->p, normal);
         if (!(t.width > 0.0f && t.width < FLT_MAX)) continue;

@@ -85,7 +85,7 @@ static PEL_OUT_OF_LINE Vec3w scatterPixels(__global const PelDiffusionFrame* fra
     const Vec3w e = loadPlanes3(at + PEL_PLANE_RED * stride, stride);
     Slope slope = slopeAt(at, stride, here, e, frame->facing, active);
     if (PEL_FORMAT_MEAN_CURVATURE) slope.curvature = loadw(PEL_PLANE_CURVATURE * stride, at);
-    // First, so that fewer values are kept meanwhile.
+    // Computed first, so that fewer values are live.
     Sums single = noSums();
     Vec3w own = single.light, gain = vec3((floatw)(1.0f), (floatw)(1.0f), (floatw)(1.0f));
     if (near || PEL_FORMAT_MEAN_CURVATURE) {

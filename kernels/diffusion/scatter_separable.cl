@@ -5,10 +5,10 @@
 // A tap stands for a piece of the line. Where the surface leaves the plane across the view, the tap is
 // weighted by the line spread at its true distance. Input: the surface (gather_surface.cl), pieces and line
 // spreads. Output: filter_rows: irradiance and -, four floats a pixel; filter_columns: an image like the
-// irradiance, with pixels that nothing changes as they were. One work-group takes tiles, one work-item
-// columns of their pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT; PEL_HALF: rows are filtered at
-// even columns alone, sample_columns filters at every second pixel of both directions, and filter_columns at
-// those without a sample beside them; PEL_HISTORY: light from beyond pixels alone is written
+// irradiance, in which pixels that do not gather keep their value. One work-group takes tiles, one work-item
+// columns of their pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT; PEL_HALF: rows are filtered only
+// at even columns, sample_columns filters at every second pixel along both axes, and filter_columns only at
+// pixels without a sample beside them; PEL_HISTORY: only light from beyond the pixel is written
 // (blend_history.cl).
 #include "lib/diffusion/gather.clh"
 #include "lib/diffusion/item.clh"
@@ -20,8 +20,8 @@ typedef struct Line {
     uint lightStride;
     __global const PelGatherMaterial* material;
     __global const float* nodes;
-    long step;        // pixels from one to the next
-    int first, last;  // that lie on the line, from the own one
+    long step;        // in the image, from one pixel of the line to the next
+    int first, last;  // pixels of the line, counted from the receiver
     float size;       // length of a pixel
     size_t here;
     float3 p;
@@ -44,7 +44,7 @@ static inline uint addPixel(const Line* line, __global const PelGatherTap* tap, 
     const size_t there = (size_t)((long)line->here + k * line->step);
     const float4 q = gathered(line->points, there, PEL_GATHER_POINT);
     const uint other = as_uint(gathered(line->points, there, PEL_GATHER_LIGHT).w);
-    if (other != line->id && (!other || !line->material->anyBorder)) {  // its light may not even be there
+    if (other != line->id && (!other || !line->material->anyBorder)) {  // its light may be undefined
         sums->light += share * line->own, sums->weight += share;
         return 1;
     }

@@ -10,7 +10,7 @@
 #include "lib/diffusion/usable_light.clh"
 #include "lib/image/image.clh"
 
-#define MIN_SIGMA 0.8f  // texels; of narrower Gaussians three taps have the variance, of others their samples
+#define MIN_SIGMA 0.8f  // texels; narrower Gaussians are three taps with their variance
 #define FARTHEST 3.0f   // sigmas
 #define PAD 2           // texels
 
@@ -58,7 +58,7 @@ static inline float4 blurTexel(__global const float4* stretch, __global const fl
     const float sigma2 = variance / (size * size);  // texels^2
     const bool narrow = sigma2 < MIN_SIGMA * MIN_SIGMA;
     const float sigma = sqrt(sigma2);
-    // Samples lie at most half a sigma apart, and no further than the blur before smooths over.
+    // Samples lie at most half a sigma apart, and no further than the previous blur smooths.
     const int stride = narrow ? 1 : max((int)fmin(0.5f * sigma, blurredBefore / size), 1);
     const int taps = narrow ? 1 : (int)fmin(FARTHEST * sigma / (float)stride + 0.5f, (float)(count / stride));
     const float centre = narrow ? 1.0f - sigma2 : 1.0f, perVariance = 0.5f / variance;

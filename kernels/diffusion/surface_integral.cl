@@ -99,7 +99,7 @@ static inline Vec3w surfaceTriangle(SurfaceSum sum, __global const float4* table
     const float3 n = area / twice;
     const Vec3w toPoint = sub3(x, all3(corner[0]));
     floatw h = dot3(toPoint, all3(n));
-    // Points of the surface are off it by rounding only, which 1/r would amplify.
+    // Points on the surface are off it only by rounding, which 1/r would amplify.
     const float extent =
         fmax(fmax(fabs(corner[0].x), fabs(corner[0].y)), fmax(fabs(corner[0].z), length(ab)));
     h = selectw(h, (floatw)(0.0f), fabs(h) < (floatw)(5e-7f * extent));
@@ -167,8 +167,8 @@ static inline Vec3w surfaceEnded(SurfaceSum sum, __global const float4* table, f
     return vec3(R.x * within[0], R.y * within[1], R.z * within[2]);
 }
 
-// The same by 7 points, exact to degree 5 [Radon 1948], for triangles that are small beside their distance:
-// there the shares of the borders cancel below their rounding.
+// The same by 7 points, exact to degree 5 [Radon 1948], for triangles that are small compared with their
+// distance: sums over their borders would cancel.
 __constant float surface_corner[7][3] = {
     {0.333333333f, 0.333333333f, 0.333333333f}, {0.059715872f, 0.470142064f, 0.470142064f},
     {0.470142064f, 0.059715872f, 0.470142064f}, {0.470142064f, 0.470142064f, 0.059715872f},

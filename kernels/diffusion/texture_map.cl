@@ -9,7 +9,7 @@
 #include "lib/image/image.clh"
 #include "lib/mesh/mesh_vertex.clh"
 
-#define INSIDE -1e-5f  // share of a vertex at the border, with the rounding of its texture coordinates
+#define INSIDE -1e-5f  // barycentric coordinate at a border, less the rounding of texture coordinates
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_owner(
     __global const PelTextureFrame* restrict frame, __global const uint* restrict indices,

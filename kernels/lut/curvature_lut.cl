@@ -108,7 +108,7 @@ static inline Rgb kernelAt(__global const LutGaussian* gaussians, const uint fir
     for (uint g = first; g < end; ++g) {
         const LutGaussian G = gaussians[g];
 #if PEL_FORM == PEL_FORM_SPHERE
-        // In sigmas. At 1e-6 light is already even; the same limit is used where the sum is normalised.
+        // In sigmas. At 1e-6 light is already uniform; the normalisation uses the same limit.
         const floatw x = clamp(radius / G.sigma, 1e-6f, 1e8f);
 #else
         const floatw x = fmin(radius / G.sigma, 1e8f);
@@ -169,7 +169,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
                !anyw(REACH * gaussians[behind].sigma * curvature > M_PI_F - nodes[j + 1].angle))
             ++behind;
 
-        // Over one step: the rotation by its angle, plus what the kernel adds.
+        // Over one step: a rotation by its angle, plus the contribution of the kernel.
         const float step2 = step * step;
         const float s = step * (1.0f - step2 * (1.0f / 6.0f) * (1.0f - step2 * (1.0f / 20.0f)));
         const float c = 1.0f - step2 * 0.5f * (1.0f - step2 * (1.0f / 12.0f));
@@ -240,7 +240,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
         const LutGaussian G = gaussians[g];
         const floatw x = clamp(radius / G.sigma, 1e-6f, 1e8f);
         const floatw k = x * x;
-        // 1 - exp(-2k), and what the mean of cos t brings with it: both 2 exp(-k) times odd functions, as
+        // 1 - exp(-2k), and its product with the mean of cos t: both 2 exp(-k) times hyperbolic functions, as
         // series near 0.
         const floatw e2 = exp(-2.0f * k), e1 = 2.0f * exp(-k);
         const floatw share =

@@ -7,7 +7,7 @@
 #include "lib/image/half.clh"
 #include "lib/lut/lut_lookup.clh"
 
-// Of this work-item's texel: column, row and table are its three indices.
+// Index of this work-item's texel; the global ids are column, row and table.
 static inline size_t texelIndex(const LutLayout lut) {
     return (get_global_id(2) * (lut.height + 1) + get_global_id(1)) * lut.rowTexels + get_global_id(0);
 }

@@ -10,7 +10,7 @@
 //   U = sum over n of beta^2n / (2n)! Q^(2n)(zeta/sigma) 3/((2n + 1)(2n + 3))             beta < 1, where
 //   that cancels.
 // Between and beyond the kinks the tails are 0 or 1 and cost nothing. The part of the profile beyond the cut
-// is taken off again where it weighs anything.
+// is subtracted where its weight matters.
 //
 // Columns are linear in w; on the square-root axis they are linear in p, and rows in the root of q. With
 // closed ends T is rescaled to (T - T(0)) / (T(1) - T(0)) per row.
@@ -40,7 +40,7 @@ static inline floatw thirdTail(const floatw x, const floatw Q, const floatw dens
 }
 
 // Integral of smoothstep((x + beta - xi) / 2 beta) over the normal density beyond x = cut: the part that a
-// cut profile does not have.
+// cut profile lacks.
 static inline floatw beyondCut(const floatw xi, const float beta, const float cut, const floatw e1,
                                const floatw e2, const floatw i2e1, const floatw i3e1, const floatw i2e2,
                                const floatw i3e2) {
@@ -120,7 +120,7 @@ static inline floatw farSide(const floatw zeta, const float b, const LutGaussian
     floatw lost = cutTail;
     if (anyw(e2 > cut)) lost = beyondCut(xi, beta, cut, e1, e2, i2e1, i3e1, i2e2, i3e2);
     if (anyw(e1 < -cut)) {
-        // Mirrored: 1 - smoothstep turns the other end into the same problem, where light loses Q minus this.
+        // Mirrored: 1 - smoothstep turns the other end into the same problem, with a loss of Q minus this.
         lost += cutTail - beyondCut(-xi, beta, cut, -e2, -e1, secondTail(-e2, 1.0f - Q2, density2),
                                     thirdTail(-e2, 1.0f - Q2, density2), secondTail(-e1, 1.0f - Q1, density1),
                                     thirdTail(-e1, 1.0f - Q1, density1));

@@ -53,8 +53,8 @@ static inline void storeRows(__global float4* rows, const uint firstRow, const u
 #undef PUT
 }
 
-// The sum plus a term. Kahan's: many terms of about the same size, which plain float would round in the same
-// direction each time.
+// Adds a term by Kahan's method: many terms have about the same size, and plain float would round each in the
+// same direction.
 typedef struct Sum {
     rowsw value, lost;
 } Sum;
@@ -153,8 +153,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_r
     for (int j = PEL_NODES - 1; j >= 0; --j) {
         const TableInterval interval = mesh[j];
         Gain inFront = {zero, zero, zero, zero}, inBack = inFront;
-        // The last row is the smallest circle, where distances are shortest. Of most rows nothing reaches
-        // far.
+        // The last row is the smallest circle, where distances are shortest. In most rows the profile ends
+        // early.
         if (LAST_ROW(r) * interval.front.distance < params.end) {
             const Integrals nearer = integralsTo(sums, params, r * interval.front.distance);
             gain(&inFront, interval.front, &nearer, &ahead, perRadius);
@@ -228,7 +228,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_s
     }
     const floatw sinPhi = loadw(0, sines), cosPhi = loadw(0, cosines);
     const floatw tanPhi = sinPhi / fmax(cosPhi, (floatw)(1e-30f));
-    const float nearest = sines[0];  // nothing nearer than this reaches the light
+    const float nearest = sines[0];  // circles with a smaller sin(psi) are all dark
     floatw Er = 0.0f, Eg = 0.0f, Eb = 0.0f, Fr = 0.0f, Fg = 0.0f, Fb = 0.0f;
     float4 cosineMean = 0.0f;
     for (uint i = range.first; i < range.first + range.count; ++i) {

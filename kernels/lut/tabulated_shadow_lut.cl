@@ -56,7 +56,7 @@ typedef struct Far {
     float4 U, slope;  // slope: b dU/dzeta
 } Far;
 
-// The part of the ramp where sign (zeta + b y) > 0, of tails of |zeta + b y|. Quadrature goes over parts of
+// The part of the ramp where sign (zeta + b y) > 0, from tails at |zeta + b y|, by quadrature over parts of
 // PEL_RAMP_CELLS cells.
 static inline Far rampOnSide(__global const float4* tails, const float zeta, const float b, const float sign,
                              const float end) {
@@ -96,7 +96,7 @@ static inline Far farByQuadrature(__global const float4* tails, const float zeta
     return far_;
 }
 
-// Of one row: its ramp, and where its nodes lie.
+// The ramp of a row, and the spacing of its nodes.
 typedef struct ShadowRow {
     float q, b;
     float spacing, perSpacing;  // of nodes, and 1 / that
@@ -113,7 +113,7 @@ static inline ShadowRow shadowRow(const TabulatedShadowLutParams params, const u
     return row;
 }
 
-// At zeta >= 0. `nodes`: of the row.
+// U at zeta >= 0. `nodes`: of the row.
 static inline float4 farSide(__global const float4* tails, __global const float4* nodes, const ShadowRow row,
                              const float zeta, const float4 total, const float end) {
     if (zeta - row.b >= end) return (float4)(0.0f);

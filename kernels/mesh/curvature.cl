@@ -40,7 +40,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
         mx -= nx, my -= ny, mz -= nz;
         const floatw length2 = fma(dx, dx, fma(dy, dy, dz * dz));
         const floatw ratio = fma(mx, mx, fma(my, my, mz * mz)) / length2;
-        // Fails for edges without length (fillers among them) and for whatever is not finite at either end.
+        // False for edges without length, such as fillers, and for values that are not finite at either end.
         const maskw usable = (length2 >= PEL_MESH_MIN_LENGTH2) & (length2 < INFINITY) & (ratio < INFINITY);
         low = selectw(low, ratio, usable & (ratio < low));
         high = selectw(high, ratio, usable & (ratio > high));
@@ -48,7 +48,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
     storew(selectw((floatw)(NAN), 0.5f * (sqrt(low) + sqrt(high)), high >= 0.0f), first, curvature);
 }
 
-// The mean over a slot's triangles of their other two slots' values, itself not included.
+// The mean of the values at the other two corners of a slot's triangles.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvature_smooth(
     uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict slices,
     __global const uint* restrict rings, __global const uint* restrict runs, uint planeStride,

@@ -1,16 +1,16 @@
 // Smoothing to a radius in length units: the heat equation on the surface, run until a point has spread over
-// a standard deviation of the radius (a Gaussian blur where the surface is flat). Twice the triangles give
-// the same answer.
+// a standard deviation of the radius (a Gaussian blur where the surface is flat). The result does not depend
+// on the density of the mesh.
 //
 // The Laplacian L is the cotangent one [Pinkall & Polthier 1993] over Voronoi areas. With DIFFUSE_AREA no
 // weight is negative, and the sum of value times area (a third of each triangle for each corner) is kept:
-// negative cotangents become 0, which spreads too much, and the others are lessened until the ring's second
-// moment, the sum of weight times length^2, is again what all cotangents together have: 4 Voronoi areas.
-// Each edge takes the mean of its two ends' factors.
+// negative cotangents become 0, which spreads too much, and the others are scaled down until the ring's
+// second moment, the sum of weight times length^2, is that of all cotangents again: 4 Voronoi areas. Each
+// edge takes the mean of its two ends' factors.
 //
-// What is left after a time, exp(time L), is summed up in Chebyshev polynomials of L [Tal-Ezer, Spectral
-// Methods in Time for Parabolic Problems, SIAM J. Numer. Anal. 26, 1989]: one stage each, their number
-// grows with radius / edge, not with its square, and what is left out is below 2e-4. Coefficients:
+// The solution after a time, exp(time L), is a sum of Chebyshev polynomials of L [Tal-Ezer, Spectral Methods
+// in Time for Parabolic Problems, SIAM J. Numer. Anal. 26, 1989], one per stage. Their number grows with
+// radius / edge, not with its square; the truncation error is below 2e-4. Coefficients:
 // host/mesh/mesh_smoothing.cpp.
 //
 // Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h); planes as in
@@ -22,8 +22,8 @@
 // Writes, for each entry of the rings, weight / area / limit, so that a stage needs nothing else; and the
 // slot's rate, the sum of weight / area, 1/length^2. A slot whose rate exceeds the limit is slowed down to
 // it, which keeps every stage stable on slivers. With DIFFUSE_AREA weights are not limited here, and
-// `rates` is the slot's factor for diffuse_balance. crease2: square of the change of normal at which
-// weights fall to 1/e; 0: none do.
+// `rates` is the slot's factor for diffuse_balance. crease2: square of the change of normal at which weights
+// fall to 1/e; 0: off.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffuse_weights(
     uint slots, uint listed, __global const uint* restrict list, __global const uint* restrict slices,
     __global const uint* restrict rings, __global const uint* restrict runs,
@@ -49,7 +49,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffus
         Vec3w current;
         gather3(positions, ring.last, step.entry.slots, &current.x, &current.y, &current.z);
         current = sub3(current, origin);
-        // Each triangle gives the cotangent at either neighbour to the edge to the other one.
+        // In each triangle, the cotangent at one neighbour belongs to the edge to the other neighbour.
         const Vec3w other = select3(current, start, step.ends);
         const Vec3w between = sub3(previous, other), across = crossExact3(previous, other);
         const floatw doubled2 = dot3(across, across);
@@ -102,7 +102,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffus
             gather3(normals, ring.last, ringEntry(&ring, rings, runs).slots, &m.x, &m.y, &m.z);
             usableNormals(&m.x, &m.y, &m.z);
             const Vec3w turn = sub3(m, n);
-            // Uneven weights bound values by their neighbours' only where none is negative.
+            // Values stay within the range of their neighbours only if no weight is negative.
             weight = fmax(weight, zero) * exp(-dot3(turn, turn) / crease2);
         }
         weight = selectw(zero, weight, finitew(weight));
@@ -185,12 +185,12 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffus
         const size_t at = (size_t)ring.row * PEL_MESH_LANES + ring.lane;
         const floatw weight = loadw(at, weights);
         PEL_PREFETCH(weights + at + PEL_ROWS_AHEAD * PEL_MESH_LANES);
-        // NaN: nothing was measured there. A slot that has none itself keeps its NaN.
+        // NaN: nothing was measured there. A slot without a measurement keeps its NaN.
         change = selectw(change, fma(weight, difference, change), difference == difference);
     }
     floatw value = self + change, total = begin * self;
     if (!isFirst) {
-        // Of values that do not change nothing is rounded.
+        // Constant values are not rounded.
         value = fma((floatw)(2.0f), change, self + (self - loadw(first, before)));
         total = loadw(first, sum);
     }

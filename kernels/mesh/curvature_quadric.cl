@@ -13,26 +13,26 @@
 //
 // The two-ring is a list, made once from the rings of the ring (two_ring.cl). Where those are closed, their
 // walks begin after the slot's own neighbours and leave out the last vertex, with which the next walk
-// begins, so each vertex of the two-ring counts once. Some count several times: at borders; where triangles
-// are not consistently oriented; and the one vertex behind a neighbour with four neighbours, which is kept
-// although the next walk begins with it (on meshes of four and eight neighbours that takes up to a sixth
-// off the error).
+// begins, so each vertex of the two-ring counts once. Some vertices count several times: at borders; where
+// triangles are not consistently oriented; and the one vertex behind a neighbour with four neighbours, which
+// is kept although the next walk begins with it (on meshes of four and eight neighbours that takes up to a
+// sixth off the error).
 //
 // The fit's coordinates come from the second moments of the two-ring, so that slivers fit as well as other
 // triangles, and a ring that is small among larger triangles still has points that determine nine numbers.
 //
-// Of a ring with many neighbours (the hub of a fan, for a vertex on its rim) only the nearest on either
+// In a ring with many neighbours (the hub of a fan, for a vertex on its rim), only the nearest ones on either
 // side are in the list. A slot of at most four neighbours with few points takes the three-ring as well
 // (two_ring.cl).
 //
-// A ridge determines what the points leave undetermined (fewer than nine points, or all on a line), towards
-// a quadric and then a plane. A term whose pivot is lost to rounding is dropped. The result is always
+// A ridge term determines the coefficients that the points do not (fewer than nine points, or all on a line),
+// towards a quadric and then a plane. A term whose pivot is lost to rounding is dropped. The result is always
 // finite. Such slots are counted.
 //
 // Inputs: position (length) and unit normal of each slot, one-rings, and points of the two-ring
 // (shared/mesh.h). Output: lib/mesh/mesh_frame.clh; counts->lowDegreeFits, where counts is not NULL.
 //
-// One work-item: PEL_WIDTH slots, 16 of them too.
+// One work-item: PEL_WIDTH slots; PEL_WIDTH may be 16.
 //
 // Variants: PEL_MESH_STRIDE (lib/mesh/mesh_slots.clh), PEL_MESH_PLANES (lib/mesh/mesh_frame.clh).
 

@@ -1,8 +1,8 @@
 // Unit normals from positions: the normals of the triangles round a slot, weighted by their angles there
-// [Thuermer & Wuethrich 1998], so that cutting a flat face differently changes nothing.
+// [Thuermer & Wuethrich 1998], so that the triangulation of a flat face does not matter.
 //
-// Inputs: position (length) of each slot, one-rings (shared/mesh.h). Output: normal of each slot; 0 where no
-// triangle has a plane.
+// Inputs: position (length) of each slot, one-rings (shared/mesh.h). Output: normal of each slot; 0 where all
+// triangles are degenerate.
 //
 // One work-item: PEL_WIDTH slots (mesh_normals), one vertex of the caller (mesh_normals_store).
 //

@@ -45,7 +45,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_r
     vstore8((float8)(meshUsablePosition(position), 0.0f, normal, 0.0f), slot, rows);
 }
 
-// Whole numbers only, so that the order of additions does not matter.
+// Integers only, so that the order of additions does not matter.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_count(
     uint vertices, __global const float* restrict positions, VertexLayout positionLayout,
     __global const float* restrict normals, VertexLayout normalLayout, uint slots,

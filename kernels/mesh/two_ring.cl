@@ -50,7 +50,7 @@ static inline Steps stepsRound(uint round, uint here) {
     s.from = closed ? here + 2 : 0;
     s.middle = s.count;
     if (s.length > 2 * NEAR_STEPS + 4) {
-        // Past the part that is left out in the middle of a long one: this slot and its two neighbours.
+        // In a long ring, skip the middle part: this slot and its two neighbours.
         const uint before = here - min(here, (uint)NEAR_STEPS);
         s.from = closed ? here + (here < NEAR_STEPS + 1 ? s.length : 0) - 1 - NEAR_STEPS : before;
         s.count = closed ? 2 * NEAR_STEPS : min((uint)(2 * NEAR_STEPS + 1), s.length - before);
@@ -82,7 +82,7 @@ static inline void linkSlot(uint slot, uint slots, __global const uint* slices, 
         for (uint other = 0; other < others; ++other) {
             const size_t at = entryAt(slices, near_, other);
             if ((rings[at] & PEL_MESH_SLOT) != slot) continue;
-            // In both directions. Of several places the last one stays, because rows ascend.
+            // In both directions. If the slot occurs several times, the last row stays, because rows ascend.
             links[at] = row;
             links[entryAt(slices, slot, row)] = other;
         }

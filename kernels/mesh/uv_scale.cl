@@ -53,8 +53,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void uv_sca
     float smallestLength2, float smallestUv2, __global UvScaleShare* shares) {
     const uint item = get_global_id(0);
     // The binary logarithm of each squared ratio: exponents add up exactly as whole numbers, the logarithms
-    // of the mantissas lie within [-1, 1] and add up with Kahan's correction. As good as double precision,
-    // without it.
+    // of the mantissas lie within [-1, 1] and add up with Kahan's correction. This is as accurate as double
+    // precision.
     float sum = 0.0f, lost = 0.0f;
     int exponents = 0;
     uint count = 0;

@@ -84,7 +84,7 @@ static inline floatw distance2(Vec3w a, Vec3w b) {
     return dot3(between, between);
 }
 
-// Squared distance to a direct neighbour; Inf if there is none to compare with.
+// Squared distance to a direct neighbour; Inf if there is no comparable one.
 static inline floatw neighbourDistance2(const Field* f, int x, int y, int offset, size_t at, Vec3w p,
                                         floatw id, maskw mask) {
     mask = withinImage(f, x, y, offset, mask) & (loadw(at, f->tags) == id);
@@ -157,7 +157,7 @@ static inline Vec3w blurAlong(const Field* f, int x, int y, floatw id, floatw ra
     return scale3(sum, 1.0f / total);
 }
 
-// The blur's radius of each lane; 0 of materials that have a normal map, and of none.
+// The blur's radius of each lane; 0 for materials with a normal map and for pixels without a material.
 static inline floatw blurRadius(__global const PelShadeMaterial* materials, uintw id) {
 #define PEL_RADIUS_(id) ((id) && !materials[id].hasNormalMap ? materials[id].diffusionRadius : 0.0f)
     const uint one = greatestId(id, id != 0);

@@ -1,5 +1,5 @@
-// Which tiles hold a pixel of a material, and which variant of the shading kernel they need: compact lists of
-// their numbers (docs/guide/shading.md, "Tiles").
+// Finds the tiles that hold a pixel of a material, and the variant of the shading kernel that each needs:
+// compact lists of tile numbers (docs/guide/shading.md, "Tiles").
 //
 // Inputs: the material id image, PelShadeFrame.materialMask, PelShadeMaterial.variants. Output: lists of
 // tiles (shared/shade.h); list 0 is left out if only the lists of the variants are needed. Variants:
@@ -47,7 +47,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_CLASSIFY_GROUP, 1, 1))) void cl
 
 #else
 
-// Bits of the variants that have all features that the materials of the pixels of `left` need.
+// Bits of the variants with all features that the materials of the pixels in `left` need.
 static inline uint commonVariants(__global const PelShadeMaterial* materials, uintw id, maskw left) {
     uint able = ~0u;
     while (anyw(left)) {
@@ -58,8 +58,8 @@ static inline uint commonVariants(__global const PelShadeMaterial* materials, ui
     return able;
 }
 
-// The id of a tile that has one alone, as nearly all have, by its bytes as they are: without a branch for
-// each vector. ~0 for other tiles.
+// The id of a tile that has a single one, as nearly all have; ~0 for other tiles. Compares bytes, without a
+// branch for each vector.
 static inline uint onlyId(__global const PelShadeFrame* frame, __global uchar* material, uint x, uint y) {
     if (PEL_FORMAT_MATERIAL != PEL_FMT_R8_UINT || x + PEL_TILE_WIDTH > frame->width ||
         y + PEL_TILE_HEIGHT > frame->height)

@@ -1,5 +1,5 @@
-// The surroundings of a frame, from the host's image to what shading reads (shared/environment.h; section 6
-// of the mathematics, "environment").
+// Converts the host's image of the surroundings to the levels that shading reads (shared/environment.h;
+// section 6 of the mathematics, "environment").
 //
 // environment_texels: the image, equirectangular or six faces, averaged over each texel of a cube.
 // environment_halve: one mip of it from the finer one. environment_level: nodes of one level, or of
@@ -89,7 +89,7 @@ static inline float4 texelsAt(__global const float4* texels, uint mip, const Cub
     return mix(upper, lower, y - (float)j);
 }
 
-// Of the node of a work-item: its direction, and where it is stored.
+// The direction of a work-item's node, and where it is stored.
 static inline bool nodeOf(uint size, Vec3w* n, size_t* at) {
     const uint i = get_global_id(0), across = size + 2, face = get_global_id(1) / across,
                j = get_global_id(1) % across;
@@ -153,9 +153,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment
     storeNode(nodes + first, at, size, sum / weights);
 }
 
-// The shares of both models (shared/environment.h), by half vectors that are spread as the distribution is.
-// `samples`, from `begin` to `end`: the cosine of half a turn, and the squared tangent of the half vector
-// over that of the roughness, of Beckmann's distribution and of GGX.
+// The shares of both models (shared/environment.h), by half vectors sampled in proportion to the
+// distribution. `samples`, from `begin` to `end`: the cosine of half a turn, and the squared tangent of the
+// half vector over that of the roughness, of Beckmann's distribution and of GGX.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment_shares(
     __global const float4* restrict samples, uint begin, uint end, uint first,
     __global float* restrict nodes) {

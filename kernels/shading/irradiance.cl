@@ -10,7 +10,7 @@
 #include "lib/shading/tiles.clh"
 #include "shading/scene.clh"
 
-// Three floats of each pixel's material, 0 where it is not wanted; `field`: of the first material.
+// Three floats of each pixel's material, 0 outside `wanted`; `field`: of the first material.
 static inline Vec3w ofMaterials(__global const float* field, uintw id, maskw wanted) {
     const uint stride = sizeof(PelShadeMaterial) / sizeof(float);
 #define PEL_RED_(k, s) (wanted s ? field[id s * stride] : 0.0f)
@@ -23,8 +23,8 @@ static inline Vec3w ofMaterials(__global const float* field, uintw id, maskw wan
 }
 
 #if PEL_FORMAT_THICKNESS
-// What a slab of this thickness reflects, over what a half-space does: the rest leaves on the far side
-// (section 12 of the mathematics, "Slabs"). `path`: the mean free path. 1 where either is unknown.
+// Reflectance of a slab of this thickness over that of a half-space: the rest leaves on the far side (section
+// 12 of the mathematics, "Slabs"). `path`: the mean free path. 1 where either is unknown.
 static inline floatw keptBySlab(floatw thickness, floatw path) {
     const floatw t = thickness / path * -1.44269504f, kept = 1.0f - 0.4635f * exp2(1.088f * t) -
                                                              0.4238f * exp2(0.3548f * t) -
@@ -53,7 +53,7 @@ static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMat
         }
     }
 #if PEL_THIN
-    // Of sheets the other side too, with the shadow of this one.
+    // Sheets also receive light on their other side, with the shadow of this side.
     const Vec3w through = ofMaterials(materials->through, id, wanted);
     if (HAS(PEL_BIT_AMBIENT)) {
         Vec3w behind = mul3(through, ambientAlong(scene, scale3(n, (floatw)(-1.0f))));
@@ -77,7 +77,7 @@ static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMat
 #if PEL_FORMAT_THICKNESS
     floatw thickness = loadScalar(PEL_FORMAT_THICKNESS, SPAN(THICKNESS));
 #if PEL_THIN
-    // What a sheet reflects is its albedo.
+    // The reflectance of a sheet is its albedo, whatever its thickness.
     thickness = selectw(thickness, (floatw)(0.0f), through.x + through.y + through.z > 0.0f);
 #endif
     const Vec3w path = ofMaterials(materials->gain, id, wanted);

@@ -34,8 +34,8 @@ static inline __attribute__((always_inline)) Vec3w shadeMaterial(const Scene* sc
                                                                  Parts* parts, Vec3w* specularPart,
                                                                  Counts* counts) {
     __global const PelShadeFrame* frame = scene->frame;
-    // Whether its diffuse light is the irradiance image: that of the lights and of the ambient light, already
-    // scattered.
+    // Whether diffuse light is read from the irradiance image, which holds all lights and the ambient light,
+    // already scattered.
     const bool scattered = HAS(PEL_BIT_IRRADIANCE) && material->scattering != PEL_SCATTER_PREINTEGRATED;
     countMethod(counts, PEL_COUNT_SCATTERING, material->named, active);
     if (material->named == PEL_SCATTER_AUTO)
@@ -45,7 +45,7 @@ static inline __attribute__((always_inline)) Vec3w shadeMaterial(const Scene* sc
     p->valid &= ((p->invalidBits & material->needs) == 0) | notw(active);
     Vec3w diffuse = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), specular = diffuse;
     parts->diffuse = parts->deepScatter = diffuse;
-    Vec3w before = diffuse;  // light that albedo is in
+    Vec3w before = diffuse;  // light that includes the albedo
     parts->thickness = 0.0f;
     parts->measured = PEL_FORMAT_THICKNESS != 0;
     if (PEL_FORMAT_THICKNESS && PEL_FORMAT_OUT_THICKNESS) parts->thickness = p->thickness;
@@ -53,7 +53,7 @@ static inline __attribute__((always_inline)) Vec3w shadeMaterial(const Scene* sc
         const Vec3w irradiance = withGain(material, p, p->irradiance);
         if (material->albedoAfter == 1.0f)
             diffuse = irradiance;
-        else  // a part of the albedo is in it
+        else  // it includes a part of the albedo
             before =
                 mul3(irradiance, albedoAfter(PEL_FORMAT_ALBEDO ? p->albedo : loadUniform3(material->albedo),
                                              material->albedoAfter));
@@ -71,7 +71,7 @@ static inline __attribute__((always_inline)) Vec3w shadeMaterial(const Scene* sc
         if (!SKIPPING || anyw(active & (through > 0.0f))) {
             const Vec3w e = ambientAlong(scene, scale3(p->nb, (floatw)(-1.0f)));
             Vec3w deep = scale3(mul3(loadUniform3(material->deepScatterColor), e), through);
-            // A cube may hold NaN, which must not matter where no light comes through.
+            // NaN in a cube must not affect pixels through which no light comes.
             if (HAS(PEL_BIT_AMBIENT_CUBE))
                 deep = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), deep, through > 0.0f);
             diffuse = add3(diffuse, deep);
@@ -83,7 +83,7 @@ static inline __attribute__((always_inline)) Vec3w shadeMaterial(const Scene* sc
     const bool isEye = HAS(PEL_BIT_EYE) && material->eye;
     __global const PelShadeEye* eye = &scene->eyes[isEye ? material->eye - 1 : 0];
     EyeLight inEye;
-    maskw outside = active;  // where the material itself is seen
+    maskw outside = active;  // pixels that show the material itself
     if (isEye) {
         inEye = beginEye(scene, eye, p, active & p->valid, counts);
         outside &= inEye.view.cornea < 1.0f;

@@ -1,14 +1,14 @@
 // Bounds of every block of a shadow map, for lib/shading/shadow_bounds.clh: the mean slope along x and y, and
-// the least and greatest depth minus the plane of that slope through 0 at the block's middle.
+// the min and max of depth minus the plane of that slope through 0 at the block's middle.
 //
 // Input: a map of depths, or of moments or exponentials of depths. Output: four planes of one float per
 // block; depths are multiplied by the sign with which they grow away from the light. Texels with NaN or Inf
-// cast no shadow: they count as infinitely far, and their block as level. One work-item: two blocks side by
-// side. Nothing is written if so few tiles have a material that reading the map would cost more than their
+// cast no shadow: they count as infinitely far, and their block gets no slope. One work-item: two blocks side
+// by side. Nothing is written if so few tiles have a material that reading the map would cost more than their
 // filters, unless the bounds are `kept` for later frames and other views.
 #include "lib/shading/shadow_bounds.clh"
 
-// The texels of a row of two blocks; after its end the last texel again.
+// The texels of a row of two blocks; beyond its end the last texel is repeated.
 static inline float16 boundsTexels(__global const uchar* row, __global const PelShadeImage* map,
                                    uint column) {
     if (column + 2 * PEL_BOUNDS_BLOCK <= map->width) {
@@ -39,8 +39,8 @@ static inline float16 spread2(float first, float second) {
     return (float16)((float8)(first), (float8)(second));
 }
 
-// Slopes of a block from the sums of its columns, and of those its lower half less the upper one. The middles
-// of a block's halves lie half a block apart.
+// Slopes of a block from the sums of its columns, and from the lower half of each column minus the upper
+// half. The middles of a block's halves lie half a block apart.
 static inline float2 blockSlopes(float8 columns, float8 downwards) {
     const float perSlope = 4.0f / (PEL_BOUNDS_BLOCK * PEL_BOUNDS_BLOCK * PEL_BOUNDS_BLOCK);
     const float2 slope =

@@ -20,13 +20,13 @@ typedef struct Skin {
     floatw radius;
 } Skin;
 
-// Of a component of the image, or of the profile where that is NaN: the share of `most`.
+// A component of the image, or of the profile where that is NaN, as a share of `most`.
 static inline floatw shareOf(floatw component, float own, float most) {
     return clamp(selectw(component, (floatw)(own), isnan(component)), (floatw)(0.0f), (floatw)(most)) *
            (1.0f / most);
 }
 
-// Interpolates linearly between four nodes, of which `first` (a number of floats) is the first.
+// Interpolates linearly between four nodes; `first`: offset of the first, in floats.
 #if PEL_WIDTH == 1
 static inline Skin nodesAround(__global const float* table, int first, float x, float y) {
     __global const float* node = table + first;
@@ -64,7 +64,7 @@ static inline Skin nodesAround(__global const float* table, intw first, floatw x
 }
 #endif
 
-// Of a material whose profile is of pigments. `pigments`: the pixels of the image.
+// Skin of a material whose profile is made of pigments. `pigments`: the pixels of the image.
 static inline Skin skinOf(__global const PelSkinMaps* frame, __global const PelSkinMapsMaterial* material,
                           __global const float* tables, Vec3w pigments) {
     const float last = PEL_SKIN_SIDE - 1;

@@ -1,5 +1,5 @@
-// What pixels interpolate their thickness from (lib/shading/tap_cells.clh), in two steps: samples of a shadow
-// map at the points of a lattice, and then for each node of a grid those samples that lie nearest to the taps
+// The grid from which pixels interpolate thickness (lib/shading/tap_cells.clh), made in two steps: samples of
+// a shadow map at the points of a lattice; then, for each node of the grid, the samples nearest to the taps
 // of its disk, side by side.
 //
 // Input: a map of depths, moments or exponentials, one of a light's cascades or its only map. Output:
@@ -20,8 +20,8 @@ static inline __global const PelTapCells* cellsOf(__global const PelShadeLight* 
     return light->cascades ? &light->cascade[cascade].cells[disk] : &light->cells[disk];
 }
 
-// Samples from the node in column i and row j to the one nearest to its tap t. The disk of a node is turned
-// by another number of right angles than those of its neighbours in both rows and columns.
+// Samples from the node in column i and row j to the one nearest to its tap t. Disks of neighbouring nodes,
+// in rows and in columns, are rotated by different numbers of right angles.
 static inline int tapOffset(uint t, uint i, uint j, int perRow) {
     const float2 tap = poissonDisk(PEL_NODE_TAPS)[t] * (float)(PEL_CELLS_PER_RADIUS * PEL_SAMPLES_PER_CELL);
     const int x = convert_int_rte(tap.x), y = convert_int_rte(tap.y);

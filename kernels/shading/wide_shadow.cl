@@ -24,8 +24,8 @@
 #define PEL_FLATTEST_COSINE 0.2f
 // With smaller filters texels would appear and disappear.
 #define PEL_LEAST_TEXELS 2.0f
-// Of sharp shadows: the same cosine, and the tolerance along the normal in texels. docs/guide/shading.md,
-// "Irradiance per pixel", has what others give.
+// For sharp shadows: the same cosine, and the tolerance along the normal in texels. docs/guide/shading.md,
+// "Irradiance per pixel", compares other values.
 #define PEL_SHARP_FLATTEST 0.05f
 #define PEL_SHARP_TEXELS 0.5f
 
@@ -122,10 +122,10 @@ static inline floatw sharpInMap(__global const PelWideShadow* light, __global co
     s.x = r.x, s.y = r.y, s.z = r.z;
     s.dzdx = dot3(n, loadUniform3(light->right)) * tilt * r.texelU * r.zPerLength;
     s.dzdy = dot3(n, loadUniform3(light->down)) * tilt * r.texelV * r.zPerLength;
-    // The last bits of a float, at the largest depths here, are not shadow.
+    // Rounding errors of the largest depths must not count as shadow.
     const floatw least = (fabs(r.z) + 1.0f) * 4e-7f;
-    // How far before the tangent plane another depth may be and still be the receiver's own: what the surface
-    // is off its plane inside of the footprint, a mesh's facets among it, grows as texels do.
+    // A depth before the tangent plane by less than this belongs to the receiver itself: the deviation of a
+    // surface and its facets from the plane, inside the footprint, grows with the size of texels.
     const floatw tolerance =
         fmax(PEL_SHARP_TEXELS * fmax(r.texelU, r.texelV) * tilt * fabs(r.zPerLength), least);
     s.perTolerance = copysign(1.0f / tolerance, r.zPerLength);
@@ -133,8 +133,7 @@ static inline floatw sharpInMap(__global const PelWideShadow* light, __global co
 }
 
 #if PEL_AREA_LIGHTS
-// The width of the penumbra of a light with a size; 0: not known, and of other lights. `n`: towards the
-// light.
+// Penumbra width of an area light; 0: unknown, or another type of light. `n`: towards the light.
 static inline floatw penumbraOfLight(__global const PelWideShadow* light, __global const PelShadeLight* from,
                                      __global uchar* map, Vec3w p, Vec3w n, floatw bias, maskw on) {
     if (!isArea(from) || !(light->maxTexels > 0.0f) || light->projection == PEL_MAP_PARALLEL || !anyw(on))
@@ -155,7 +154,7 @@ static inline floatw penumbraOfLight(__global const PelWideShadow* light, __glob
 }
 #endif
 
-// Of the materials of these ids; ids without one may lie beyond the table.
+// Settings of the materials of these ids; ids without a material may lie beyond the table.
 static inline FilterShape filterShape(__global const PelWideShadow* light,
                                       __global const PelShadeMaterial* materials, uintw id, maskw active) {
 #define FIELD(field) PEL_LANES(OF_##field)
@@ -173,7 +172,7 @@ static inline FilterShape filterShape(__global const PelWideShadow* light,
 #undef FIELD
 }
 
-// The pixels of `active` whose material takes sharp shadows, which are not interpolated.
+// The pixels of `active` whose material takes sharp shadows. These are not interpolated.
 static inline maskw takesSharp(__global const PelShadeMaterial* materials, uintw id, maskw active) {
 #define PEL_WIDE_(k, s) (active s ? materials[id s].shadowFilterWidth : 1.0f)
     const floatw width = PEL_LANES(PEL_WIDE_);
@@ -208,7 +207,7 @@ static PEL_OUT_OF_LINE uint2 shadowTile(__global const PelShadeFrame* frame,
     const WideContent content = {wideShadow->perExponent, wideShadow->minDeviation * wideShadow->minDeviation,
                                  wideShadow->bleeding};
     const uint maps = (PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) ? max(wideShadow->cascades, 1u) : 1;
-    // Filters over the penumbra of a light with a size are wide: their plane has to be followed further.
+    // Filters over the penumbra of an area light are wide, so the tangent plane is extended further.
     const float flattest = isArea(from) ? PEL_SHARP_FLATTEST : PEL_FLATTEST_COSINE;
 #if PEL_FILTERS_WIDE
     const BetweenImages images = {frame, material, position, depth};
@@ -240,7 +239,7 @@ static PEL_OUT_OF_LINE uint2 shadowTile(__global const PelShadeFrame* frame,
         }
 #endif
 #if PEL_THIN
-        // Of a sheet that is lit from its other side that side's plane is the same.
+        // A sheet that is lit from its other side has the same tangent plane there.
 #define PEL_SHEET_(k, s) (active s && materials[id s].through[0] > 0.0f ? 1.0f : 0.0f)
         const maskw sheet = PEL_LANES(PEL_SHEET_) > 0.0f;
 #undef PEL_SHEET_
@@ -250,11 +249,11 @@ static PEL_OUT_OF_LINE uint2 shadowTile(__global const PelShadeFrame* frame,
         FilterShape shape = filterShape(wideShadow, materials, id, active);
         maskw left = active & notw(known);
         const LightSample sample = sampleLight(from, p);
-        // Others interpolate between these, so they are the same with skipping and without it.
+        // Other pixels interpolate between these, so skipping must not change them.
         if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING) || apart == 2) left &= sample.strength > 0.0f;
 #if PEL_AREA_LIGHTS
-        // Where the centre is below the horizon its map shows nothing of what is before the rest. Where
-        // all of the light is, normals of a map may turn towards it.
+        // If only the light's centre is below the horizon, its map does not show the occluders of the rest:
+        // no shadow. If all of it is, shading normals may still face it: shadow.
         const floatw cosine = dot3(n, sample.direction);
         if (isArea(from)) left &= (cosine > 0.0f) | (cosine * cosine > sample.sin2);
         const floatw penumbra =
@@ -264,7 +263,7 @@ static PEL_OUT_OF_LINE uint2 shadowTile(__global const PelShadeFrame* frame,
         maskw sharp = left & (shape.width == 0.0f);
         float shown[PEL_WIDTH];
         storew(selectw((floatw)(1.0f), between, known), 0, shown);
-        if (!(wideShadow->maxTexels > 0.0f)) left = sharp;  // only sharp shadows are made of this light
+        if (!(wideShadow->maxTexels > 0.0f)) left = sharp;  // this light has only sharp shadows
         if ((PEL_FEATURES & PEL_BIT_SHADOW_CUBE) && wideShadow->projection >= PEL_MAP_CUBE) {
             CubeFilters f;
             __global const uchar* map = firstTexel(PEL_LIGHT_BUFFER_OF(from->mapBuffer), &wideShadow->map);

@@ -18,9 +18,9 @@
 #define PEL_PLANE_GREEN 6
 #define PEL_PLANE_BLUE 7
 #define PEL_PLANE_DIFFERENCE2 8  // largest second difference of irradiance between blocks one level finer
-#define PEL_PLANE_CURVATURE 8    // of a pixel, in its place: mean curvature, 1/length
-#define PEL_PLANE_SIZE 9         // length^2: the smaller of the squared steps to the next pixel; of a pixel
-#define PEL_PLANE_RADIUS 10  // times the profile's radius: there with PEL_RADII, in programs where it varies
+#define PEL_PLANE_CURVATURE 8    // level 0 keeps the mean curvature there instead, 1/length
+#define PEL_PLANE_SIZE 9         // length^2, of a pixel: the smaller of the squared steps to the next one
+#define PEL_PLANE_RADIUS 10      // factor of the profile's radius; only with PEL_RADII, where it varies
 #ifndef PEL_RADII
 #define PEL_RADII 0
 #endif
@@ -36,7 +36,7 @@
 #define PEL_SUM_PLANES 9
 
 #define PEL_HIDDEN_PLANES \
-    9  // occluded light for blocks of level 1: three planes of light, of weight, of light from far away
+    9  // occluded light for blocks of level 1: three planes each of light, weight and distant light
 
 // Packed tile flags: these bits, levels << 8, weight of the scattered light << 24. 0: nothing scatters.
 #define PEL_TILE_NEAR 1u            // single pixels are summed too, not only blocks
@@ -44,7 +44,7 @@
 #define PEL_TILE_HIDDEN (1u << 16)  // occluded light may come in
 #define PEL_DIFFUSION_TILE 16       // pixels along a side: blocks of level 4
 #define PEL_TILE_LEVEL 4
-#define PEL_PART_LEVEL 2  // blocks of the parts of a tile that light from texels may change
+#define PEL_PART_LEVEL 2  // level of the blocks that are the parts of a tile for light from shadow maps
 #define PEL_DIFFUSION_IDS 256
 #define PEL_MAX_IRRADIANCE 1e15f  // larger values count as invalid: sums over areas would overflow
 
@@ -63,13 +63,13 @@
 // PEL_SLAB_SPREAD times the root of the thickness in mean free paths.
 #define PEL_SLAB_FIRST 1.42f
 #define PEL_SLAB_SPREAD 0.96
-#define PEL_SLAB_MOST 1.05f  // light at any angle over that along the normal
-// A sample counts as on the far side of a slab from the first cosine to the second, beyond that of a sphere;
-// where the receiver's cosine to the light is below the third.
+#define PEL_SLAB_MOST 1.05f  // upper bound of the light at any angle, over the light along the normal
+// Where light counts as through a slab: the cosine to a sample, less a sphere's, rises from the first value
+// to the second, and the receiver's cosine to the light is below the third.
 #define PEL_SLAB_FROM 0.08f
 #define PEL_SLAB_COSINE 0.25
 #define PEL_SLAB_TURNED 0.3f
-#define PEL_SLAB_TERMS 14  // of the Gaussians: narrower ones matter to no map's texels
+#define PEL_SLAB_TERMS 14  // Gaussians in use: the others are narrower than the texels of any map
 // Width of such blocks over their distance: the root of the mean square over a ring around a point,
 // weighted by an R that falls as distance^-1.5.
 #define PEL_BLOCK_WIDTH 0.431
@@ -78,12 +78,12 @@ typedef struct PelProfileTable {
     PelUint32 nodes;
     PelUint32 firstBits;    // of the first node's squared distance
     float reach;            // length beyond which nothing is left
-    float widest;           // 1/length^2: log2 of the widest Gaussian falls by so much
-    float directed;         // factor of R: 1 + directed t, t the cosine between the inward normal and the way
-    float perCurvature[3];  // length: even light gains so much by that, to first order
-    float slab;             // 0 to 1: how much light counts as through a slab where it comes through the body
+    float widest;           // 1/length^2: the widest Gaussian is exp2(-widest d^2)
+    float directed;         // R has the factor 1 + directed t, t: cosine from the inward normal to the sample
+    float perCurvature[3];  // length: first-order gain of uniform light by that, per curvature
+    float slab;             // 0 to 1: the share of light through the body that counts as through a slab
     float spread[3];   // 1/sqrt(length): how much narrower light leaves a slab by the root of its thickness
-    float perRadius2;  // of squared lengths: 1, or over the square of a receiver's factor of the radius
+    float perRadius2;  // factor of squared lengths: 1, or 1 / the receiver's squared radius factor
 } PelProfileTable;
 
 typedef struct PelPyramidLevel {
@@ -98,7 +98,7 @@ typedef struct PelDiffusionFrame {
     PelUint32 height;
     PelUint32 tilesX;
     PelUint32 tilesY;
-    PelUint32 levels;     // that the pyramid has, 0 included
+    PelUint32 levels;     // of the pyramid, level 0 included
     PelUint32 everyTile;  // 1: all tiles and all levels are computed
     PelUint32 inPlace;    // 1: `out` is `irradiance`
     PelUint32 tables;
@@ -112,7 +112,7 @@ typedef struct PelDiffusionFrame {
 } PelDiffusionFrame;
 
 // Counters.
-#define PEL_COUNT_TILES_COVERED 0  // with something that scatters
+#define PEL_COUNT_TILES_COVERED 0  // tiles with pixels that scatter
 #define PEL_COUNT_TILES_TAPPED 1
 #define PEL_COUNT_PIXELS_COVERED 2
 #define PEL_COUNT_PIXELS_TAPPED 3

@@ -8,14 +8,14 @@
 #include "shared/scalars.h"
 
 #define PEL_ENVIRONMENT_SIZE 64  // texels along an edge of level 0; a power of two
-#define PEL_ENVIRONMENT_LEAST 8  // and of the widest level, and of irradiance
+#define PEL_ENVIRONMENT_LEAST 8  // the same of the widest level and of irradiance
 #define PEL_ENVIRONMENT_LEVELS 6
 #define PEL_ENVIRONMENT_MIPS 7  // of the texels that lobes are summed from: 64 to 1
-// Behind the levels: by model (PEL_MODEL_...), the share of even light that a lobe reflects, as a multiple of
-// f0 and a rest: rows by the root of the roughness, columns by the view's cosine, both from 0 to 1.
+// After the levels, per model (PEL_MODEL_...): the share of uniform light that a lobe reflects, as scale and
+// bias of f0. Rows: the root of the roughness; columns: the view's cosine, both from 0 to 1.
 #define PEL_SHARE_NODES 32
 #define PEL_SHARE_FLOATS (2 * PEL_SHARE_NODES * PEL_SHARE_NODES)  // of a model
-#define PEL_ENVIRONMENT_LARGEST 1e10f  // radiance above it counts as this; NaN, Inf and negative as 0
+#define PEL_ENVIRONMENT_LARGEST 1e10f  // upper bound of radiance; NaN, Inf and negative values count as 0
 
 static inline PelUint32 environmentSize(PelUint32 level) {
     const PelUint32 size = PEL_ENVIRONMENT_SIZE >> level;

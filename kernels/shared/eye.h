@@ -4,7 +4,7 @@
 #pragma once
 #include "shared/scalars.h"
 
-// The surfaces that light meets.
+// The surfaces of an eye.
 typedef struct PelEyeShape {
     float sclera2;   // square of the sclera's radius
     float cornea;    // radius of curvature at the apex
@@ -34,7 +34,7 @@ typedef struct PelShadeEye {
     float pupil;           // mm
     float pupilBase;       // the iris' share is pupilBase + (r - pupil) pupilPerWidth, clamped
     float pupilPerWidth;
-    float textureBase;  // place in the texture: textureBase + textureScale r; 0 centre, 1 rim
+    float textureBase;  // radius in the texture: textureBase + textureScale r; 0 centre, 1 rim
     float textureScale;
     PelUint32 textureSize;  // texels along a side
     PelUint32 textureLevels;
@@ -48,7 +48,7 @@ typedef struct PelShadeEye {
     PelUint32 causticHeight;  // of one slice
     PelUint32 causticDepth;
     float slicesPerRadian;
-    float ambient[PEL_AMBIENT_NODES];  // light on the iris against that of the open air
+    float ambient[PEL_AMBIENT_NODES];  // ambient light on the iris over that outside the eye
 } PelShadeEye;
 
 // How a table of caustics is integrated: the half of the limbus' disc where y is above 0, in rows of cells.
@@ -63,10 +63,10 @@ typedef struct PelEyeLutGrid {
     PelUint32 firstSlice;  // of a launch
 } PelEyeLutGrid;
 
-#define PEL_FIBRE_TEXELS 256  // along a side of an iris that is drawn
+#define PEL_FIBRE_TEXELS 256  // along a side of a procedural iris
 
-// An iris' texels: the square itself, and below it, side by side, smaller and smaller ones, each with a
-// copied column and row. Level l has size >> l texels a side; all levels have rows of the same length.
+// An iris' texels: level 0, and below it the smaller levels side by side, each with a copied column and row.
+// Level l has size >> l texels a side; all levels have rows of the same length.
 #define PEL_IRIS_LEVELS 12
 static inline PelUint32 irisLevels(PelUint32 size) {
     PelUint32 levels = 1;

@@ -1,11 +1,11 @@
-// What a variant of the shading kernel is made of, beside the formats of images (shared/formats.h): feature
-// bits (PEL_FEATURES), a compile-time number. Numbers of the scene are arguments.
+// The features of a variant of the shading kernel: bits of PEL_FEATURES, a compile-time constant, as are the
+// formats of images (shared/formats.h). Values of the scene are arguments.
 #pragma once
 
 // clang-format off
-// PelFeature of the public header, each once: X(name, bit, kernel, material, key). kernel: 1 makes another
-// variant of the shading kernel; the passes before it do not. material: 1 is asked for by materials; the
-// others hold for all of a frame.
+// PelFeature of the public header, each once: X(name, bit, kernel, material, key). kernel: 1 if the feature
+// makes another variant of the shading kernel, 0 if it is a pass before it. material: 1 if materials request
+// it, 0 if it applies to the whole frame.
 #define PEL_EACH_FEATURE(X)                          \
     X(DIRECT_SCATTER, 0, 1, 1, "direct_scatter")     \
     X(SHADOW, 1, 1, 0, "shadow")                     \
@@ -38,15 +38,15 @@
 #define PEL_FEATURE_MATERIAL_(name, bit, kernel, material, key) | material << bit
 enum {
     PEL_EACH_FEATURE(PEL_FEATURE_BIT_)
-    // How the kernel goes about it.
+    // Options of the kernel.
     PEL_BIT_POSITIONAL = 0x10000,   // a point or spot light
     PEL_BIT_ACCUMULATE = 0x20000,   // add to the output
     PEL_BIT_NO_SKIPPING = 0x40000,  // evaluate every term of every pixel
-    // count pixels per feature; those of a material, and invalid ones, are counted without it
+    // count pixels per feature; shaded and invalid pixels are always counted
     PEL_BIT_COUNT = 0x80000,
-    PEL_BIT_CUBE_ALONE = 0x100000,  // ambient light has no other part than the cube map
-    PEL_BIT_ROTATE_TAPS = 0x200000, // thickness taps are turned from pixel to pixel
-    PEL_BIT_TAP_CELLS = 0x400000,   // some thickness comes from cells of taps
+    PEL_BIT_CUBE_ALONE = 0x100000,  // the cube map is the only ambient light
+    PEL_BIT_ROTATE_TAPS = 0x200000, // the disk of thickness taps is rotated per pixel
+    PEL_BIT_TAP_CELLS = 0x400000,   // some thickness is read from an occluder-depth grid
     // Sets of features.
     PEL_BITS_OF_KERNEL = 0 PEL_EACH_FEATURE(PEL_FEATURE_KERNEL_),
     PEL_BITS_OF_MATERIALS = 0 PEL_EACH_FEATURE(PEL_FEATURE_MATERIAL_)

@@ -3,8 +3,8 @@
 #pragma once
 
 // clang-format off
-// X(name, number, kind, components, componentBytes, pixelBytes); 0 is an image that is not there.
-// componentBytes: what a component is read by; packed ones are read as one word.
+// X(name, number, kind, components, componentBytes, pixelBytes); 0: no image. componentBytes: bytes per read
+// of a component; packed formats are read as one word.
 #define PEL_EACH_FORMAT(X)                       \
     X(R32F, 1, FLOAT, 1, 4, 4)                   \
     X(RG32F, 2, FLOAT, 2, 4, 8)                  \

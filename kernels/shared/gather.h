@@ -10,7 +10,7 @@
     8  // length of a pixel across the view along x and y, scale of the profile's radius, weight
 #define PEL_GATHER_FLOATS 12
 
-// Of tiles.
+// Flags of a tile.
 #define PEL_TILE_GATHERS 1  // some pixel gathers
 #define PEL_TILE_LIT 2      // some pixel has light that others may gather
 

@@ -16,9 +16,9 @@
 //   role        SHADE: read by shade.cl; PASS: read only by passes before it; OUTPUT: written; TARGET:
 //               written or added to
 //   content     the kind of pixels, which decides the formats that are accepted
-//   components  the number of channel names in a scene file; of a TARGET, of what it holds before
-//   key, words  the name in scene files and in messages
-//   bits        PEL_BIT_... of the features that read the image in shade.cl. Depth is read where there are no
+//   components the number of channel names in a scene file; of a TARGET, those of its previous content key,
+//   words the name in scene files and in messages bits PEL_BIT_... of the features that read the image in
+//   shade.cl. Depth is read where there are no
 //               positions, and the geometric normal also in place of a missing blurred normal.
 #define PEL_EACH_IMAGE(X) \
     X(RADIANCE, 0, TARGET, COLOR_OUTPUT, 3, "radiance", "radiance", PEL_BITS_ALL_) \

@@ -4,9 +4,9 @@
 #include "shared/diffusion.h"
 
 // The lit surface as a pyramid of blocks of 2^l x 2^l texels. A block of level 1 or coarser holds two
-// clusters, since a map that shows a near surface beside a far one has none in between. A level is rows of
-// planes, as those of the screen: row y of plane p begins at offset + ((y + PEL_PYRAMID_ROWS) planes + p)
-// stride + PEL_PYRAMID_GUARD. The other planes of blocks without flux are undefined.
+// clusters: where a map shows a near surface beside a far one, there is no surface in between. A level is
+// rows of planes, as those of the screen: row y of plane p begins at offset + ((y + PEL_PYRAMID_ROWS) planes
+// + p) stride + PEL_PYRAMID_GUARD. The other planes of blocks without flux are undefined.
 #define PEL_LIGHT_LEVELS 12
 #define PEL_LIGHT_MAPS 24   // of all lights of a frame: cascades and faces of cubes one by one
 #define PEL_LIGHT_FLUX 0    // length^2: irradiance dA, over the light's colour
@@ -19,8 +19,8 @@
 #define PEL_LIGHT_PLANES(hidden) ((hidden) ? 5u : 6u)
 
 // A byte per cell of this many texels along a side: the last bits of the number of the last frame in which
-// some of them had flux, even and odd frames apart. Where none has, and none had in the frame before, the
-// pyramid up to the level of the cell holds zeros, and nothing is done.
+// some of them had flux, even and odd frames apart. A cell without flux in this frame and the one before is
+// skipped: the pyramid already holds zeros there, up to the level of the cell.
 #define PEL_LIGHT_CELL 16
 
 #define PEL_SEEN_OTHER 255u  // mark of a texel: a camera-visible object that does not scatter
@@ -44,30 +44,29 @@ typedef struct PelLightMap {
     float texel;        // length of a texel over the homogeneous coordinate there
     float reach;        // length: of the widest profile, for a factor of the radius of 1
     float size[2];      // texels across
-    float middle;       // of a texel's depth, from its edge: 0.5 where each of the image's is one
-    PelUint32 step;     // the image's texels along a side of one here; the depth is that of one of them
+    float middle;       // where in a texel its depth is sampled, from its edge: 0.5 if step is 1
+    PelUint32 step;     // image texels along a side of a texel here, which has the depth of one of them
     PelUint32 width;    // the image's texels; of a cube's face
     PelUint32 height;
-    PelUint32 finer;     // maps before this one that take the surface which they hold
+    PelUint32 finer;     // number of finer cascades before this map; surface inside them is theirs
     PelUint32 firstRow;  // of the image: a cube's face
-    PelUint32 seen;      // where its texels begin in the buffer of what the camera sees
-    PelUint32 cells;     // where its cells begin in the buffers of what has flux, row by row
+    PelUint32 seen;      // where its texels begin in the buffer of camera-visible marks
+    PelUint32 cells;     // where its cells begin in the buffers of flux marks, row by row
     PelUint32 levels;
     PelUint32 light;   // maps of one light follow one another
-    PelUint32 buffer;  // which argument of the kernels holds its image
+    PelUint32 buffer;  // number of the kernel argument with its image
     PelShadeImage map;
     PelPyramidLevel level[PEL_LIGHT_LEVELS];
 } PelLightMap;
 
 // Counters, after those of PelDiffusionFrame.
-#define PEL_COUNT_LIGHT_PIXELS (PEL_DIFFUSION_COUNTERS + 0)  // that took texels of a map into account
+#define PEL_COUNT_LIGHT_PIXELS (PEL_DIFFUSION_COUNTERS + 0)  // that summed texels of a map
 #define PEL_COUNT_LIGHT_TEXELS (PEL_DIFFUSION_COUNTERS + 1)  // blocks of texels that were read
 #define PEL_COUNT_LIGHT_TILES (PEL_DIFFUSION_COUNTERS + 2)
 #define PEL_LIGHT_COUNTERS (PEL_DIFFUSION_COUNTERS + 3)
 
-// After the counters, for each map the texels that the profiles reach from what scatters on the screen: the
-// map's width less the first column, the last column plus 1, the same of rows; 0: none. The others have no
-// flux.
+// After the counters, for each map the texels within reach of scattering pixels, as a rectangle: the map's
+// width less the first column, the last column plus 1, the same of rows; 0: none. Other texels have no flux.
 #define PEL_LIGHT_REGION(map) (PEL_LIGHT_COUNTERS + 4 * (map))
 #define PEL_LIGHT_WORDS PEL_LIGHT_REGION(PEL_LIGHT_MAPS)
 

@@ -1,6 +1,5 @@
-// What the LUT integrators share with the host: the nodes of the curvature rows and the parameters of both
-// kernels. All lengths are in units of the LUT's diffusion radius, so that no radius leaves the range of
-// float.
+// Data that the LUT integrators share with the host: nodes of the curvature rows, parameters of both kernels.
+// All lengths are in units of the LUT's diffusion radius, so that no radius leaves the range of float.
 #pragma once
 
 // One Gaussian of a profile, as line spread weight * exp(-s^2 / 2 sigma^2) / (sigma sqrt(2 pi)); in a list,
@@ -34,8 +33,8 @@ typedef struct LutColumn {
     int node;
 } LutColumn;
 
-// One launch makes a stack of tables of one size: what differs between them. The Gaussians of all follow the
-// last of these in the same buffer.
+// One table of a stack, which is several tables of one size made by one launch. The Gaussians of all tables
+// follow the last of these in the same buffer.
 typedef struct StackedLut {
     unsigned int first;  // of its Gaussians
     unsigned int gaussians;
@@ -46,7 +45,7 @@ typedef struct StackedLut {
     float total[3];    // of a shadow table: of the cut profile, per channel
 } StackedLut;
 
-// What the tables of a stack share.
+// The parameters that all tables of a stack share.
 typedef struct StackParams {
     unsigned int width;
     unsigned int height;
@@ -83,7 +82,7 @@ typedef struct TableWeight {
     float slope;
 } TableWeight;
 
-// What an interval of the mesh does with the density on one side of the shaded point.
+// How an interval of the mesh weights the density on one side of the shaded point.
 typedef struct TableSide {
     float distance;  // of the node at the interval's smaller angle, in radii
     // 1: the moment is computed from the density at both ends, which are so near to one another that
@@ -114,7 +113,7 @@ typedef struct TabulatedCurvatureLutParams {
     unsigned int normalised;  // rows are divided by their total
 } TabulatedCurvatureLutParams;
 
-// Which points represent the profile on the sphere of a row.
+// The points that represent the profile on the sphere of a row.
 typedef struct TablePoints {
     unsigned int first;
     unsigned int count;
@@ -136,13 +135,13 @@ typedef struct TabulatedShadowLutParams {
 #define PEL_WIDE_RAMP 0.25f
 #define PEL_RAMP_PARTS 12
 #define PEL_RAMP_TOGETHER 4  // nodes that are made at once
-#define PEL_RAMP_SHARP 3     // nodes beyond a half width that are made by quadrature still
+#define PEL_RAMP_SHARP 3     // nodes beyond a half width that still take quadrature
 #define PEL_RAMP_CELLS 12    // cells of the list of tails in a part of the quadrature
 #define PEL_RAMP_SAMPLES(nodes) ((nodes) + 1 + 2 * PEL_RAMP_PARTS + PEL_RAMP_TOGETHER)
 #define PEL_RAMP_RECORD(nodes) (2 * ((nodes) + 1))
 
-// What a sample of a function and its slope, per interval, add to its mean under the ramp, and to that of its
-// slope, per half width.
+// Weights of a sample (value, and slope per interval) in the mean of the function under the ramp, and in the
+// mean of its slope per half width.
 typedef struct RampWeight {
     float value;
     float slope;

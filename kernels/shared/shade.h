@@ -42,10 +42,10 @@ typedef struct PelShadeFrame {
     PelUint32 width;  // pixels
     PelUint32 height;
     PelUint32 tilesX;  // tiles in a row
-    // that this launch takes, from firstTile on; all of them unless the frame is shaded in bands
+    // tiles of this launch, from firstTile on; all of them unless the frame is shaded in bands
     PelUint32 tiles;
     PelUint32 firstTile;
-    PelUint32 scratchRow;  // pixel row at which the images that passes make begin
+    PelUint32 scratchRow;  // first pixel row of the scratch images
     PelUint32 listTiles;   // room in each list of tiles
     PelUint32 lights;
     PelUint32 materialMask[PEL_MATERIALS / 32];  // bit i: id i has a material
@@ -86,7 +86,7 @@ typedef struct PelShadeMaterial {
     float f0;
     float diffusionRadius;    // length
     float shadowFilterWidth;  // length; 0: a sharp shadow
-    float shadowBias;         // length; this and the next two for lights that leave theirs to the profile
+    float shadowBias;         // length; this and the next two apply to lights without their own
     float shadowSoftness;     // of the filter's width
     float shadowConeSlope;
     PelUint32 hasNormalMap;
@@ -99,8 +99,8 @@ typedef struct PelShadeMaterial {
     float transmissionShare;
     float gain[3];         // length: mean free path for lib/shading/curvature_gain.clh; all 0: none
     PelUint32 needs;       // PEL_BIT_...: features of this material
-    PelUint32 scattering;  // PelScattering, what auto came to in its place
-    PelUint32 named;       // the same as the caller named it
+    PelUint32 scattering;  // PelScattering; auto is replaced by the chosen method
+    PelUint32 named;       // the method that the caller set, auto included
     float albedoAfter;     // power of albedo that scattered irradiance is multiplied by
     float through[3];      // share of the light on a sheet's other side
     PelUint32 eye;         // 1 + which eye of shared/eye.h; 0: none
@@ -115,12 +115,12 @@ typedef struct PelShadeMaterial {
 #define PEL_CELLS_PER_RADIUS 4
 #define PEL_NODE_TAPS 32        // for every material, since they cost next to nothing
 #define PEL_SAMPLES_PER_CELL 2  // samples of the map from node to node
-// Samples along an axis with so many nodes: a radius more on either side.
+// Samples along an axis with this many nodes, and a margin of one radius on either side.
 #define PEL_TAP_SAMPLES(nodes) \
     (((nodes)-1) * PEL_SAMPLES_PER_CELL + 1 + 2 * PEL_CELLS_PER_RADIUS * PEL_SAMPLES_PER_CELL)
 
-// What the taps of one disk read in one map, at the nodes of a grid (lib/shading/tap_cells.clh). Nodes begin
-// a radius before the map and end a radius behind it.
+// Depths under the taps of one disk in one map, at the nodes of a grid (lib/shading/tap_cells.clh). Nodes
+// begin a radius before the map and end a radius behind it.
 typedef struct PelTapCells {
     PelUint32 columns, rows;    // nodes; 0: no cells, pixels take taps of their own
     PelUint32 offset, samples;  // floats, to the first node's lengths and to the first sample
@@ -174,7 +174,7 @@ typedef struct PelShadeLight {
 #define PEL_COUNT_SHADOW_TEXELS 6
 #define PEL_COUNT_IRRADIANCE 7
 #define PEL_COUNT_SCATTERING 8                                  // and on: one for each PelScattering
-#define PEL_COUNT_CHOICE (PEL_COUNT_SCATTERING + PEL_SCATTERS)  // of materials of auto, by what it came to
+#define PEL_COUNT_CHOICE (PEL_COUNT_SCATTERING + PEL_SCATTERS)  // of materials with auto, by chosen method
 #define PEL_COUNT_EYE (PEL_COUNT_CHOICE + PEL_SCATTERS)
 #define PEL_COUNT_IRIS (PEL_COUNT_EYE + 1)
 #define PEL_COUNT_CAUSTIC (PEL_COUNT_EYE + 2)

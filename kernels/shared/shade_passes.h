@@ -12,12 +12,12 @@
 #define PEL_PLANE_GUARD (PEL_BLUR_TAPS * PEL_BLUR_STEP_MAX + 16)
 #define PEL_MAP_LEVELS 16  // of a normal map
 
-#define PEL_BOUNDS_BLOCK 8  // texels along a side of the blocks whose least and greatest depth are known
+#define PEL_BOUNDS_BLOCK 8  // texels along a side of the blocks whose min and max depth are stored
 
 // Which pixels a pass computes (lib/shading/between.clh).
 #define PEL_PIXELS_ALL 0
 #define PEL_PIXELS_SECOND 1   // of every second column and row, from the first on
-#define PEL_PIXELS_BETWEEN 2  // the others, by interpolation where that will do
+#define PEL_PIXELS_BETWEEN 2  // the others, interpolated where that is accurate enough
 #define PEL_BETWEEN_ROWS 2    // of tiles whose values are read before and after a row of tiles
 
 // One light's wide shadow, made from its shadow map or from one of its cascades. For a cube, worldToShadow
@@ -38,12 +38,12 @@ typedef struct PelWideShadow {
     float perExponent;   // 1 / that
     float minDeviation;  // moments: length
     float bleeding;      // moments: share of light that counts as none
-    float bias;          // length; this and the next two below 0: as each material says
+    float bias;          // length; this and the next two: negative values mean the material's own
     float softness;      // of the filter's width
     float coneSlope;     // length per length
     float maxTexels;     // across the filter
-    PelUint32 light;     // its number
-    PelUint32 cascades;  // how many maps there are, from this on; 0: one that is no cascade
+    PelUint32 light;     // number of the light
+    PelUint32 cascades;  // number of maps, from this one on; 0: a single map
     PelUint32 bounds;    // where the bounds of the map's blocks begin (lib/shading/shadow_bounds.clh)
     PelShadeImage map;
     PelShadeImage out;  // R32F

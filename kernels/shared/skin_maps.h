@@ -7,7 +7,7 @@
 #define PEL_SKIN_IDS 256
 
 typedef struct PelSkinMapsMaterial {
-    float albedo[3];  // of a material that is no skin, without an albedo image
+    float albedo[3];  // of other materials than skin, without an albedo image
     PelUint32 table;  // 1 + its number; 0: no skin
     float own[3];     // melanin, blood, oxygenation of the profile
     PelUint32 set;    // 0: no material has the id

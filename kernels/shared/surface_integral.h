@@ -8,10 +8,10 @@
 
 // A set of triangles. Nodes stand in the order of a walk from the root, each before its children.
 typedef struct SurfaceNode {
-    float centre[3];     // length; of light, where first moments vanish
-    float radius;        // length; all of it lies within, round the centre
+    float centre[3];     // length; centroid of the light
+    float radius;        // length; the sphere around the centre holds the set
     float weight[3];     // integral of E dA, length^2
-    float accept2;       // length^2; from this squared distance on the centre stands for the set
+    float accept2;       // length^2; from this squared distance on, the set counts as a point
     PelUint32 skip;      // node that follows when the children are left out
     PelUint32 triangle;  // of a leaf; PEL_SURFACE_NONE: there are children
     PelUint32 pad[2];

@@ -17,9 +17,9 @@ typedef struct PelTextureFrame {
 
 // One Gaussian of the chain.
 typedef struct PelTextureBlur {
-    float variance;   // length^2, beyond the one before
-    float before;     // length^2, of that one
-    float weight[3];  // of what it leaves, per channel
+    float variance;   // length^2: increase over the previous Gaussian's
+    float before;     // length^2: variance of the previous Gaussian
+    float weight[3];  // of its result, per channel
     PelUint32 down;   // 0: along u, 1: along v, and add
     PelUint32 first;  // 1: nothing was added before
 } PelTextureBlur;

@@ -28,8 +28,8 @@ cl_device_id deviceAt(size_t index) {
 }
 
 // A binary of PoCL holds the program's intermediate code as a file to be unpacked. From it PoCL would compile
-// each kernel once more, for the size of its launch, and read it in each process. Under another name it is
-// not found, and what is compiled runs.
+// each kernel once more, for the size of its launch, and read it in each process. Under another name PoCL
+// does not find it, and runs the compiled kernels.
 void hideIntermediateCode(std::string& binary) {
     const std::string name = "/program.bc";
     if (const size_t at = binary.find(name); at != std::string::npos)
@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
     const std::string folder = pel::system::makeTemporaryFolder(
         std::filesystem::temp_directory_path(error).string(), "pellucid-build-");
     if (folder.empty()) return 1;
-    // Apart from where the intermediate code of other builds may be.
+    // Separate from folders where other builds may have left intermediate code.
     pel::system::setVariable("POCL_CACHE_DIR", folder.c_str());
     const int status = serve(replies, argc, argv);
     std::filesystem::remove_all(folder, error);

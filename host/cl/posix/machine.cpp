@@ -50,7 +50,7 @@ uint64_t leftInMachine() {
     return memory == unlimited ? unlimited : memory + field(path, "SwapFree:", 0);
 }
 
-// The least of the control groups that this process is in. Files in the page cache can be dropped.
+// The smallest free memory among the control groups of this process. Files in the page cache can be dropped.
 uint64_t leftInGroups() {
     uint64_t left = unlimited;
     std::ifstream file("/proc/self/cgroup");

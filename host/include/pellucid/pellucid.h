@@ -9,8 +9,8 @@
  * - Matrices are 16 floats in row-major order and multiply column vectors: clip = M * (x, y, z, 1).
  * - Every structure that may grow starts with structSize; the pel*Defaults() functions fill it and every
  *   other field.
- * - Handles are counted: each Create or Retain is paired with a Release. Objects keep what they use alive.
- *   The same handle is never returned twice: NULL, a released, a mistaken or an invented handle is
+ * - Handles are reference-counted: each Create or Retain is paired with a Release. Objects keep what they use
+ *   alive. Handle values are never reused: NULL and released or invalid handles give
  *   PEL_ERROR_INVALID_ARGUMENT. Retain and Release return nothing; pelGetErrorMessage and the callback report
  *   their errors.
  * - After fork, calls of the child return PEL_ERROR_INVALID_STATE if the parent had used OpenCL before.
@@ -77,7 +77,7 @@ typedef void (*PelLogCallback)(void* user, PelLogLevel level, const char* object
 PEL_API void pelSetLogCallback(PelLogCallback callback, void* user);
 
 /* Names an object, such as "hero's shader", for the log; error messages of its calls begin with the name. Any
- * handle will do. NULL or "" takes the name away. */
+ * handle will do. NULL or "" removes the name. */
 PEL_API PelError pelSetName(void* object, const char* name);
 
 /* The library's version as one number: major * 10000 + minor * 100 + patch. */
@@ -124,22 +124,22 @@ PEL_API PelError pelDeviceEnumerate(uint32_t index, PelDeviceInfo* info);
 /* Makes a device. `selector`: a number in the list; "gpu", "cpu" or "accelerator"; or a part of the name or
  * platform, letter case ignored. NULL or "": the environment variable PELLUCID_DEVICE, and without it the
  * best GPU, else the best CPU. Errors: PEL_ERROR_NO_DEVICE (the message lists the devices found, or names the
- * package that brings one). */
+ * package that provides one). */
 PEL_API PelError pelDeviceCreate(const char* selector, PelDevice* device);
 
 /* A host's own device memory: returns a cl_mem buffer of the context, of at least `bytes`, or NULL if there
- * is none. The library takes over its reference: clSetMemObjectDestructorCallback tells the host of its end.
+ * is none. The library takes over the reference; clSetMemObjectDestructorCallback reports its release.
  */
 typedef void* (*PelAllocateCallback)(void* user, void* clContext, size_t bytes);
 
 typedef struct PelDeviceDesc {
     uint32_t structSize;
     /* 1: kernels are timed by OpenCL's profiling, which the milliseconds of PelDeviceStats, PelShaderStats
-     * and PelPassStats need; 0: not. Default 2: as the environment variable PELLUCID_PROFILING says, and 1
+     * and PelPassStats need; 0: not. Default 2: the environment variable PELLUCID_PROFILING decides; 1
      * without it */
     uint32_t profiling;
     const char* selector; /* as of pelDeviceCreate; NULL */
-    /* all device memory comes from here, on the calling thread, and on others of PelWarmUp.threads and
+    /* allocates all device memory; called on the calling thread, and on threads of PelWarmUp.threads and
      * PelShaderOptions.buildInBackground; NULL: OpenCL's */
     PelAllocateCallback allocate;
     void* allocateUser;
@@ -218,11 +218,11 @@ PEL_API PelError pelBufferCreate(PelDevice device, size_t bytes, const void* ini
 PEL_API PelError pelBufferCreateFromHost(PelDevice device, void* memory, size_t bytes, PelBuffer* buffer);
 
 /* The caller's cl_mem, of the device's context (retained): a buffer; or a 2D image, such as a texture that is
- * shared with a graphics API. Of an image the library has a copy: rows of texels without gaps, in the image's
- * own format, zeros at first. Each execution of a PelShader or a PelScatter copies the textures of its images
- * there before its work, and those that it writes back after it, whole; other calls see what the last of them
- * left. So the host acquires shared textures before an execution and releases them after it. Errors:
- * PEL_ERROR_INVALID_ARGUMENT for other kinds of images. */
+ * shared with a graphics API. Of an image the library keeps a copy: rows of texels without gaps, in the
+ * image's own format, initially zeros. Each execution of a PelShader or a PelScatter first copies its
+ * textures there, and afterwards copies textures that it wrote back, as a whole; other calls see the copy as
+ * the last execution left it. So the host acquires shared textures before an execution and releases them
+ * after it. Errors: PEL_ERROR_INVALID_ARGUMENT for other kinds of images. */
 PEL_API PelError pelBufferCreateFromCl(PelDevice device, void* clMem, PelBuffer* buffer);
 
 PEL_API void pelBufferRetain(PelBuffer buffer);
@@ -286,7 +286,7 @@ typedef struct PelImageDesc {
 
 typedef struct PelMeshTopologyObject* PelMeshTopology;
 
-/* What was found in a mesh, and how it was handled. */
+/* Irregularities of a mesh, and how they are handled. */
 typedef struct PelMeshReport {
     uint32_t structSize;
     uint32_t vertices;
@@ -301,8 +301,8 @@ typedef struct PelMeshReport {
     /* NaN or Inf: edges to them are skipped, their own curvature is 0; set by curvature */
     uint32_t nonFinitePositions;
     uint32_t nonFiniteNormals; /* NaN, Inf or zero, handled the same way; set by curvature */
-    /* whose two triangles run along them in the same direction: one of the two faces the other side, so
-     * normals made from them cancel out (pelMeshOrient) */
+    /* edges whose two triangles run along them in the same direction: one of the triangles is reversed, so
+     * that normals made from both cancel out (pelMeshOrient) */
     uint32_t inconsistentEdges;
     /* unique positions with too few others around them for a cubic, so that the quadric estimator fitted
      * fewer terms there: estimates may be far off; set by curvature */
@@ -339,10 +339,10 @@ PEL_API PelError pelMeshTopologySave(PelMeshTopology topology, void* destination
 PEL_API PelError pelMeshTopologyLoad(PelDevice device, const void* bytes, size_t size,
                                      PelMeshTopology* topology, PelMeshReport* report);
 
-/* What pelMeshOrient found and did. A part: triangles connected by edges that belong to two of them. */
+/* The result of pelMeshOrient. A part: triangles connected by edges that belong to two of them. */
 typedef struct PelMeshOrientation {
     uint32_t structSize;
-    uint32_t trianglesTurned; /* whose second and third index were exchanged */
+    uint32_t trianglesTurned; /* triangles whose second and third index were exchanged */
     uint32_t parts;
     uint32_t partsTurned;       /* with a triangle that was reversed */
     uint32_t inconsistentEdges; /* that remain: of parts with one side only, such as a Moebius strip */
@@ -377,8 +377,9 @@ typedef enum PelCurvatureEstimator {
     PEL_CURVATURE_QUADRIC = 2
 } PelCurvatureEstimator;
 
-/* What is written for a vertex. Curvatures are positive where the surface curves away from its normal (a
- * sphere with outward normals has two positive ones); k1 >= k2. Edge has the first quantity only. */
+/* The quantity that is written for a vertex. Curvatures are positive where the surface curves away from its
+ * normal (a sphere with outward normals has two positive ones); k1 >= k2. Edge has the first quantity only.
+ * */
 typedef enum PelCurvatureQuantity {
     /* |k1 + k2| / 2, 1/radius of the best sphere; edge: its own estimate. For LUTs */
     PEL_QUANTITY_ABSOLUTE = 0,
@@ -396,15 +397,15 @@ typedef enum PelCurvatureQuantity {
     PEL_QUANTITY_FRAME = 8
 } PelCurvatureQuantity;
 
-/* How a smoothing to a radius weighs the neighbours of a vertex. Either way a mesh of twice the triangles
- * gives the same answer. */
+/* How a smoothing to a radius weights the neighbours of a vertex. Neither result depends on the density of
+ * the mesh. */
 typedef enum PelSmoothingWeights {
     /* cotangents over Voronoi areas [Pinkall & Polthier 1993]: spreads equally in all directions, whatever
      * the triangles look like. Default */
     PEL_SMOOTHING_COTANGENT = 0,
-    /* of the cotangents those that are not negative, lessened so that a radius stays the same: no value
-     * leaves the range of its neighbours, and the sum of value times area (a third of the triangles) is
-     * kept; on stretched irregular cells less even than cotangents */
+    /* only cotangents that are not negative, scaled down so that the radius stays the same: no value leaves
+     * the range of its neighbours, and the sum of value times area (a third of the triangles) is kept; less
+     * uniform than all cotangents on stretched irregular cells */
     PEL_SMOOTHING_AREA = 1
 } PelSmoothingWeights;
 
@@ -431,8 +432,8 @@ typedef struct PelCurvatureParams {
 /* Curvature at each vertex. `positions`, `normals`: xyz float32 per vertex, as many as the topology has;
  * normals are of unit length; NULL: they are made from the positions, as by pelMeshNormals. `curvature`: one
  * float32 per vertex (more for some quantities), 1/length, finite; 0 where nothing could be measured. Signed
- * values are smoothed, then the quantity is taken. With a `report` the call blocks, and so does a topology's
- * first with PEL_CURVATURE_QUADRIC, which lists its two-rings. Same input, same bits. Sources: FaceWorks 1.0;
+ * values are smoothed, then the quantity is taken. The call blocks with a `report`, and the first time that a
+ * topology lists its two-rings for PEL_CURVATURE_QUADRIC. Same input, same bits. Sources: FaceWorks 1.0;
  * Rusinkiewicz, Estimating Curvatures, 3DPVT 2004. */
 PEL_API PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* params,
                                   const PelVertexView* positions, const PelVertexView* normals,
@@ -440,8 +441,8 @@ PEL_API PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvaturePa
                                   const PelSubmit* submit);
 
 /* Unit normals from positions: the mean of the normals of a vertex's triangles, weighted by their angles
- * there; a welded vertex has one. (0, 0, 0) where no triangle has a plane. `normals`: xyz float32 per vertex,
- * written. Same input, same bits. Source: Thuermer & Wuethrich 1998. */
+ * there; a welded vertex has one. (0, 0, 0) where all triangles are degenerate. `normals`: xyz float32 per
+ * vertex, written. Same input, same bits. Source: Thuermer & Wuethrich 1998. */
 PEL_API PelError pelMeshNormals(PelMeshTopology topology, const PelVertexView* positions,
                                 const PelVertexView* normals, const PelSubmit* submit);
 
@@ -461,9 +462,8 @@ typedef struct PelVertexRange {
     uint32_t count;
 } PelVertexRange;
 
-/* Curvature, by `params`, of a mesh of which a part moves from update to update. The device keeps between
- * updates, per vertex: 4 to 32 bytes of estimates, 8 to 16 of smoothed values, 12 of normals if it makes
- * them. */
+/* Curvature, by `params`, of a mesh that moves in part between updates. The device keeps between updates, per
+ * vertex: 4 to 32 bytes of estimates, 8 to 16 of smoothed values, 12 of normals if it makes them. */
 PEL_API PelError pelLiveMeshCreate(PelMeshTopology topology, const PelCurvatureParams* params,
                                    PelLiveMesh* live);
 PEL_API void pelLiveMeshRetain(PelLiveMesh live);
@@ -471,18 +471,18 @@ PEL_API void pelLiveMeshRelease(PelLiveMesh live);
 
 /* Gives the same bits as pelMeshCurvature, with only the work that the change needs. `changed`: numChanged
  * ranges of vertices whose position or normal differs from the previous update, in any order; NULL: all. Only
- * rows that they reach are measured, smoothed and written; ranges without vertices cost nothing: no launch,
- * no byte. The first update measures everything, and so does one with normals after one without, or the
- * reverse. An update with another `curvature` writes all of it. One asynchronous submission; the first with a
- * smoothing radius measures the mesh, which blocks, unless params.smoothingStages is given; so do a
- * topology's first with PEL_CURVATURE_QUADRIC, and the first with `changed`, which reads the neighbour lists
- * back. Errors: PEL_ERROR_INVALID_ARGUMENT for a range that leaves the mesh. */
+ * rows that they reach are measured, smoothed and written; empty ranges cost no launch and no byte. The first
+ * update measures everything, as does one that begins or stops to give normals. An update with another
+ * `curvature` writes all of it. One asynchronous submission. These block: the first with a smoothing radius,
+ * which measures the mesh, unless params.smoothingStages is given; a topology's first with
+ * PEL_CURVATURE_QUADRIC; and the first with `changed`, which reads the neighbour lists back. Errors:
+ * PEL_ERROR_INVALID_ARGUMENT for a range that leaves the mesh. */
 PEL_API PelError pelLiveMeshUpdate(PelLiveMesh live, const PelVertexView* positions,
                                    const PelVertexView* normals, const PelVertexView* curvature,
                                    const PelVertexRange* changed, uint32_t numChanged,
                                    const PelSubmit* submit);
 
-/* What the last update did. A row is a vertex after welding; rows are worked on eight at a time. */
+/* Statistics of the last update. A row is a vertex after welding; rows are worked on eight at a time. */
 typedef struct PelLiveMeshStats {
     uint32_t structSize;
     uint32_t rowsTotal;
@@ -508,11 +508,12 @@ typedef struct PelScreenCurvatureParams {
 } PelScreenCurvatureParams;
 
 /* Curvature per pixel for hosts without per-vertex data: |fwidth N| / |fwidth P|, whose differences never
- * cross an edge of depth or between ids. A sphere has 1/radius; a cylinder between 0 and that, by its angle
- * to the pixels. `normals`: unit, world; `positions`: world; or `depth` with params.inverseViewProjection and
- * positions NULL; `ids`: of materials or objects, 0 is background; may be NULL. `curvature`: R32F, written,
- * finite; 0 for background and for pixels whose normal or position is not finite; no neighbour uses those.
- * All images have one size. `params` may be NULL. Source: Penner, SIGGRAPH 2011. */
+ * cross an edge of depth or between ids. A sphere has 1/radius; a cylinder a value between 0 and 1/radius
+ * that depends on its angle to the pixel grid. `normals`: unit, world; `positions`: world; or `depth` with
+ * params.inverseViewProjection and positions NULL; `ids`: of materials or objects, 0 is background; may be
+ * NULL. `curvature`: R32F, written, finite; 0 for background and for pixels whose normal or position is not
+ * finite, which neighbours ignore. All images have one size. `params` may be NULL. Source: Penner, SIGGRAPH
+ * 2011. */
 PEL_API PelError pelScreenCurvature(PelDevice device, const PelScreenCurvatureParams* params,
                                     const PelImageDesc* normals, const PelImageDesc* positions,
                                     const PelImageDesc* depth, const PelImageDesc* ids,
@@ -575,8 +576,8 @@ PEL_API PelError pelProfileCreateDipole(const float absorption[3], const float r
  * exactly, including its corners. */
 PEL_API PelError pelProfileCreateTable(const float* distances, const float* values, uint32_t count,
                                        PelProfile* profile);
-/* What human skin is made of: an epidermis over a dermis without end, both of index 1.4. Ranges and defaults:
- * docs/guide/skin.md; formulas and sources: docs/mathematics.md, section 15. */
+/* The composition of human skin: an epidermis over an infinitely thick dermis, both of refractive index 1.4.
+ * Ranges and defaults: docs/guide/skin.md; formulas and sources: docs/mathematics.md, section 15. */
 typedef struct PelSkin {
     uint32_t structSize;
     float melanin;         /* share of the epidermis' volume that is melanosomes */
@@ -585,18 +586,18 @@ typedef struct PelSkin {
     float oxygenation;     /* share of the haemoglobin that carries oxygen */
     float epidermis;       /* mm, its thickness */
     float scattering;      /* 1/mm, the reduced scattering coefficient at 500 nm */
-    float scatteringPower; /* b of (wavelength / 500 nm)^-b, by which it changes */
+    float scatteringPower; /* b of its factor (wavelength / 500 nm)^-b */
     float water;           /* share of the dermis' volume */
     float carotene;        /* mg per litre of epidermis */
     float bilirubin;       /* mg per litre of dermis */
 } PelSkin;
 
-/* What follows from a PelSkin, per channel of linear sRGB under D65. */
+/* Optical properties that follow from a PelSkin, per channel of linear sRGB under D65. */
 typedef struct PelSkinInfo {
     uint32_t structSize;
-    float albedo[3];                 /* of diffuse light, without what the surface itself reflects; 0 to 1 */
-    float meanFreePath[3];           /* mm, in the dermis, weighed by the light that leaves */
-    float singleScatteringAlbedo[3]; /* of the dermis, weighed alike */
+    float albedo[3];                 /* of diffuse light, without surface reflection; 0 to 1 */
+    float meanFreePath[3];           /* mm, in the dermis, weighted by the light that leaves */
+    float singleScatteringAlbedo[3]; /* of the dermis, weighted alike */
     float meanDistance[3];           /* mm, between where light enters and leaves */
     /* greatest difference between the profile's sum of Gaussians and the computed one, as a share of the
      * channel's light, over all frequencies */
@@ -609,8 +610,7 @@ typedef struct PelSkinInfo {
  * PEL_ERROR_INVALID_ARGUMENT for a field out of range, by name. The first call of a process takes some tenths
  * of a second, later ones 0.2 ms. */
 PEL_API PelError pelSkinGetInfo(const PelSkin* skin, PelSkinInfo* info);
-/* Share of diffuse light that skin sends back at `count` wavelengths, 380 to 720 nm, without what the surface
- * reflects. */
+/* Diffuse reflectance of skin at `count` wavelengths, 380 to 720 nm, without surface reflection. */
 PEL_API PelError pelSkinReflectance(const PelSkin* skin, const float* nanometres, uint32_t count,
                                     float* reflectance);
 /* A profile in mm: up to 14 Gaussians. Radius: as for Burley's. */
@@ -622,8 +622,8 @@ PEL_API PelError pelProfileCreateSkinLayers(const PelSkin* skin, PelProfile* pro
 PEL_API PelError pelSkinAlbedo(const PelSkin* skin, const float* melanin, const float* blood, uint64_t count,
                                float* albedo, float* radius);
 /* The inverse: for `count` linear RGB albedos the melanin and blood whose albedo is nearest by CIEDE2000, and
- * that distance (NULL: not wanted). Above about 1 it can be seen: no such skin has this colour. NaN counts as
- * 0. */
+ * that distance (NULL: not wanted). A difference above about 1 is visible: no skin of this model has that
+ * colour. NaN counts as 0. */
 PEL_API PelError pelSkinFromAlbedo(const PelSkin* skin, const float* albedo, uint64_t count, float* melanin,
                                    float* blood, float* difference);
 /* A material of the library, in mm: "skin", "marble", ... Errors: PEL_ERROR_INVALID_ARGUMENT for an unknown
@@ -640,9 +640,8 @@ typedef struct PelProfileInfo {
     /* length that diffusionRadius refers to: a table for radius rho stretches the profile by rho/radius */
     float radius;
     float width[3]; /* length, standard deviation of the line spread per channel */
-    /* for PelMaterial.normalBlend: 1 - log8(widest width / width), at least 0. A channel as wide as the
-     * widest sees the blurred normal alone, one eight times narrower the shading normal alone; 1, 0.28, 0.03
-     * for skin */
+    /* for PelMaterial.normalBlend: 1 - log8(widest width / width), at least 0. The widest channel uses only
+     * the blurred normal, a channel eight times narrower only the shading normal; 1, 0.28, 0.03 for skin */
     float normalBlend[3];
     uint32_t gaussians; /* terms of the sum that represents it on the device; 0 for tabulated profiles */
     /* 1: R grows like 1/d towards 0, so that the ring forms have no finite integral (burley) */
@@ -651,7 +650,7 @@ typedef struct PelProfileInfo {
     /* length; known for burley from mean free paths and for dipole, 0 for all others */
     float meanFreePath[3];
     float reach;      /* length within which all but a thousandth of the light of each channel leaves */
-    char source[256]; /* where the numbers of a material of the library come from; "" for others */
+    char source[256]; /* of the numbers of a material of the library; "" for others */
 } PelProfileInfo;
 PEL_API PelError pelProfileGetInfo(PelProfile profile, PelProfileInfo* info);
 /* Names a profile, once, before it is used: up to 63 bytes. */
@@ -743,9 +742,9 @@ typedef struct PelSpecularLutDesc {
     uint32_t height; /* texels along the roughness m from 0 to 1; typical 512 */
 } PelSpecularLutDesc;
 
-/* The caustic of a cornea: irradiance on the iris, of a beam of irradiance 1 across itself. Lengths are in
- * any one unit: a table of an eye twice as large is the same. Refused if it takes more than a few seconds.
- * Fields of PelEye: see there. */
+/* The caustic of a cornea: irradiance on the iris under a beam with an irradiance of 1 across its direction.
+ * Lengths are in any one unit: the table does not depend on the size of the eye. Descriptions that would take
+ * more than a few seconds are refused. Fields of PelEye: see there. */
 typedef struct PelEyeLutDesc {
     uint32_t structSize;
     /* texels across the iris in the direction of the light, from the far rim to the near one; 2 to 1024; 64
@@ -793,7 +792,7 @@ PEL_API PelError pelEyeLutCreate(PelDevice device, const PelEyeLutDesc* desc, Pe
 PEL_API void pelLutRetain(PelLut lut);
 PEL_API void pelLutRelease(PelLut lut);
 
-/* Its defaults describe FaceWorks' tables: texels that a host brings are mostly those. */
+/* Its defaults describe FaceWorks' tables, since most texels that hosts bring are of these. */
 typedef struct PelLutInfo {
     uint32_t structSize;
     PelLutKind kind;
@@ -820,10 +819,10 @@ PEL_API PelError pelLutGetSize(PelLut lut, PelLutEncoding encoding, size_t* byte
 /* The texels, row-major, top row first. `destination` holds `bytes` >= pelLutGetSize. */
 PEL_API PelError pelLutRead(PelLut lut, PelLutEncoding encoding, void* destination, size_t bytes,
                             const PelSubmit* submit);
-/* Makes `count` tables and reads them, one below the other, each to the same bits as pelLutRead's: many small
- * tables several times as fast as one by one. All are of one kind, PEL_LUT_CURVATURE or PEL_LUT_SHADOW, and
- * of one size, axis and form or closedEnds. `destination` holds `bytes` >= count times width * height * 12, 6
- * or 4. Waits. All structures have the structSize of the first. */
+/* Makes `count` tables and reads them, one below the other, each with the same bits as pelLutRead gives:
+ * several times as fast for many small tables as one by one. All are of one kind, PEL_LUT_CURVATURE or
+ * PEL_LUT_SHADOW, and of one size, axis and form or closedEnds. `destination` holds `bytes` >= count times
+ * width * height * 12, 6 or 4. Waits. All structures have the structSize of the first. */
 PEL_API PelError pelLutReadStack(PelDevice device, const PelLutInfo* tables, uint32_t count,
                                  PelLutEncoding encoding, void* destination, size_t bytes);
 /* Texels of a curvature LUT whose residual D - max(u, 0) lies beyond +-1/4 in some channel:
@@ -838,7 +837,7 @@ PEL_API PelError pelLutCreateFromTexels(PelDevice device, const PelLutInfo* info
 
 typedef struct PelShaderObject* PelShader;
 
-/* The images of a G-buffer. A slot that is not set is a feature that is off. All set images have one size. */
+/* The images of a G-buffer. The feature of a slot that is not set is off. All set images have one size. */
 typedef enum PelImageSlot {
     PEL_SLOT_RADIANCE = 0, /* output, RGB or RGBA, float or half: the shaded pixels. Needed */
     PEL_SLOT_MATERIAL = 1, /* id per pixel, uint or float; 0 is background. Not set: all are material 1 */
@@ -850,9 +849,9 @@ typedef enum PelImageSlot {
     PEL_SLOT_CURVATURE = 7,         /* 1/length. With a curvature LUT: direct scattering */
     PEL_SLOT_ALBEDO = 8,            /* RGB. Not set: PelMaterial.albedo */
     PEL_SLOT_AMBIENT_OCCLUSION = 9, /* 0 to 1, multiplies the ambient term */
-    /* length along the inward normal, instead of shadow map taps. Irradiance that is made here loses what
-     * leaves on the far side of so thin a body, where the profile's mean free path is known; 0 or less, NaN:
-     * unknown */
+    /* length along the inward normal, instead of shadow map taps. The shader's own irradiance is reduced by
+     * the light that leaves a thin body on its far side, if the profile's mean free path is known; 0 or less,
+     * NaN: unknown */
     PEL_SLOT_THICKNESS = 10,
     PEL_SLOT_ROUGHNESS = 11, /* multiplies PelMaterial.roughness */
     PEL_SLOT_SPECULAR = 12,  /* multiplies PelMaterial.specular */
@@ -874,33 +873,33 @@ typedef enum PelImageSlot {
      * materials that do not scatter by tables (PelMaterial.scattering); not set: made from lights,
      * PEL_LIGHT_WIDE_SHADOW or shadow maps, and the ambient */
     PEL_SLOT_IRRADIANCE = 20,
-    /* one or two components. First, 0 to 1: how much of the scattered light a pixel takes, the rest is its
-     * own irradiance; 0: no scattering. Second, 0 to 4: times the profile's radius. Both are clamped; NaN is
+    /* one or two components. First, 0 to 1: the share of scattered light in a pixel, the rest is its own
+     * irradiance; 0: no scattering. Second, 0 to 4: factor of the profile's radius. Both are clamped; NaN is
      * 0. Not set: 1 */
     PEL_SLOT_SCATTER_WEIGHT = 21,
     /* RGB, as PEL_SLOT_IRRADIANCE: of the other side of a thin sheet (PelMaterial.thinThickness). Not set:
      * made from lights and ambient */
     PEL_SLOT_IRRADIANCE_BACK = 22,
-    /* 0 to 1, one component: the wet line along the lids, where tears collect. Read by eyes: their gloss is
-     * there as wide as PelEye.wetLineRoughness says. Clamped; NaN is 0. Not set: 0 */
+    /* 0 to 1, one component: the wet line along the lids, where tears collect. Read by eyes: the roughness of
+     * their gloss there is PelEye.wetLineRoughness. Clamped; NaN is 0. Not set: 0 */
     PEL_SLOT_WETNESS = 23,
     /* H, the mean of both principal curvatures, 1/unit of positions, one component: positive where the
      * surface is convex, negative in hollows. Read by PelMaterial.curvatureGain. Not set: measured from
      * positions or depth, and from normals */
     PEL_SLOT_MEAN_CURVATURE = 24,
     /* two or three components: PelSkin.melanin, PelSkin.blood, PelSkin.oxygenation. Read by materials whose
-     * profile is of pelProfileCreateSkinLayers, which has the other fields: there albedo and radius follow
-     * from it, and the albedo image is not read. Clamped to the ranges; NaN, and a component that is missing:
-     * that of the profile */
+     * profile is of pelProfileCreateSkinLayers, which gives the other fields: albedo and radius are computed
+     * from this image, and the albedo image is not read. Clamped to the ranges; NaN and missing components:
+     * the profile's value */
     PEL_SLOT_SKIN = 25,
-    /* two or three components, float or half: where the surface of a pixel was in the last frame less where
-     * it is, in pixels to the right and down; and, for surfaces that come closer or go away, how much farther
-     * from the camera it was (length; in parallel views along rising depth). Read with
+    /* two or three components, float or half: the position of a pixel's surface in the last frame minus that
+     * in this frame, in pixels to the right and down; and, for surfaces whose distance changes, how much
+     * farther from the camera it was (length; in parallel views along rising depth). Read with
      * PelShaderOptions.historyWeight. NaN, Inf: the pixel takes nothing from the last frame. Not set: 0 */
     PEL_SLOT_MOTION = 26,
-    /* RGB, irradiance / pi: what arrives beside the lights and PelAmbient, such as light that bounced off
+    /* RGB, irradiance / pi: light in addition to the lights and PelAmbient, such as light that bounced off
      * other surfaces, or an engine's probes. No albedo; added to the ambient term after its occlusion, and
-     * scatters with it. Where PEL_SLOT_IRRADIANCE is set, it has to be in that for the materials that read
+     * scatters with it. If PEL_SLOT_IRRADIANCE is set, it must include this light for the materials that read
      * it. Not set: 0 */
     PEL_SLOT_INDIRECT = 27,
     PEL_SLOT_COUNT = 28
@@ -981,8 +980,8 @@ typedef struct PelLight {
     /* The next three are -1 by default: from each material's profile (docs/guide/shading.md, "Materials");
      * without one 0.5 mm, 0.25 and 0.5. */
     float shadowBias; /* length an occluder must stand before the surface to count */
-    /* times PelMaterial.shadowFilterWidth: how much further before the bias it counts in full, so that round
-     * bodies do not shade themselves with a hard edge */
+    /* times PelMaterial.shadowFilterWidth: the distance beyond the bias over which an occluder fades in, so
+     * that round bodies do not shade themselves with a hard edge */
     float shadowSoftness;
     /* the bias grows by this times the sideways distance, so that folds and facets do not shade themselves */
     float shadowConeSlope;
@@ -1005,12 +1004,12 @@ typedef struct PelLight {
     /* rectangle: from the centre to the middle of a side, and of the next one, at right angles; lengths */
     float halfWidth[3];
     float halfHeight[3];
-    /* 0: the light's maps may change from frame to frame. Else a number that the caller changes when they do:
-     * what is computed from maps alone is kept until then, and shared by the shaders of a device */
+    /* 0: the light's maps may change from frame to frame. Else a number that the caller changes when the maps
+     * change: data computed only from maps is kept until then, and shared by the shaders of a device */
     uint32_t shadowMapVersion;
-    /* 1: PEL_LIGHT_WIDE_SHADOW is what is seen of the light, sharp or as soft as its own size makes it
-     * (traced, or a renderer's shadow mask), not filtered for tables; PEL_SCATTERING_AUTO then scatters on
-     * the screen by it, beside a shadow map too. 0: it is filtered, or not set */
+    /* 1: PEL_LIGHT_WIDE_SHADOW is the visible share of the light, sharp or softened by the light's own size
+     * (ray traced, or a renderer's shadow mask), not filtered for tables; PEL_SCATTERING_AUTO then scatters
+     * on the screen with it, even if there is a shadow map. 0: it is filtered, or not set */
     uint32_t plainShadow;
 } PelLight;
 
@@ -1019,7 +1018,7 @@ typedef enum PelSpecularModel {
     PEL_SPECULAR_GGX = 1  /* two lobes of GGX of widths roughness and roughness2, mixed by lobeMix */
 } PelSpecularModel;
 
-/* How diffuse light spreads under the surface. A method that this build does not have is an error at commit.
+/* How diffuse light spreads under the surface. A method that this build lacks is an error at commit.
  */
 typedef enum PelScattering {
     PEL_SCATTERING_NONE = 0, /* not at all: Lambert, with a sharp shadow */
@@ -1030,10 +1029,10 @@ typedef enum PelScattering {
     PEL_SCATTERING_SCREEN = 3,  /* the profile summed over the screen, from irradiance per pixel */
     PEL_SCATTERING_LIGHT = 4,   /* the profile summed over the light's shadow map */
     PEL_SCATTERING_TEXTURE = 5, /* irradiance in texture space [d'Eon, Luebke 2007] */
-    /* what the inputs allow, with the least work for PelShaderOptions.targetError: on the screen where
-     * there are positions or depth, and shadows that are sharp or can be made so; by tables otherwise, and
-     * where the material brings its own; with nothing to scatter by, like PREINTEGRATED without tables
-     * (docs/guide/shading.md, "Auto"). pelShaderGetWarnings and PelShaderStats say what it took */
+    /* the method that the inputs allow, with the least work for PelShaderOptions.targetError: on the screen
+     * where there are positions or depth, and shadows that are sharp or can be made so; by tables otherwise,
+     * and where the material brings its own; without inputs for either, like PREINTEGRATED without tables
+     * (docs/guide/shading.md, "Auto"). pelShaderGetWarnings and PelShaderStats report the choice */
     PEL_SCATTERING_AUTO = 6
 } PelScattering;
 
@@ -1081,23 +1080,22 @@ typedef struct PelMaterial {
     /* a curved body reflects more than a half-space of its medium, a hollow less: diffuse light is multiplied
      * by max(0, 1 + 1.35 x / (1 + 3 |x|)), x = curvatureGain * mean free path * H, H the mean curvature
      * (PEL_SLOT_MEAN_CURVATURE). All methods, where there are positions or depth, and the profile is burley
-     * or dipole: others do not say how far light travels between two scatterings, and get no gain. 0: no
-     * gain; 1 */
+     * or dipole: other profiles have no known mean free path, and get no gain. 0: no gain; 1 */
     float curvatureGain;
     /* 0, or 8 to 256. PEL_SCATTERING_SEPARABLE: taps of each of the two filters; 0: 25.
      * PEL_SCATTERING_SCREEN: taps on a disk, placed by the profile; 0: the whole profile. Other methods
      * ignore it; 0 */
     uint32_t scatterTaps;
-    /* 0 to 1, m: irradiance is multiplied by albedo^m before it scatters and by albedo^(1 - m) after: how
-     * much of the texture the scattering softens. For methods that scatter irradiance; 0 */
+    /* 0 to 1, m: irradiance is multiplied by albedo^m before it scatters and by albedo^(1 - m) after: the
+     * larger m, the more scattering softens the texture. For methods that scatter irradiance; 0 */
     float albedoBefore;
     /* 0 to 1: share of the light that flows in from materials of other ids, where those scatter too. 0:
      * nothing; 1: as if there were no border. Nothing flows from materials that do not scatter, such as eyes
      * and teeth of PEL_SCATTERING_NONE; 0 */
     float borderColor[3];
-    /* length. Above 0: the surface is a sheet this thick, a leaf or paper: light that falls on its other side
-     * comes through as pelProfileTransmission says, times `transmission`, with the shadow of this side. Needs
-     * a profile and a method that reads irradiance; 0 */
+    /* length. Above 0: the surface is a sheet this thick, a leaf or paper: light on its other side is
+     * transmitted according to pelProfileTransmission, times `transmission`, with the shadow of this side.
+     * Needs a profile and a method that reads irradiance; 0 */
     float thinThickness;
 } PelMaterial;
 
@@ -1128,7 +1126,7 @@ typedef struct PelEye {
     uint32_t structSize;
     float center[3];    /* of the sclera's sphere, units of positions */
     float gaze[3];      /* the direction in which it looks, of any length; 0, 0, 1 */
-    float up[3];        /* where the top of the iris' texture is, not along gaze, of any length; 0, 1, 0 */
+    float up[3];        /* towards the top of the iris' texture, not along gaze, of any length; 0, 1, 0 */
     float scleraRadius; /* mm; 12 [Le Grand] */
     float corneaRadius; /* mm, of curvature at its apex; 7.8 [Le Grand] */
     float corneaConic;  /* conic constant: 0 is a sphere, -1 a paraboloid; -0.26 [Navarro] */
@@ -1142,7 +1140,7 @@ typedef struct PelEye {
     /* refractive index, 1 to 3; 1.376 [Navarro]. The cornea has no thickness, but reflects on both of its
      * sides */
     float corneaIndex;
-    float aqueousIndex; /* of what is behind it, 1 to 3; 1.336 [Le Grand] */
+    float aqueousIndex; /* of the aqueous humour, 1 to 3; 1.336 [Le Grand] */
     float irisRadius;   /* mm; 0: limbusRadius */
     /* mm, how much deeper than its rim the iris' centre lies: a paraboloid; 0: a plane */
     float irisConcavity;
@@ -1153,10 +1151,10 @@ typedef struct PelEye {
     /* multiplies the texture, or colours the fibres of an iris without one; -1: 1 with a texture, else 0.22,
      * 0.12, 0.06; -1 */
     float irisColor[3];
-    uint32_t irisSeed;      /* another number, another pattern of fibres of an iris without a texture; 0 */
+    uint32_t irisSeed;      /* seed of the fibre pattern of an iris without a texture; 0 */
     float tearRoughness;    /* of the film of tears: GGX's alpha, 0.001 to 1; 0.03 */
     float wetLineRoughness; /* the same where PEL_SLOT_WETNESS is 1; 0.2 */
-    float tearIndex;        /* of the film, 1 to 3: how much it reflects; 1.336; 1: nothing */
+    float tearIndex;        /* refractive index of the film, 1 to 3; 1: no reflection; 1.336 */
     /* in mm: how light scatters in the iris. NULL: not at all. The sclera's is PelMaterial.profile */
     PelProfile irisProfile;
 } PelEye;
@@ -1189,7 +1187,7 @@ typedef enum PelFeature {
     PEL_FEATURE_ENVIRONMENT = 1 << 30         /* specular light of the surroundings */
 } PelFeature;
 
-/* What a shader did: counts of its last execution unless they say total. */
+/* Statistics of a shader: counts of its last execution unless marked as total. */
 typedef struct PelShaderStats {
     uint32_t structSize;
     uint32_t features;      /* PelFeature bits, derived at commit */
@@ -1206,8 +1204,8 @@ typedef struct PelShaderStats {
     uint64_t pixelsShadowLut; /* that read the shadow LUT, summed over lights, like the next two */
     uint64_t pixelsThickness; /* that took thickness taps */
     uint64_t pixelsSpecular;
-    /* of a material, with NaN or Inf in an input, in the result, or in what it is added to: they get
-     * PelShaderOptions.invalidColor */
+    /* of a material, with NaN or Inf in an input, in the result, or in the radiance that it is added to: they
+     * get PelShaderOptions.invalidColor */
     uint64_t pixelsInvalid;
     double deviceMilliseconds; /* kernels; 0 on a queue without profiling */
     uint64_t pixelsWideShadow; /* whose wide shadow was filtered from a shadow map, summed over lights */
@@ -1215,7 +1213,7 @@ typedef struct PelShaderStats {
     uint64_t bands;
     uint64_t variants;     /* of the shading kernel, each with a tile list of its own */
     uint64_t tilesPartial; /* shaded by a variant with fewer features than the shader has */
-    /* of pixelsWideShadow: whose filter read texels. For the others the bounds of the map's blocks decided */
+    /* of pixelsWideShadow: whose filter read texels. The others were decided by bounds of the map's blocks */
     uint64_t pixelsShadowTexels;
     uint64_t pixelsIrradiance;      /* whose irradiance was made */
     uint64_t pixelsByScattering[7]; /* shaded, by PelMaterial.scattering */
@@ -1224,7 +1222,7 @@ typedef struct PelShaderStats {
      * themselves */
     uint64_t tilesByScattering[7];
     uint64_t pixelsScattered; /* that took taps */
-    /* that kept their irradiance, because it was right already or nothing was in reach */
+    /* that kept their irradiance, because scattering would not change it or no surface was in reach */
     uint64_t pixelsKept;
     uint64_t scatterTaps; /* pixels and blocks of pixels that were read, modulo 2^32 */
     /* of materials of PEL_SCATTERING_AUTO: by the method that was chosen for them; NONE: kept their
@@ -1235,11 +1233,11 @@ typedef struct PelShaderStats {
     uint64_t pixelsCaustic; /* of those: that read the caustic table, summed over lights */
     /* shaded by a variant with code for eyes. With a material image: those that hold an eye */
     uint64_t tilesEye;
-    /* 1: what is committed stands in for materials whose programs are being built
+    /* 1: substitute materials are committed while programs are being built
      * (PelShaderOptions.buildInBackground) */
     uint64_t standsIn;
     /* with PelShaderOptions.timeBudget: the error that auto aims at in place of targetError, and what to
-     * expect of the frame: milliseconds beyond plain lighting, by times that are the 90th percentile of the
+     * expect of the frame: milliseconds beyond plain lighting, from the 90th percentile of times over the
      * record's scenes, and RMS error against light, a share of white. 0 without a budget or without materials
      * of auto */
     double takenTargetError;
@@ -1248,11 +1246,11 @@ typedef struct PelShaderStats {
     uint64_t tuned;         /* 1: they come from this device's record, 0: from the built-in guess */
     uint64_t pixelsHistory; /* that took light from the last frame (PelShaderOptions.historyWeight) */
     uint64_t takenHalfRate; /* 1: for the time budget, light is summed as with PelShaderOptions.halfRate */
-    /* of shadow maps: within reach of what scatters on the screen. The others are left alone */
+    /* of shadow maps, within reach of pixels that scatter. Other texels are skipped */
     uint64_t texelsReached;
 } PelShaderStats;
 
-/* What a pass of a shader did in one execution. */
+/* Statistics of a pass of a shader in one execution. */
 typedef struct PelPassStats {
     uint32_t structSize;
     uint32_t launches;
@@ -1260,7 +1258,7 @@ typedef struct PelPassStats {
     uint64_t bytes;      /* of device memory that the pass holds now */
     uint64_t tiles;      /* of 16 x 16 pixels over which it was launched, over bands; 0: not over tiles */
     uint64_t execution;  /* which: 1 is the shader's first */
-    char name[24];       /* that of its kernel file where it has one, such as "irradiance" */
+    char name[24];       /* of its kernel file if it has one, such as "irradiance" */
 } PelPassStats;
 
 /* Device memory of a pass of a shader. */
@@ -1305,18 +1303,18 @@ typedef struct PelShaderOptions {
     float targetError;
     /* of positions, > 0: profiles are in mm, every other length in the scene's unit; 1 */
     float millimetresPerUnit;
-    /* gives scattering taps with random places other places in each frame, for hosts that average frames. The
+    /* varies the random positions of scattering taps from frame to frame, for hosts that average frames. The
      * same number gives the same bits; 0 */
     uint32_t frameIndex;
     /* 1: PEL_SCATTERING_LIGHT, PEL_SCATTERING_SEPARABLE, and PEL_SCATTERING_SCREEN with scatterTaps compute
-     * every second pixel along both axes. Between them light from beyond a pixel is interpolated on the same
-     * surface, and that of the pixel itself is its own: a fourth of the taps (docs/guide/shading.md, "Half
-     * rate"); 0 */
+     * every second pixel along both axes. For the other pixels, light from beyond the pixel is interpolated
+     * on the same surface, and light from within it is computed: a quarter of the taps
+     * (docs/guide/shading.md, "Half rate"); 0 */
     uint32_t halfRate;
     /* 1: wide shadows that the shader filters, and thickness by taps, are computed at every pixel. 0, the
-     * default: shadows at every second one along both axes, and between them interpolated where material,
-     * surface and values go on smoothly (docs/guide/shading.md, "Between pixels"); thickness between nodes of
-     * a grid in the shadow map, where that is as exact (the same page, "Cells of taps") */
+     * default: shadows are computed at every second pixel along both axes, and interpolated where material,
+     * surface and values are continuous (docs/guide/shading.md, "Between pixels"); thickness between nodes of
+     * a grid in the shadow map, where that is as accurate (the same page, "Cells of taps") */
     uint32_t everyPixel;
     /* 1: pelShaderCommit does not wait for programs that are neither in memory nor on disk. They are built
      * while the caller goes on, and until the first execution after that the materials shade by
@@ -1327,8 +1325,8 @@ typedef struct PelShaderOptions {
     /* milliseconds of the device that materials of PEL_SCATTERING_AUTO may take beyond plain lighting; 0: as
      * many as targetError needs. pelShaderCommit then counts their pixels in the material image (all of the
      * frame if it shows none yet), and takes the method and the error, not below targetError, that are
-     * nearest to light among those that fit by the device's record: a file that PELLUCID_TUNING names, or a
-     * guess (docs/guide/shading.md, "Time budget"). PelShaderStats says what was taken; 0 */
+     * nearest to light among those that fit. Times are from the device's record: a file that PELLUCID_TUNING
+     * names, or a guess (docs/guide/shading.md, "Time budget"). PelShaderStats reports the choice; 0 */
     float timeBudget;
     /* pixels: the part of all images of the frame that is shaded, for images that are larger than the
      * viewport (docs/guide/hosts.md, "A part of the images"). Its pixels have no neighbours outside, as if
@@ -1339,14 +1337,14 @@ typedef struct PelShaderOptions {
     uint32_t regionWidth;
     uint32_t regionHeight;
     /* 0 to 0.95: share of earlier frames in the scattered light of materials that scatter by taps
-     * (PEL_SCATTERING_SEPARABLE, and PEL_SCATTERING_SCREEN with scatterTaps). Of n frames they have at most n
-     * / (n + 1), so that a picture at rest becomes the mean of all. Light is taken from where PEL_SLOT_MOTION
-     * says, if material and distance are the pixel's there, and clamped to the range that this frame's has in
-     * the 3 x 3 pixels around. Needs PelCamera.inverseViewProjection; frameIndex should change from frame to
-     * frame (docs/guide/shading.md, "History"); 0 */
+     * (PEL_SCATTERING_SEPARABLE, and PEL_SCATTERING_SCREEN with scatterTaps). After n frames it is at most n
+     * / (n + 1), so that a picture at rest becomes the mean of all. Light is read at the position that
+     * PEL_SLOT_MOTION gives, if material and distance match the pixel's, and clamped to the range of this
+     * frame's light in the 3 x 3 pixels around. Needs PelCamera.inverseViewProjection; frameIndex should
+     * change from frame to frame (docs/guide/shading.md, "History"); 0 */
     float historyWeight;
-    /* another number than in the last execution: this one takes nothing from earlier ones, as after a cut.
-     * The same holds for another size, and for a commit without history; 0 */
+    /* if it differs from the last execution's, nothing is taken from earlier frames, as after a cut. Another
+     * size and a commit without history have the same effect; 0 */
     uint32_t historyCut;
 } PelShaderOptions;
 
@@ -1368,20 +1366,19 @@ PEL_API PelError pelShaderSetMaterial(PelShader shader, uint32_t id, const PelMa
 PEL_API PelError pelShaderSetNormalMap(PelShader shader, uint32_t id, const PelImageDesc* levels,
                                        uint32_t count);
 /* Light that was scattered in the texture of material `id`, which must be set, by pelTextureScatterExecute or
- * otherwise: RGB, float or half or unorm. Read by materials of PEL_SCATTERING_TEXTURE in the place of their
+ * otherwise: RGB, float or half or unorm. Read by materials of PEL_SCATTERING_TEXTURE instead of their
  * irradiance: bilinear at PEL_SLOT_UV, which they need, texel centres at (i + 1/2) / size, row 0 at v = 0,
  * repeated beyond [0, 1]. Read at each execution. NULL removes it. */
 PEL_API PelError pelShaderSetScatteredTexture(PelShader shader, uint32_t id, const PelImageDesc* texture);
-/* Makes material `id`, which must be set, an eye; at most 64 are. The material is its sclera, with everything
- * that a material has; iris, pupil, limbus and film of tears come from `eye`. Needs PEL_SLOT_POSITION or
- * _DEPTH, and PelCamera.position. `caustics`: a table of pelEyeLutCreate; NULL: it is made for this eye, and
- * kept. NULL for `eye`: the material is no eye any longer. Removing the material removes its eye. Errors:
- * PEL_ERROR_INVALID_ARGUMENT for parts that do not fit together, such as a pupil that is wider than the iris;
- * the message names the field. */
+/* Makes material `id`, which must be set, an eye; at most 64 are. The material is its sclera; iris, pupil,
+ * limbus and film of tears come from `eye`. Needs PEL_SLOT_POSITION or _DEPTH, and PelCamera.position.
+ * `caustics`: a table of pelEyeLutCreate; NULL: it is made for this eye, and kept. NULL for `eye`: the
+ * material is no longer an eye. Removing the material removes its eye. Errors: PEL_ERROR_INVALID_ARGUMENT for
+ * parts that do not fit together, such as a pupil wider than the iris; the message names the field. */
 PEL_API PelError pelShaderSetEye(PelShader shader, uint32_t id, const PelEye* eye, PelLut caustics);
 /* The albedo of the iris of material `id`, which must be an eye: a square image whose inscribed circle is the
- * iris' rim, as one sees it who faces the eye, row 0 at PelEye.up; a colour format; bilinear. Read at the
- * first execution after the commit that follows this call. NULL removes it: fibres are drawn by
+ * iris' rim, as seen by a viewer who faces the eye, row 0 at PelEye.up; a colour format; bilinear. Read at
+ * the first execution after the commit that follows this call. NULL removes it: fibres are drawn by
  * PelEye.irisSeed. */
 PEL_API PelError pelShaderSetIrisTexture(PelShader shader, uint32_t id, const PelImageDesc* texture);
 /* The surroundings that eyes reflect: radiance / pi, six faces as in pelShaderSetAmbientCube, as sharp as the
@@ -1391,8 +1388,8 @@ PEL_API PelError pelShaderSetReflectionCube(PelShader shader, const PelImageDesc
 /* The surroundings as light: radiance, in an equirectangular image (2n x n pixels, the upper edge +y, the
  * middle column +z, +x to the left of it, as in OpenEXR) or in six faces as in pelShaderSetAmbientCube; a
  * colour format. Gives ambient light, beside PelAmbient; specular light to materials with `specular`, for
- * which positions or depth are needed; and reflections to eyes. An ambient cube or a reflection cube that is
- * set takes its part. `axes`: three rows of three, the image's x, y and z axis in the world; NULL: the
+ * which positions or depth are needed; and reflections to eyes. An ambient cube or a reflection cube, if set,
+ * replaces that part of it. `axes`: three rows of three, the image's x, y and z axis in the world; NULL: the
  * world's. It is reduced to 64 x 64 texels a face at the first execution after the commit that follows this
  * call. Negative values, NaN and Inf count as 0. NULL for `image` removes it. Errors:
  * PEL_ERROR_INVALID_ARGUMENT for another shape, or axes that are not unit vectors at right angles. Sources:
@@ -1417,11 +1414,11 @@ PEL_API PelError pelShaderSetCamera(PelShader shader, const PelCamera* camera);
 /* Checks that everything fits together, derives the features and builds the programs that they need. */
 PEL_API PelError pelShaderCommit(PelShader shader);
 /* Shades. A blocking call reports progress to the device's callback about every million pixels; if that
- * cancels, some pixels are shaded and others not. Errors: PEL_ERROR_CANCELLED; PEL_ERROR_INVALID_STATE when
- * something was set after the last commit. */
+ * cancels, some pixels are shaded and others not. Errors: PEL_ERROR_CANCELLED; PEL_ERROR_INVALID_STATE if a
+ * setting was changed after the last commit. */
 PEL_API PelError pelShaderExecute(PelShader shader, const PelSubmit* submit);
-/* Material `id` as it is shaded: each default is replaced by its value, after a commit AUTO by its choice.
- * profile is NULL. */
+/* Material `id` as it is shaded: each default is replaced by its value, and after a commit AUTO by the chosen
+ * method. profile is NULL. */
 PEL_API PelError pelShaderGetMaterial(PelShader shader, uint32_t id, PelMaterial* material);
 /* Warnings of the last commit: settings without effect, and unlikely values. One sentence a line; "" if none.
  * Valid until the shader's next commit or its release. */
@@ -1432,9 +1429,9 @@ PEL_API PelError pelShaderGetStats(PelShader shader, PelShaderStats* stats);
  * wait. passes[0].structSize is the size of each. `count`: room in `passes`, 24 suffice; receives how many
  * there are, 0 while no execution has finished. Errors: PEL_ERROR_INVALID_ARGUMENT for too little room. */
 PEL_API PelError pelShaderGetPasses(PelShader shader, PelPassStats* passes, uint32_t* count);
-/* Which passes hold device memory beside the caller's images, or will after a commit of what is set. Nothing
- * is committed and no image allocated; tables of profiles and eyes are made where they are missing. Arrays as
- * in pelShaderGetPasses. Errors: those of pelShaderCommit. */
+/* Device memory of the passes besides the caller's images, now and after a commit of the current settings.
+ * Nothing is committed and no image allocated; tables of profiles and eyes are made where they are missing.
+ * Arrays as in pelShaderGetPasses. Errors: those of pelShaderCommit. */
 PEL_API PelError pelShaderGetMemory(PelShader shader, PelPassMemory* passes, uint32_t* count);
 
 /* ---- Reference --------------------- */
@@ -1548,8 +1545,8 @@ PEL_API PelError pelScatterSetMaterial(PelScatter scatter, uint32_t id, PelProfi
 PEL_API PelError pelScatterSetControls(PelScatter scatter, uint32_t id, const PelScatterControls* controls);
 
 /* A further image for the next executions, of the same size as the others, until it is replaced, or removed
- * by NULL: PEL_SLOT_SCATTER_WEIGHT; PEL_SLOT_IRRADIANCE_BACK; PEL_SLOT_ALBEDO, which the irradiance then is
- * without: the result has it in it, and is radiance where irradiance was irradiance / pi. One of
+ * by NULL: PEL_SLOT_SCATTER_WEIGHT; PEL_SLOT_IRRADIANCE_BACK; PEL_SLOT_ALBEDO: the irradiance then must not
+ * include albedo, and the result does; it is radiance if the input was irradiance / pi. One of
  * PEL_SLOT_NORMAL_GEOMETRIC and PEL_SLOT_MEAN_CURVATURE turns on the gain of curved bodies, as PelMaterial's
  * curvatureGain of 1 does, for profiles whose medium is known; the curvature is measured from normals if it
  * is not given. */
@@ -1594,7 +1591,7 @@ typedef struct PelTextureScatterParams {
     PelProfile profile; /* NULL: skin */
     float scale;        /* units of positions per unit of the profile, > 0: 0.1 for cm; 1 */
     float albedoBefore; /* as in PelMaterial, with the albedo that the execution is given; 0 */
-    /* 1: the result is multiplied by albedo^(1 - albedoBefore); 0: whoever samples it does that, as a
+    /* 1: the result is multiplied by albedo^(1 - albedoBefore); 0: the reader of the texture does that, as a
      * PelShader does; 0 */
     uint32_t albedoAfter;
     /* 2 to 12: number of Gaussians for profiles that are not a sum of as many or fewer; 6 */
@@ -1608,7 +1605,7 @@ typedef struct PelTextureScatterStats {
     uint64_t texelsCovered; /* by a triangle */
     uint64_t texelsInvalid; /* NaN or Inf in irradiance or albedo: count as not covered, and get 0 */
     uint64_t tilesTotal;    /* of 16 x 16 texels */
-    uint64_t tilesBlurred;  /* with something covered, summed over Gaussians: the others cost nothing */
+    uint64_t tilesBlurred;  /* with a covered texel, summed over Gaussians; other tiles are free */
     uint64_t gaussians;
     /* greatest difference, part of all light, between the profile and its Gaussians: of the light within any
      * distance, over the channels */
@@ -1631,9 +1628,9 @@ PEL_API PelError pelTextureScatterSetPositions(PelTextureScatter scatter, const 
 
 /* Draws three float32 per vertex into the texture, linear on triangles: irradiance per vertex, or positions
  * and normals, from which a PelShader of PEL_SCATTERING_NONE and albedo 1 makes irradiance with all lights
- * and shadow maps. `out`: RGB or RGBA, float or half, of the texture's size; texels in no triangle get 0, and
- * those within a texel of one its value there, for what samples bilinearly. `unit` 1: values are normals, and
- * made unit vectors again. */
+ * and shadow maps. `out`: RGB or RGBA, float or half, of the texture's size; texels in no triangle get 0, but
+ * those within a texel of a triangle its extrapolated value, for bilinear sampling. `unit` 1: values are
+ * normals, and are normalised again. */
 PEL_API PelError pelTextureScatterDraw(PelTextureScatter scatter, const PelVertexView* values, uint32_t unit,
                                        const PelImageDesc* out, const PelSubmit* submit);
 
@@ -1678,7 +1675,7 @@ typedef struct PelWarmUp {
     const PelShader* shaders;
     uint32_t numShaders;
     /* that build at the same time; 0: one per core, at most one per program. PoCL builds one by one in a
-     * process, so that others do it, at most 4 by default (docs/guide/devices.md, "Compiled programs") */
+     * process, so other processes build, at most 4 by default (docs/guide/devices.md, "Compiled programs") */
     uint32_t threads;
     const PelScatterWork* scatters; /* numScatters; nothing is written to their images */
     uint32_t numScatters;

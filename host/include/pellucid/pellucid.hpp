@@ -44,7 +44,7 @@ class Handle {
     ~Handle() {
         if (h_) Release(h_);
     }
-    // Not of a temporary: `desc.profile = Profile::named("jade").get()` would outlive the profile.
+    // Not on a temporary: `desc.profile = Profile::named("jade").get()` would refer to a released profile.
     H get() const& { return h_; }
     H get() const&& = delete;
     explicit operator bool() const { return h_ != nullptr; }
@@ -55,7 +55,7 @@ class Handle {
         *this = Handle();
         return &h_;
     }
-    // A T of the handle that a call of the C interface makes.
+    // A T with the handle that a call of the C interface creates.
     template <class T, class Create, class... Arguments>
     static T made(Create create, Arguments... arguments) {
         T object{H()};
@@ -83,7 +83,7 @@ class Device : public Handle<PelDevice, pelDeviceRetain, pelDeviceRelease> {
     // The standard device, or the one that `selector` names; see pelDeviceCreate.
     explicit Device(const std::string& selector = "") { check(pelDeviceCreate(selector.c_str(), out())); }
     explicit Device(const PelDeviceDesc& desc) { check(pelDeviceCreateWith(&desc, out())); }
-    // None, to be assigned later.
+    // Without a device, to be assigned later.
     explicit Device(std::nullptr_t) {}
     static Device fromCl(void* context, void* deviceId, void* queue) {
         Device device(nullptr);
@@ -137,9 +137,9 @@ class Buffer : public Handle<PelBuffer, pelBufferRetain, pelBufferRelease> {
     void unmap() const { check(pelBufferUnmap(h_)); }
 };
 
-// A C structure and an object that it refers to, kept alive with it. Functions make one where they are given
-// a temporary: the structure by itself would refer to an object that is gone, and does not come out of this
-// one by assignment.
+// A C structure and an object that it refers to, kept alive with it. Functions return one if they are passed
+// a temporary, because the structure alone would refer to a destroyed object. It does not convert to the
+// structure.
 template <class Struct, class Kept>
 class Owning {
   public:
@@ -155,7 +155,7 @@ class Owning {
     Struct made_;
 };
 
-// What functions here take: either of the two, by reference or by pointer; nullptr where the call allows
+// Parameter type of functions: either of the two, by reference or by pointer; nullptr where the call allows
 // NULL.
 template <class Struct, class Kept>
 class StructRef {
@@ -188,7 +188,7 @@ inline PelImageDesc imageDesc(const Buffer& buffer, PelFormat format, uint32_t w
     return desc;
 }
 
-// Of a temporary: keeps the buffer.
+// For a temporary buffer, which it keeps alive.
 inline OwnedImage imageDesc(Buffer&& buffer, PelFormat format, uint32_t width, uint32_t height,
                             uint64_t byteOffset = 0) {
     const PelImageDesc desc =
@@ -248,7 +248,7 @@ class MeshTopology : public Handle<PelMeshTopology, pelMeshTopologyRetain, pelMe
     }
 };
 
-// Writes the triangles to `indices`, turned where neighbours disagree; `normals` may be NULL.
+// Writes the triangles to `indices`, reversed where neighbours disagree; `normals` may be NULL.
 inline PelMeshOrientation orientMesh(const PelMeshTopologyDesc& desc, uint32_t* indices,
                                      const float* normals = nullptr, uint32_t normalStride = 0) {
     PelMeshOrientation found = pelMeshOrientationDefaults();
@@ -263,7 +263,7 @@ class LiveMesh : public Handle<PelLiveMesh, pelLiveMeshRetain, pelLiveMeshReleas
     LiveMesh(const MeshTopology& topology, const PelCurvatureParams& params) {
         check(pelLiveMeshCreate(topology.get(), &params, out()));
     }
-    // All vertices. normals NULL: they are made.
+    // Updates all vertices. normals NULL: they are made from the positions.
     void update(const VerticesRef& positions, const VerticesRef& normals, const VerticesRef& curvature,
                 const PelSubmit* submit = nullptr) const {
         check(pelLiveMeshUpdate(h_, positions.get(), normals.get(), curvature.get(), nullptr, 0, submit));
@@ -535,12 +535,12 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
     Shader& setNormalMap(uint32_t id, const OwnedImage& level) {
         return done(pelShaderSetNormalMap(h_, id, &*level, 1));
     }
-    // What PEL_SCATTERING_TEXTURE samples.
+    // The texture that PEL_SCATTERING_TEXTURE samples.
     Shader& setScatteredTexture(uint32_t id, const ImageRef& texture) {
         return done(pelShaderSetScatteredTexture(h_, id, texture.get()));
     }
     Shader& clearScatteredTexture(uint32_t id) { return done(pelShaderSetScatteredTexture(h_, id, nullptr)); }
-    // Makes a material that is set an eye. Without a table it is made.
+    // Turns a material that is set into an eye. Without `caustics` the table is made.
     Shader& setEye(uint32_t id, const PelEye& eye, const Lut& caustics = {}) {
         return done(pelShaderSetEye(h_, id, &eye, caustics.get()));
     }
@@ -597,7 +597,7 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
 };
 
 // Builds programs before they are needed (pelWarmUpPrograms): those of the groups (PelProgramGroup bits), and
-// those that the shaders would build at their commit. Returns how many were not there before.
+// those that the shaders would build at their commit. Returns the number of programs built.
 inline uint32_t warmUpPrograms(const Device& device, uint32_t groups, const std::vector<Shader>& shaders = {},
                                uint32_t threads = 0) {
     std::vector<PelShader> handles;

@@ -1,6 +1,6 @@
-/* Matrices of renderers: from what OpenGL, Vulkan and Direct3D hand to a shader, to PelCamera and PelLight.
+/* Converts the matrices of OpenGL, Vulkan and Direct3D renderers to PelCamera and PelLight.
  *
- * A header of its own, for C and C++: nothing here is in the library. Work is done in double.
+ * A separate header for C and C++: none of its functions is in the library. It computes in double.
  * pellucid_conventions.hpp has the same with exceptions, pellucid.conventions is the same in Python.
  * docs/guide/hosts.md shows what to pass for which renderer. */
 #ifndef PELLUCID_CONVENTIONS_H
@@ -9,7 +9,7 @@
 #include <math.h>
 #include <pellucid/pellucid.h>
 
-/* What clip space has between the near and the far plane. */
+/* Depth in clip space, from the near to the far plane. */
 typedef enum PelClipDepth {
     PEL_CLIP_DEPTH_MINUS_ONE_TO_ONE = 0, /* OpenGL */
     PEL_CLIP_DEPTH_ZERO_TO_ONE =
@@ -43,7 +43,7 @@ static inline int pelConventionRead_(const float* m, const PelConvention* c, dou
     return 1;
 }
 
-/* The vector that the three rows map to 0: minors of the matrix that they are. */
+/* The vector that the three rows map to 0, from the minors of their matrix. */
 static inline void pelConventionNull_(const double* a, const double* b, const double* c, double out[4]) {
     int i;
     for (i = 0; i < 4; ++i) {
@@ -81,10 +81,10 @@ static inline int pelConventionInvert_(double m[4][4], double inverse[4][4]) {
     return 1;
 }
 
-/* Sets position and inverseViewProjection of `camera`, for a depth image that is what the depth buffer holds
- * and whose first row is the highest. The position of a parallel projection is far away, in front of
- * the middle of the picture. Errors: PEL_ERROR_INVALID_ARGUMENT: numbers that are not finite, no inverse;
- * nothing is written. */
+/* Sets position and inverseViewProjection of `camera`, for a depth image with the values of the depth buffer,
+ * whose first row is the highest. The position of a parallel projection is far away, in front of the middle
+ * of the picture. Errors: PEL_ERROR_INVALID_ARGUMENT: numbers that are not finite, no inverse; nothing is
+ * written. */
 static inline PelError pelCameraFromViewProjection(const float viewProjection[16], PelConvention convention,
                                                    PelCamera* camera) {
     double m[4][4], inverse[4][4], eye[4], largest = 0, nearer = 0;
@@ -112,9 +112,9 @@ static inline PelError pelCameraFromViewProjection(const float viewProjection[16
     return PEL_SUCCESS;
 }
 
-/* Sets what PelLight says of a shadow map that was drawn with this matrix: directional for a parallel
- * projection, a spot for a perspective one (its position and direction too). Colour, cone and filter are left
- * alone. Errors: as above, and a matrix that makes no depth. */
+/* Sets the fields of PelLight that describe a shadow map drawn with this matrix: directional for a parallel
+ * projection, a spot for a perspective one (its position and direction too). Colour, cone and filter are not
+ * changed. Errors: as above, and a matrix that makes no depth. */
 static inline PelError pelLightFromViewProjection(const float viewProjection[16], PelConvention convention,
                                                   PelLight* light) {
     double m[4][4], image[4][4], largest = 0, across = 0;

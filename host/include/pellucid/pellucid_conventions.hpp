@@ -37,7 +37,7 @@ PelCamera cameraFromViewProjection(const Matrix& viewProjection, const PelConven
     return camera;
 }
 
-// `light` with what its shadow map's matrix, of the same types, says.
+// `light` with the fields that follow from its shadow map's matrix, of the same types.
 template <class Matrix>
 PelLight lightFromViewProjection(const Matrix& viewProjection, const PelConvention& convention,
                                  PelLight light = pelLightDefaults()) {

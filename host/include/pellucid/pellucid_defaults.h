@@ -11,7 +11,7 @@
     memset(&value, 0, sizeof value); \
     value.structSize = (uint32_t)sizeof value
 
-/* PelNAME pelNAMEDefaults(void): zeros but for what the statements set in `s`. */
+/* PelNAME pelNAMEDefaults(void): zeros except for the fields that the statements set in `s`. */
 #define PEL_DEFAULTS_(Name, ...)                        \
     static inline Pel##Name pel##Name##Defaults(void) { \
         PEL_ZEROED_(Pel##Name, s);                      \
@@ -56,7 +56,7 @@ static inline PelScreenCurvatureParams pelScreenCurvatureParamsDefaults(void) {
     s.inverseViewProjection[10] = s.inverseViewProjection[15] = 1.0f;
     return s;
 }
-/* As a material makes them of its profile. What is 0 follows from the profile. */
+/* The tables that a material makes of its profile. Values of 0 follow from the profile. */
 static inline PelCurvatureLutDesc pelCurvatureLutDescDefaults(void) {
     PEL_ZEROED_(PelCurvatureLutDesc, s);
     PEL_EACH_CURVATURE_LUT_FIELD(PEL_DEFAULT_)
@@ -67,7 +67,7 @@ static inline PelCurvatureLutDesc pelCurvatureLutDescDefaults(void) {
 PEL_DEFAULTS_(ShadowLutDesc,
     PEL_EACH_SHADOW_LUT_FIELD(PEL_DEFAULT_)
     s.axis = PEL_AXIS_ROOT;)
-/* As FaceWorks 1.0 makes them, for skin in millimetres: form arc, open ends, linear axes. */
+/* The tables of FaceWorks 1.0, for skin in millimetres: form arc, open ends, linear axes. */
 static inline PelCurvatureLutDesc pelCurvatureLutDescFaceWorks(void) {
     PEL_ZEROED_(PelCurvatureLutDesc, s);
     s.width = 512;
@@ -100,9 +100,9 @@ static inline float pelLengthOr_(float length, double otherwise) {
     if (otherwise > 3.402823466e38) otherwise = 3.402823466e38;
     return otherwise < 1.401298464e-45 ? 1.401298464e-45f : (float)otherwise;
 }
-/* A description with the lengths of that profile in the place of those that are 0. Radii of curvature from
- * that of an ear's helix to flat surface; penumbrae from light that falls straight in to light at a cosine of
- * a thousandth. Look-ups beyond are clamped. */
+/* The description with lengths of 0 replaced by those that follow from the profile. Radii of curvature reach
+ * from an ear's helix to a flat surface, penumbrae from normal incidence to a cosine of a thousandth.
+ * Look-ups beyond are clamped. */
 static inline PelCurvatureLutDesc pelCurvatureLutDescFilled(PelCurvatureLutDesc s,
                                                             const PelProfileInfo* profile) {
     s.diffusionRadius = pelLengthOr_(s.diffusionRadius, profile->radius);

@@ -83,7 +83,7 @@
     X(UINT, plainShadow, 0, 0, 1, PEL_NONE, "", "plain_shadow", PEL_NO_SLIDER, \
       "1: `wide_shadow` is what is seen of the light, sharp or as soft as its size makes it, not " \
       "filtered for tables; `auto` scatters on the screen by it")
-/* Of directional lights, of all others, of spots, spheres and rectangles; checked for those alone. */
+/* Of directional lights, of all others, of spots, spheres and rectangles; checked only for these types. */
 #define PEL_EACH_DIRECTIONAL_LIGHT_FIELD(X) \
     X(VECTOR, toLight, (0, 0, 1), -PEL_FINITE, PEL_FINITE, PEL_NONE, "", "to_light", PEL_NO_SLIDER, \
       "directional: from the surface to the light; files: made unit")

@@ -39,7 +39,7 @@ Rgb shown(double lightness, double hueDegrees, double chroma) {
 constexpr size_t tableSize = 257;
 using Table = std::array<std::array<float, 3>, tableSize>;
 
-// `color(t)` for t in [0, 1], sRGB-encoded, so that interpolation is nearly even to the eye.
+// `color(t)` for t in [0, 1], sRGB-encoded, so that interpolation is nearly uniform perceptually.
 template <class Color>
 Table makeTable(Color&& color) {
     Table table;

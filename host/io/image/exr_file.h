@@ -1,4 +1,4 @@
-// OpenEXR files, by the OpenEXR library itself: the format of G-buffers is on the way of every frame.
+// OpenEXR files, by the OpenEXR library itself, since every frame's G-buffer is read from this format.
 #pragma once
 #include <memory>
 
@@ -13,8 +13,8 @@ std::vector<Place> ownPlaces(Image& image, const std::vector<std::string>* names
 void decodeExr(Image& image, const std::string& bytes, const std::function<void(const Image&)>& check,
                uint64_t limit, const PlaceChannels& places);
 
-// Scan lines of OpenEXR files by OpenEXR's C library, which takes a third of the time of the C++ one for
-// the methods of compression that lose nothing and are quick: none, RLE and ZIP.
+// Scan lines of OpenEXR files by OpenEXR's C library, which takes a third of the time of the C++ one for fast
+// lossless compression: none, RLE and ZIP.
 
 class ExrLines {
   public:

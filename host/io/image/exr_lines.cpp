@@ -140,7 +140,7 @@ void ExrLines::read(int part, int begin, int end, size_t width, const std::vecto
         }
         if (first) {
             file_->check(exr_decoding_choose_default_routines(file_->context, part, &decode));
-            // OpenEXR's own fails if some channels are not wanted. Null if values are read directly.
+            // OpenEXR's own function fails if some channels are not wanted. Null if values are read directly.
             if (decode.unpack_and_convert_fn) decode.unpack_and_convert_fn = unpack;
         }
         file_->check(exr_decoding_run(file_->context, part, &decode));

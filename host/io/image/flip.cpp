@@ -121,7 +121,7 @@ Seen see(std::span<const float> rgb, int width) {
         std::array<double, 3> linear;
         for (size_t c = 0; c < 3; ++c) linear[c] = std::clamp(double(rgb[3 * i + c]), 0.0, 1.0);
         const auto [x, y, z] = times(toXyz, linear);
-        // YCxCz but for scale and offset, which the filters keep.
+        // YCxCz without scale and offset, which the filters preserve.
         opponent[0].values[i] = luminance.values[i] = y;
         opponent[1].values[i] = x - y, opponent[2].values[i] = y - z;
     }

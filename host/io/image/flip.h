@@ -1,6 +1,5 @@
-// How visible the difference of two pictures is when one is shown in the place of the other: LDR-FLIP
-// [Andersson et al. 2020, FLIP: A Difference Evaluator for Alternating Images, Proc. ACM Comput. Graph.
-// Interact. Tech. 3(2), article 15].
+// The visible difference of two pictures that are shown alternately: LDR-FLIP [Andersson et al. 2020, FLIP: A
+// Difference Evaluator for Alternating Images, Proc. ACM Comput. Graph. Interact. Tech. 3(2), article 15].
 #pragma once
 #include <span>
 

@@ -113,7 +113,7 @@ std::vector<uint8_t> subsetsOf(const SubsetInputs& in) {
                 if (!in.covered[i] || !in.covered[j] || cosine[i] < facing || cosine[j] < facing) continue;
                 if ((in.visible[i] > 0.5f) == (in.visible[j] > 0.5f)) continue;
                 const double apart = distance(i, j);
-                // Neighbours of a silhouette are pixels of two surfaces.
+                // Neighbours across a silhouette belong to two surfaces.
                 if (!(apart > 0) || apart > in.reach) continue;
                 mark(x, y, apart);
                 mark(u, v, apart);

@@ -50,8 +50,8 @@ struct SubsetInputs {
     // 1 lit, 0 in a cast shadow; any value where N.L <= 0. Empty: penumbrae are unknown
     std::span<const float> visible;
     std::span<const uint8_t> covered;  // 0: background
-    float reach = 1;  // length, 1 mm: how far from the edge of a cast shadow its penumbra goes
-    // These three are known together, or all empty.
+    float reach = 1;  // length, 1 mm: distance of a penumbra's border from the edge of its shadow
+    // These three are all given, or all empty.
     std::span<const float> meanCurvature = {};  // 1/length, signed: convex is positive
     std::span<const float> thickness = {};      // length of the body below the pixel, along its normal
     std::span<const float> meanFreePath = {};   // length, of the channel that scatters most

@@ -57,9 +57,9 @@ Image readImage(const std::string& path);
 Image decodeImage(const std::string& path, std::string bytes,
                   const std::function<void(const Image&)>& check = {}, uint64_t limit = inputLimit(),
                   const std::vector<std::string>* names = nullptr);
-// Reads the pixels of those channels alone, where that is faster (EXR). The image lists all channels of the
-// file; the others have no pixels. Names are those of Image::channel(); one that fits no channel, or
-// several, is no error here.
+// Reads only the pixels of those channels, where that is faster (EXR). The image lists all channels of the
+// file; the others have no pixels. Names are those of Image::channel(); one that fits no channel, or several,
+// is no error here.
 Image readChannels(const std::string& path, const std::vector<std::string>& names);
 
 // Where a channel's values go: that of pixel i to first[i * stride]. nullptr: it is not wanted.
@@ -77,7 +77,7 @@ Image readChannelsTo(const std::string& path, const PlaceChannels& places);
 enum class ExrCompression { Zip, Rle };
 void writeExr(const std::string& path, const Image& image, ExrCompression compression = ExrCompression::Zip);
 
-// Whether writeImage8 writes files of this extension; the second throws FileError, else returns it.
+// Whether writeImage8 writes files of this extension. requirePicture returns it, or throws FileError.
 bool isPicture(const std::string& path);
 std::string requirePicture(const std::string& path);
 

@@ -47,7 +47,7 @@ std::string png(const std::string& path, std::string_view file, uint64_t limit) 
 }
 
 // Segments [ITU-T T.81, annex B]: a marker and, with few exceptions, a length. Left out: comments and
-// application data, except those of JFIF and Adobe, which say what the channels are.
+// application data, except those of JFIF and Adobe, which define the channels.
 std::string jpeg(const std::string& path, std::string_view file, uint64_t limit) {
     std::string kept(file.substr(0, 2));
     for (size_t at = 2;;) {
@@ -113,7 +113,7 @@ std::string bmp(const std::string& path, std::string file, uint64_t limit) {
 struct Known {
     std::string_view extension, name;
     const char* reader;
-    std::string_view beginning;  // that the content begins with; TGA has none
+    std::string_view beginning;  // signature at the start of the content; TGA has none
 };
 constexpr Known formats[] = {{"exr", "OpenEXR", "openexr", "\x76\x2f\x31\x01"sv},
                              {"png", "PNG", "png", "\x89PNG\r\n\x1a\n"sv},

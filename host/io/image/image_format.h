@@ -10,7 +10,7 @@ namespace pellucid::io {
 
 struct ImageFormat {
     const char* reader;  // OpenImageIO's name for it
-    // Of the file, without what pictures do not need: text, colour profiles, thumbnails, EXIF
+    // Of the file, without text, colour profiles, thumbnails and EXIF
     std::string bytes;
 };
 
@@ -21,7 +21,7 @@ ImageFormat imageFormat(const std::string& path, std::string bytes, uint64_t lim
 // Throws FileError if so many pixels and channels take more than `limit` bytes as floats.
 void checkImageSize(const std::string& path, double width, double height, double channels, uint64_t limit);
 
-// The header of an EXR file, checked before a library allocates what it announces [OpenEXR File Layout].
+// The header of an EXR file, checked before a library allocates memory for it [OpenEXR File Layout].
 
 // Reads attributes one after another. Everything is checked against the end of the file.
 class ExrAttributes {

@@ -23,7 +23,7 @@ struct PictureLibrary {
     int (*textWidth)(const std::string& text, int size);  // pixels
 };
 
-// PNG files alone, by libpng; other files are a FileError. Draws no text.
+// Only PNG files, by libpng; other files are a FileError. Draws no text.
 extern const PictureLibrary pngPictures;
 
 // The module, loaded the first time; in builds without OpenImageIO it is pngPictures. Throws FileError, which

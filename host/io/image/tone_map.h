@@ -9,7 +9,7 @@ namespace pellucid::io {
 
 enum class ToneCurve {
     soft,    // displayed values are proportional to radiance up to the shoulder, and approach 1 above it
-    none,    // proportional to 1, cut there
+    none,    // proportional up to 1, clamped there
     filmic,  // a toe and a long shoulder, per channel [Hable, Filmic Tonemapping Operators, 2010]
     // A sigmoid over stops, after bright colours were mixed with grey as on film [after Sobotka's AgX, 2022]
     agxLike

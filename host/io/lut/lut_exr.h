@@ -10,8 +10,8 @@ namespace pellucid::io {
 
 // Uncompressed scan lines of R, G and B. Attributes hold the description of the table
 // (io/lut/lut_describe.h), `key`, and a checksum of the whole file. `texels`: as pelLutRead returns them in
-// that encoding, float or half [OpenEXR File Layout, version 2]. `stack`: of so many tables of one size below
-// each other, whose number stands in place of a description.
+// that encoding, float or half [OpenEXR File Layout, version 2]. `stack`: number of tables of one size, one
+// below the other; above 1 the number is stored instead of a description.
 std::string encodeLutExr(const PelLutInfo& info, PelLutEncoding encoding, std::string_view texels,
                          const std::string& key, uint32_t stack = 1);
 

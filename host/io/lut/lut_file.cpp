@@ -123,7 +123,7 @@ void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLut
             if (key == name && is != asked) refuse(name, is, asked);
         };
         const auto sameLength = [&](const char* name, float is, float asked) {
-            if (asked != 0) same(name, is, asked);  // 0: whatever the profile has
+            if (asked != 0) same(name, is, asked);  // 0: the profile's own, any value
         };
         same("width", width, askedWidth);
         same("height", height, askedHeight);

@@ -13,7 +13,7 @@ namespace pellucid::io {
 // written, std::invalid_argument when container and encoding do not go together.
 void writeLut(const std::string& path, const Lut& lut, std::optional<PelLutEncoding> encoding = {});
 
-// What writeLut would choose, before long work. Throws as writeLut does, also if the file cannot be written.
+// The encoding that writeLut would choose. Throws as writeLut does. Call it before long work.
 PelLutEncoding checkLutPath(const std::string& path, std::optional<PelLutEncoding> encoding);
 
 // A table that was read but is not on a device yet.

@@ -1,4 +1,4 @@
-// What descriptions of tables begin with, by name: in scenes, in manifests and on the command line.
+// Presets from which descriptions of tables start, by name: in scenes, in manifests and on the command line.
 #pragma once
 #include <cstdint>
 #include <string_view>
@@ -25,7 +25,7 @@ inline PelLutInfo presetInfo(LutPreset preset, PelLutKind kind = PEL_LUT_CURVATU
     return info;
 }
 
-// Scenes and manifests of version 1 begin with FaceWorks' tables, so that those of before keep their meaning.
+// Scenes and manifests of version 1 start from FaceWorks' tables, so that old files keep their meaning.
 constexpr int64_t lutPresetVersions = 2;
 constexpr LutPreset presetOfVersion(int64_t version) {
     return version < 2 ? LutPreset::faceworks : LutPreset::material;

@@ -126,7 +126,7 @@ ProfileFile parseProfile(const std::string& file, const std::string& text) {
     reader.text("source", result.source);
     PelProfileKind kind = PEL_PROFILE_SKIN;
     reader.choice("kind", kind, profileKinds);
-    // Skin that says what it is made of is computed.
+    // Skin with keys of its composition is computed.
     if (kind == PEL_PROFILE_SKIN &&
         std::ranges::any_of(skinKeys, [&](const char* key) { return reader.has(key); }))
         kind = PEL_PROFILE_SKIN_LAYERS;

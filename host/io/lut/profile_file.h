@@ -9,7 +9,7 @@ namespace pellucid::io {
 struct ProfileFile {
     std::string name, kind, source;  // source: where the numbers come from
     Profile profile;                 // lengths in mm, whatever the file's unit; named `name`
-    std::optional<PelSkin> skin;     // what a profile of pigments is computed from
+    std::optional<PelSkin> skin;     // the composition of a profile of pigments
 };
 
 // Reads a profile from TOML text; `file` is for messages. Throws FileError with the line: unknown key, wrong

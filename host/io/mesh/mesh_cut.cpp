@@ -35,7 +35,7 @@ class Cutter {
         return entry->second;
     }
 
-    // The texture coordinates there, the same in both triangles of an edge where theirs are.
+    // UVs of the new vertex: equal in both triangles of an edge if the UVs of the edge's ends are.
     std::array<float, 2> uvAt(uint32_t a, uint32_t b, std::array<float, 2> uvA,
                               std::array<float, 2> uvB) const {
         if (a > b) std::swap(a, b), std::swap(uvA, uvB);

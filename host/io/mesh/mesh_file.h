@@ -13,7 +13,7 @@ struct MeshData {
     std::vector<float> normals;       // unit xyz per vertex, or empty
     std::vector<float> uvs;           // u, v per vertex, or empty
     std::vector<uint32_t> triangles;  // three indices each; polygons become fans round their first corner
-    // Vertices beyond the file's own, made at UV seams: which one each copies
+    // For each vertex added at UV seams, after the file's own: the vertex that it copies
     std::vector<uint32_t> splitFrom;
     size_t trianglesTurned = 0;         // by MeshLoadOptions.orient
     std::vector<std::string> warnings;  // what was left out or repaired, one sentence each
@@ -33,9 +33,9 @@ struct MeshLoadOptions {
     bool orient = false;
 };
 
-// Parses with OpenMesh, but keeps every face, also those with non-manifold edges, which an OpenMesh mesh
-// refuses. Throws FileError: file missing or damaged (with its line in text files), unknown extension, a
-// position that is not finite, an index out of range, no face.
+// Keeps every face, even those with non-manifold edges, which an OpenMesh mesh refuses. Throws FileError:
+// file missing or damaged (with its line in text files), unknown extension, a position that is not finite, an
+// index out of range, no face.
 MeshData loadMesh(const std::string& path, const MeshLoadOptions& options = {});
 // The same from the bytes of a file; `path` is for messages and names the format.
 MeshData decodeMesh(const std::string& path, const std::string& text, const MeshLoadOptions& options = {});
@@ -48,8 +48,8 @@ void splitAtSeams(MeshData& mesh, std::span<const float> cornerUvs);
 // that seams do not show; opposite ones cancel out. Vertices of no triangle get (0, 0, 1).
 void computeNormals(MeshData& mesh);
 
-// `levels` times four triangles from one, by OpenMesh's Loop scheme; UVs are interpolated linearly, normals
-// dropped, indices of vertices kept. Throws FileError, naming the triangle, if it is not manifold.
+// Splits each triangle into four, `levels` times, by OpenMesh's Loop scheme; UVs are interpolated linearly,
+// normals dropped, indices of vertices kept. Throws FileError, naming the triangle, if it is not manifold.
 void loopSubdivide(MeshData& mesh, int levels);
 
 // Scales and moves so that the largest extent along `axis` (0 x, 1 y, 2 z) is `height` and the bounding box

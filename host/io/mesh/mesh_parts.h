@@ -21,10 +21,10 @@ PartedMesh loadParts(const std::string& path, int levels);
 // The same from the bytes of a file; `path` is for messages.
 PartedMesh decodeParts(const std::string& path, const std::string& text, int levels);
 
-// Removes what is below a plane, where dot(normal, p) < offset, cuts the triangles that cross it, and
-// closes each hole of the cut part with triangles of a new part called `cap`, whose normals face down the
-// plane and whose UVs are 0. The cut must be one closed, star-shaped curve, as that of a neck is; an open
-// curve is not closed.
+// Removes the part below a plane, where dot(normal, p) < offset, cuts the triangles that cross it, and closes
+// each hole of the cut part with triangles of a new part called `cap`, whose normals face down the plane and
+// whose UVs are 0. The cut must be one closed, star-shaped curve, as that of a neck is; an open curve is not
+// closed.
 void cutAndClose(PartedMesh& mesh, const std::string& part, const float (&normal)[3], float offset,
                  const std::string& cap);
 

@@ -22,7 +22,7 @@ struct RawMesh {
 };
 
 // Each throws FileError with the line of the first number that is missing, not finite, or an index out of
-// range. No other file is opened, nor those that the text names (an OBJ's materials).
+// range. No other file is opened, not even files that the text names (an OBJ's materials).
 RawMesh readOff(const std::string& path, const std::string& text);  // ASCII: not "OFF BINARY"
 RawMesh readObj(const std::string& path, const std::string& text);
 RawMesh readStl(const std::string& path, const std::string& text);  // ASCII and binary

@@ -1,5 +1,5 @@
-// The scene file of `pellucid shade`: TOML that says what the channels of a G-buffer are, and which lights,
-// materials and tables to use (docs/guide/scene-file.md); the fields are those of pellucid.h.
+// The scene file of `pellucid shade`: TOML that names the channels of a G-buffer, and describes lights,
+// materials and tables (docs/guide/scene-file.md); the fields are those of pellucid.h.
 #pragma once
 #include <array>
 #include <optional>
@@ -29,12 +29,12 @@ struct SceneMaterial {
     // Name of a SceneLut; "": the profile's; without a profile no direct scattering
     std::string curvatureLut;
     std::string shadowLut;  // name of a SceneLut; "": the profile's; without a profile a plain shadow
-    // A material's name or a profile file: what is left to defaults follows from it; "": none
+    // A material's name or a profile file, from which defaults follow; "": none
     std::string profile;
     ScenePreset preset = ScenePreset::none;
     std::string scatteredTexture;  // image of light that was scattered in texture space, linear; "": none
     std::string normalMap;  // image of tangent-space normals, x, y, z from 0 to 1 as in 8-bit files; "": none
-    // Instead: its levels, the finest first, x, y, z from -1 to 1
+    // Alternative: its levels, the finest first, x, y, z from -1 to 1
     std::vector<std::string> normalMapLevels;
     int line = 0;
 };

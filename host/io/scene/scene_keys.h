@@ -21,7 +21,7 @@ struct SlotKey {
     std::string_view key;
     size_t components;
 };
-// Inputs name their channels, outputs their files; of radiance what it holds before.
+// Inputs name their channels, outputs their files; radiance names the channels of its previous content.
 #define PELLUCID_INPUT_TARGET(...) {__VA_ARGS__},
 #define PELLUCID_INPUT_SHADE(...) {__VA_ARGS__},
 #define PELLUCID_INPUT_PASS(...) {__VA_ARGS__},

@@ -70,7 +70,7 @@ std::string sceneText(const SceneFile& scene) {
 
 void writeScene(const std::string& path, const SceneFile& scene) {
     const std::string text = sceneText(scene);
-    parseScene(path, text);  // a scene that cannot be read must not replace one that can
+    parseScene(path, text);  // an unreadable scene must not replace a readable one
     writeWholeFile(path, text);
 }
 

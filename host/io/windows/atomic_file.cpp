@@ -85,7 +85,7 @@ void AtomicFile::commit(bool) {
 
 void flushFolder(const std::string&) {}  // MOVEFILE_WRITE_THROUGH has done it
 
-// One that a program of this machine has open cannot be removed: Windows keeps it.
+// Windows does not remove a file that a program of this machine has open.
 size_t removeAbandonedFiles(const std::string& path) {
     size_t removed = 0;
     for (const auto& [name, abandonedAfter] : temporaryFiles(path)) {

@@ -86,7 +86,7 @@ void setVariable(const char* name, const char* value) {
     value ? ::setenv(name, value, 1) : ::unsetenv(name);
 }
 
-// A CPU's name does not tell which instructions it has: virtual machines hide some of them.
+// A CPU's name does not determine its instruction set: virtual machines hide parts of it.
 std::string instructionSet() {
     std::ifstream file("/proc/cpuinfo");
     for (std::string line; std::getline(file, line);)

@@ -40,7 +40,7 @@ class Writer {
         for (const pel::CapturedMaterial& material : frame_.materials) addMaterial(material);
         scene_.gbuffer = "gbuffer.exr";
         writeExr(folder_ + scene_.gbuffer, gbuffer_);
-        writeScene(folder_ + "scene.toml", scene_);  // last: where it is, all is
+        writeScene(folder_ + "scene.toml", scene_);  // last: if it exists, all files do
     }
 
   private:
@@ -49,7 +49,7 @@ class Writer {
         image.width = int(from.width), image.height = int(from.height);
         image.addInterleaved(names, from.values);
     }
-    // A file of these channels; "": there is no image.
+    // Writes these channels to a file; "": there is no image.
     std::string file(const std::string& name, const Names& names, const pel::CapturedImage& from) const {
         if (!from) return {};
         Image image;
