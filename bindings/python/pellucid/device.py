@@ -72,7 +72,7 @@ class Device(OfThisProcess):
 
     def _open(self, handle: _native.Device) -> None:
         self._handle = handle
-        # Elsewhere the memory of a NumPy array is not the device's, and moves with each submission.
+        # Other devices do not share memory with NumPy arrays: the bytes move with each submission.
         self._in_place = self.info.type == DeviceType.CPU
 
     @classmethod
@@ -95,7 +95,7 @@ class Device(OfThisProcess):
 
     @property
     def info(self) -> DeviceInfo:
-        """Name, units, memory and what else matters."""
+        """Name, units, memory and other properties."""
         return _filled(DeviceInfo, self._handle.info())
 
     def stats(self) -> DeviceStats:
