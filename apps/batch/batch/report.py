@@ -16,7 +16,7 @@ class NoWorker(BatchError):
 
 @dataclass
 class Summary:
-    """Counts of a batch; `failed` are entries that make no sense, or that no worker could make."""
+    """Counts of a batch; `failed` are invalid entries, and entries that no worker could make."""
 
     entries: int = 0
     made: int = 0

@@ -1,4 +1,4 @@
-"""A batch on a cluster that is there, or on one of this machine's processes, one per device."""
+"""A batch on an existing cluster, or on a cluster of local processes, one per device."""
 from __future__ import annotations
 
 import contextlib

@@ -1,4 +1,4 @@
-"""What each mode of the viewer shows."""
+"""The picture of each mode of the viewer."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
@@ -68,7 +68,7 @@ def chosen_method(p: Pass, look: Look) -> str:
 
 
 def _spread(mask: NDArray[Any]) -> NDArray[Any]:
-    """To whole tiles."""
+    """Padded to whole tiles."""
     height, width = mask.shape
     rows, columns = -(-height // _TILE), -(-width // _TILE)
     whole = np.zeros((rows * _TILE, columns * _TILE), bool)
