@@ -67,8 +67,7 @@ class Tests:
         self.rarity = {word: math.log(len(self.words) / count) for word, count in known.items()}
 
     def measure(self, name):
-        """A test without any fault: whether it passes, its processor seconds, and the kernels that it
-        launches."""
+        """Runs a test without any fault: whether it passes, its processor seconds, and its kernels."""
         if name not in self.measured:
             status, seconds, kernels = "does not build", 0, set()
             if self.place.python() if name in self.scripts else self.place.build(name):
