@@ -46,7 +46,7 @@ class Fault:
     new: str
     kind: str
     line: int
-    name: str  # from the lines around it, so that it is found again after edits elsewhere
+    name: str  # from the surrounding lines, so that it is found again after edits elsewhere
 
     def apply(self, text):
         return text[:self.start] + self.new + text[self.end:]

@@ -126,7 +126,7 @@ class Tests:
             return not self.includes(name, fault), -near / (1 + seconds) ** 0.5, name
 
         names = self.scripts if fault.is_python() else self.programs
-        if path.is_relative_to("bindings/cli"):  # what does not run the command cannot notice
+        if path.is_relative_to("bindings/cli"):  # only tests that run the command can notice
             names = [name for name in names if "cli" in self.subjects[name] or name in CHECKS]
         return sorted(names, key=distance)
 

@@ -26,11 +26,11 @@ from .manifest import Manifest
 from .report import BatchError, NoWorker, Summary
 from .store import Store, StoreError
 
-PIECES = 256  # at least, for workers that come later
-PIECES_PER_WORKER = 8  # that is there, so that all end together
+PIECES = 256  # at least, so that later workers get work
+PIECES_PER_WORKER = 8  # per present worker, so that all end at about the same time
 LARGEST_PIECE = 1024  # entries
-ATTEMPTS = 3  # of an entry by itself, before it is to blame for the workers that it costs
-LOOK_SECONDS = 0.5  # between two looks at who is there
+ATTEMPTS = 3  # of a single entry, after which it is blamed for lost workers
+LOOK_SECONDS = 0.5  # between two checks of the present workers
 LATEST_SECONDS = 10.0  # until a dismissed process has ended; Dask kills it after four
 
 
@@ -65,12 +65,12 @@ class Dispatcher:
         self._client, self._manifest, self._store = client, manifest, store
         self._spoken, self._bar_of_all = progress, progress_bar() if progress else None
         self._timeout, self._jobs, self._patience = timeout, jobs, patience
-        self._open = set(range(len(manifest)))  # entries that nobody has finished
+        self._open = set(range(len(manifest)))  # unfinished entries
         self._there = [False] * len(manifest)
         self._attempts: dict[int, int] = {}
         self._present: set[str] = set()
         self._barred: set[str] = set()
-        self._garbled: set[str] = set()  # workers that gave garbage, whose processes may still write
+        self._garbled: set[str] = set()  # workers with invalid answers, whose processes may still write
         # By future: its entries, and the workers it was restricted to; empty: any worker.
         self._pieces: dict[Any, tuple[list[int], set[str]]] = {}
         self._alone = time.monotonic()
@@ -123,14 +123,14 @@ class Dispatcher:
                 done = [future for future in self._pieces if future.done()]
                 for future, answer in zip(done, readers.map(self._receive, done)):
                     piece = self._pieces.pop(future, None)
-                    if piece:  # not submitted anew meanwhile
+                    if piece:  # has not been resubmitted
                         self._handle(piece[0], answer)
                 if self._bar_of_all:
                     self._bar_of_all(1 - len(self._open) / len(self._manifest), "tables")
                 if not done:
                     time.sleep(0.02)
         with contextlib.suppress(NoWorker):
-            self._look()  # who was lost last
+            self._look()  # for the last lost workers
 
     def _written_late(self, readers: ThreadPoolExecutor) -> bool:
         """Whether entries are open again because a dismissed worker kept running until its process ended, and
@@ -161,7 +161,7 @@ class Dispatcher:
         """Also for an unfinished batch, unless the output failed or there is no table."""
         if not any(self._there):
             return
-        other = sys.exc_info()[1]  # what is on its way to the caller
+        other = sys.exc_info()[1]  # the exception in flight
         try:
             self._store.write(self._manifest.index_name, self._manifest.index(self._there))
         except StoreError as e:
@@ -278,7 +278,7 @@ class Dispatcher:
         elif isinstance(answer, BaseException):  # KilledWorker, an answer that cannot be read, ...
             self._trouble(f"work was lost: {type(answer).__name__}: {answer}")
             self._again(indices)
-        elif answer[1] == "unfit":  # no entry is to blame, and a restart is no help
+        elif answer[1] == "unfit":  # not the entries' fault, and a restart does not help
             self._bar(answer[0], f"gets no work: {answer[2]}", restart=False)
             self._submit(indices)
         elif answer[1] == "garbage":
@@ -311,7 +311,7 @@ class Dispatcher:
 
     def _close(self, address: str, index: int, what: str) -> None:
         self._open.discard(index)
-        if self._there[index]:  # counted before it was written over
+        if self._there[index]:  # counted before it was overwritten
             return
         self._there[index] = True
         if what == work.KEPT:

@@ -33,7 +33,7 @@ def _local_client(count: Optional[int], selectors: Sequence[str], timeout: float
             raise NoWorker(str(e)) from None
     if not selectors and os.environ.get("PELLUCID_DEVICE"):
         chosen = [os.environ["PELLUCID_DEVICE"]]
-    here = {"host": "127.0.0.1"}  # whoever reaches a port of Dask can execute anything
+    here = {"host": "127.0.0.1"}  # anyone who can connect to a Dask port can execute code
     worker = {**here, "nthreads": 1, "memory_limit": 0, "silence_logs": logging.CRITICAL,
               "preload": ["pellucid.batch.interrupt"]}
     workers = {i: {"cls": distributed.Nanny,

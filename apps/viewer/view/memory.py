@@ -75,7 +75,7 @@ def recall(memory: Memory, session: Any) -> str:
         session.load(last["mesh"], last.get("subdivide"), last.get("up", "auto"))
     except (KeyError, TypeError, ValueError, OSError, PellucidError):
         return ""
-    for name in ("iris_texture", "surroundings"):  # files that a page was given went with that run
+    for name in ("iris_texture", "surroundings"):  # files dropped on the page were deleted with that run
         if getattr(look, name) not in ("", STUDIO) and not Path(getattr(look, name)).is_file():
             setattr(look, name, "")
     session.look, session.orbit = look, orbit

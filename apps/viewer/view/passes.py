@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 OUTPUTS = {"diffuse": "out_diffuse", "specular": "out_specular", "deep_scatter": "out_deep_scatter",
            "thickness": "out_thickness"}
 
-PATIENCE = 0.3  # seconds that a first picture waits for kernels before it does without
+PATIENCE = 0.3  # seconds that a first picture waits for kernels
 
 
 def _yield_to_pictures() -> None:
@@ -99,7 +99,7 @@ class Pass:
                     self.shader.set_eye(id, eyes.get(id))
                 if id in eyes:
                     self.shader.set_iris_texture(id, iris)
-            self._set.pop("texture", None)  # which went with its material
+            self._set.pop("texture", None)  # removed with its material
 
         state = {k: (m._data.tobytes(), id(m._profile)) for k, m in materials.items()}
         self._update("materials",
@@ -132,7 +132,7 @@ class Pass:
                          len(lights), [m.specular > 0 for m in materials.values()],
                          any(look.deep_scatter), look.transmission > 0)
             if structure != self._structure and not session.background:
-                # Only then may kernels have to be compiled: with progress.
+                # Kernels can only be missing in this case: warm up with progress.
                 warm_up_programs(self.device, shaders=[self.shader])
                 self._structure = structure
             if session.background and session.sketched:

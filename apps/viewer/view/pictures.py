@@ -105,7 +105,7 @@ def tiles(session: Session, look: Look, width: int, height: int,
     shown[_spread(material > 0)] = 0.08
     shown[_spread(material == SKIN)] = 0.25 * color
     shown[tapped] = color
-    shade = np.clip(q.outputs["radiance"].mean(2, keepdims=True), 0, 1)  # so that one sees where one is
+    shade = np.clip(q.outputs["radiance"].mean(2, keepdims=True), 0, 1)  # for orientation
     shown *= 0.6 + 0.4 * shade
     shown[::_TILE] *= 0.6
     shown[:, ::_TILE] *= 0.6

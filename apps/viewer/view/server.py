@@ -39,7 +39,7 @@ class Pace:
         self._step = 2
         self._last: Optional[float] = None
         self._periods: list[float] = []
-        self._rest = 0  # pictures for which larger ones are not tried: they were too slow
+        self._rest = 0  # number of pictures before larger ones, which were too slow, are tried again
 
     @property
     def step(self) -> tuple[float, int]:
@@ -65,7 +65,7 @@ class Pace:
         elif self._step > 0 and not self._rest:
             (larger, fewer), (scale, every) = self.STEPS[self._step - 1], self.step
             pixels = (larger * every / (scale * fewer))**2
-            if period * (0.5 + 0.5 * pixels) < MUCH * slow:  # about half of the time goes into pixels
+            if period * (0.5 + 0.5 * pixels) < MUCH * slow:  # about half of the time is spent on pixels
                 self._step -= 1
 
 
@@ -77,7 +77,7 @@ class Viewer:
         self._open = open_device
         self.memory = Memory(standard_file()) if memory is None else memory
         self.changes = 0
-        self._preparing: Optional[int] = None  # kernels, after that many changes: the next one ends it
+        self._preparing: Optional[int] = None  # kernels, at this change count: the next change ends it
         self._thread = ThreadPoolExecutor(1, "pellucid-view")  # OpenGL contexts belong to a thread
         self._opening = self._thread.submit(lambda: make(self._device()))
         self._folder, self._kept = tempfile.TemporaryDirectory(), 0
@@ -335,7 +335,7 @@ class Viewer:
                     except asyncio.TimeoutError:
                         taken = sent
                 if made is not None and made[0].stands_in:
-                    sample = 0  # until the kernels are there, one picture is as good as eight
+                    sample = 0  # until the kernels are ready, one picture is as good as eight
                 elif made is not None and not small and sample >= self.session.samples and not event.is_set():
                     await self._prepare(width, height)
                 if made is not None and made[0].stands_in and not event.is_set():

@@ -57,13 +57,13 @@ class Shaded:
     depth: NDArray[np.float32]
     matrix: NDArray[np.float64]  # of the camera
     inside: bool  # whether back sides are seen
-    left: int = 2  # so many more views
+    left: int = 2  # number of further views
 
 
 # (specular, roughness) of what is not skin, as in the demo.
 # Eyes: that of their film of tears.
 _GLOSS = {EYES: (0.0, 1.0), RIGHT_EYE: (0.0, 1.0), TEETH: (0.05, 0.2), TONGUE: (0.05, 0.2), CUT: (0.0, 1.0)}
-COSTLY = "reference", "error", "tiles"  # modes whose pictures take long
+COSTLY = "reference", "error", "tiles"  # modes with slow pictures
 SAMPLES = 8  # pictures that are averaged for smooth edges
 UNITS = {1.0: "millimetres", 10.0: "centimetres", 25.4: "inches", 1000.0: "metres"}
 PLAUSIBLE = 30.0, 3000.0  # mm: size of an object on which scattering in skin shows
@@ -136,7 +136,7 @@ class Session:
         self.told = ""  # of the materials of a file
         self.orbit = Orbit()
         self.look = Look()
-        self.other: Optional[Look] = None  # on the right of the wipe
+        self.other: Optional[Look] = None  # the look on the right of the dividing line
         self.against = ""  # a method: the right side is the left one with it, in place of `other`
         self.wipe = 0.5
         self.beside = False  # two whole pictures, in place of the wipe
