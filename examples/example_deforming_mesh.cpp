@@ -20,7 +20,7 @@ std::vector<uint32_t> tubeTriangles() {
     return t;
 }
 
-// A cylinder that breathes: its radius in this frame, xyz and normal per vertex.
+// A cylinder whose radius changes from frame to frame: xyz and normal per vertex for this radius.
 std::vector<float> tube(float radius) {
     std::vector<float> v;
     for (uint32_t i = 0; i < count; ++i) {

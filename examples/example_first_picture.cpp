@@ -1,5 +1,5 @@
 // A renderer's first frames while kernels are still being built: skin on a ball, as an engine draws it. The
-// first frame is shaded by what builds soon; the material's own method takes over when its kernels are there.
+// first frame is shaded by a stand-in that builds quickly, until the material's own kernels are ready.
 //
 // Run it twice: the second time everything is on disk. With --wait the first frame waits instead.
 #include <chrono>

@@ -1,4 +1,4 @@
-/* A renderer's own kernel calls a shading term of kernels/lib, as it would include a shader file: here
+/* A renderer's own kernel includes a shading term of kernels/lib, like a shader file: here
  * Kelemen and Szirmay-Kalos' specular with a light and a colour of the renderer's own. PELLUCID_KERNELS is
  * the folder to include from: pellucid_KERNELS in CMake, `pkg-config --variable=kernels pellucid` elsewhere.
  */

@@ -1,6 +1,6 @@
-/* Progress and cancelling: a callback hears how far long work is, here the analysis of a mesh of a million
- * triangles, and ends it by returning 0. A cancelled call leaves nothing behind, and everything stays usable.
- */
+/* Progress and cancelling: a callback receives the progress of long work, here the analysis of a mesh of a
+ * million triangles, and ends it by returning 0. A cancelled call leaves nothing behind, and everything stays
+ * usable. */
 #include <pellucid/pellucid.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -99,7 +99,7 @@ constexpr Way ways[] = {
     {"cl_khr_external_memory_dma_buf", VK_EXT_EXTERNAL_MEMORY_DMA_BUF_EXTENSION_NAME,
      CL_EXTERNAL_MEMORY_HANDLE_DMA_BUF_KHR, vk::ExternalMemoryHandleTypeFlagBits::eDmaBufEXT}};
 
-// How an OpenCL device takes memory of this GPU; nullptr: not at all.
+// The way in which an OpenCL device shares memory of this GPU; nullptr: none.
 const Way* wayOf(cl_device_id device, vk::PhysicalDevice gpu, const vk::PhysicalDeviceIDProperties& ids) {
     static char openCl[1 << 16];
     cl_uchar uuid[CL_UUID_SIZE_KHR];

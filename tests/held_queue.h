@@ -42,8 +42,8 @@ class HeldQueue {
     bool released_ = false;
 };
 
-// Whether it ends. A call that stands still uses no processor time; a slow machine, or one that lets others
-// go first, is not taken for that.
+// Whether the call ends. A call that hangs uses no processor time, which distinguishes it from a slow or busy
+// machine.
 inline bool ends(const std::future<void>& running) {
     std::clock_t used = std::clock();
     for (int still = 0; still < 20; ++still) {
@@ -55,8 +55,8 @@ inline bool ends(const std::future<void>& running) {
     return false;
 }
 
-// `call` gets what makes it wait for the event, and must return before that is set. Kernels stay until their
-// launches have run: NVIDIA's driver (580) uses them. Everything has run at the end.
+// `call` gets a PelSubmit that waits for the event, and must return before the event is set. Kernels stay
+// until their launches have run: NVIDIA's driver (580) uses them. Everything has run at the end.
 template <class Call>
 void expectReturns(const pellucid::Device& device, const char* what, const Call& call) {
     device.stats();  // forgets finished launches

@@ -1,4 +1,4 @@
-// Results beside kept ones: what changes in any of them has to be meant. PELLUCID_KEEP_PICTURES=1 keeps new
+// Compares results with kept ones, so that every change must be intended. PELLUCID_KEEP_PICTURES=1 keeps new
 // ones, in tests/kept.
 #pragma once
 #include <gtest/gtest.h>

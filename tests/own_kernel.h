@@ -1,4 +1,4 @@
-// Runs kernels of a test that include the library's, as a renderer's own do.
+// Runs kernels of a test that include the library's functions, as a renderer's own kernels do.
 #pragma once
 #include <CL/cl.h>
 #include "test.h"

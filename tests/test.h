@@ -1,4 +1,4 @@
-// What all tests use beside tools.h: tolerances and refusals.
+// Shared by all tests, in addition to tools.h: tolerances and expected errors.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ void expectRefused(const char* word, const Call& call) {
     expectRefused(std::vector{word}, call);
 }
 
-// What two programs make of one frame.
+// The results of two programs for one frame.
 inline void expectSameBits(const pellucid::Device& device, const std::vector<float>& a,
                            const std::vector<float>& b) {
     ASSERT_EQ(a.size(), b.size());

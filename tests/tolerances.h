@@ -77,7 +77,7 @@ constexpr double sliverSphere = 0.01;
 constexpr double torusQuadric = 0.002;
 // largest relative error of the quadric fit, cells up to 16 times longer than wide
 constexpr double longCells = 0.005;
-// of the local curvedness, RMS: what is wanted of 20,000 scattered vertices; 0.02 to 0.15 % measured
+// of the local curvedness, RMS: the target for 20,000 scattered vertices; 0.02 to 0.15 % measured
 constexpr double scatteredRms = 0.01;
 constexpr double scatteredWorst = 0.1;  // the largest of them: what is wanted; 0.2 to 6 % measured
 // RMS after the two default passes, against the surface: 0.001 to 0.96 % measured

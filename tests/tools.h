@@ -1,4 +1,4 @@
-// What tests and measurements use: the standard headers, sizes and halves.
+// Shared by tests and measurements: the standard headers, sizes and halves.
 #pragma once
 #include <algorithm>
 #include <atomic>

@@ -1,5 +1,5 @@
-// Hair of the demo's head: brows, lashes and short hair on the scalp, as strands whose light is added to that
-// of the skin. As surfaces of the G-buffer they would leave gaps across which no light scatters.
+// Hair of the demo's head: brows, lashes and short hair on the scalp, as strands whose light is added to the
+// light of the skin. As surfaces of the G-buffer, strands would leave gaps across which no light scatters.
 #pragma once
 #include "demo/demo_head.h"
 #include "sample/gbuffer.h"
@@ -7,7 +7,7 @@
 
 namespace pellucid::demo {
 
-// For a head that looks to +z with y up, as the project's own do; none without two eyes.
+// For a head that faces +z with y up, like the heads of the project; no strands without two eyes.
 std::vector<Strand> strandsOf(const sample::Scene& skin, const DemoHead& head);
 
 // The same for shadow rays.
@@ -24,8 +24,8 @@ struct StrandLight {
     const sample::Scene* occluders = nullptr;
 };
 
-// Strands before black, hidden parts left out: red, green and blue of their light, and the share of each
-// pixel that they cover.
+// Strands on black, without hidden parts: red, green and blue of their light, and the covered share of each
+// pixel.
 sample::Image drawStrands(const std::vector<Strand>& strands, const StrandLight& light,
                           const sample::Camera& camera, const sample::GBuffer& gbuffer);
 

@@ -41,7 +41,7 @@ double lipLineOf(const Bounds& upperTeeth) {
     return upperTeeth.low.y - 1.5;
 }
 
-// A dark zone in the nostril near `p`, which is shallow in the mesh and goes on up into the dark after this.
+// Deepens the nostril near `p`, which is shallow in the mesh, upwards, and returns a dark zone for it.
 sample::SkinZone deepNostril(io::MeshData& mesh, Vec3 p, double eyeDistance) {
     // The roof: what faces down and lies highest.
     std::vector<Vec3> roof;
@@ -66,7 +66,7 @@ sample::SkinZone deepNostril(io::MeshData& mesh, Vec3 p, double eyeDistance) {
     return zone;
 }
 
-// Blood shows where skin is thin: lips, lids, cheeks, nose, ears. Forehead, nose and chin are oily; lips are
+// Skin is redder where it is thin: lips, lids, cheeks, nose, ears. Forehead, nose and chin are oily; lips are
 // moist and have no pores. Places and sizes follow the distance between the eyes, the lips and the outline;
 // the strength is chosen by eye.
 std::vector<sample::SkinZone> zonesOf(io::PartedMesh& head, const Bounds (&eyes)[2], double lipLine,
@@ -117,8 +117,8 @@ std::vector<sample::SkinZone> zonesOf(io::PartedMesh& head, const Bounds (&eyes)
     return zones;
 }
 
-// The lips are open by a hair: swollen, they meet. Teeth reach into them: moved back and in, they stay in the
-// mouth's shade.
+// Closes the small gap between the lips by moving their surface outwards. The teeth would reach into the
+// lips, so they are moved back and in, where the mouth shades them.
 void closeMouth(io::PartedMesh& head, double lipLine, double eyeDistance) {
     constexpr float back = 6;    // mm
     constexpr double swell = 1;  // mm
@@ -181,8 +181,8 @@ void addEllipsoid(io::PartedMesh& head, uint32_t part, Vec3 centre, Vec3 radii) 
     if (!head.cornerUvs.empty()) head.cornerUvs.resize(2 * head.mesh.triangles.size());
 }
 
-// Fills what is open between ball and lids: beside the nose with the caruncle, a pink and moist hillock, at
-// the outer corner with more of the ball, which is rounder than an eye's white.
+// Fills the gaps between ball and lids: beside the nose with the caruncle, a pink and moist bump, and at the
+// outer corner by extending the ball, which is rounder than a real sclera.
 void fillCorners(io::PartedMesh& head, const sample::EyeLook& eye, uint32_t ball,
                  std::vector<sample::SkinZone>& zones) {
     const double toNose = eye.centre.x > 0 ? -1 : 1;
@@ -271,7 +271,7 @@ DemoHead loadDemoHead(const std::string& path, int levels) {
     out.looks.resize(DEMO_LASHES);
     out.looks[DEMO_SKIN - 1].albedo = {0.72f, 0.50f, 0.40f};
     out.looks[DEMO_EYES - 1].kind = out.looks[DEMO_RIGHT_EYE - 1].kind = sample::Look::Kind::Eye;
-    // Behind closed lips hardly any light comes: a fifth of teeth's and tongue's own albedo.
+    // Hardly any light gets behind closed lips: teeth and tongue have a fifth of their albedo.
     out.looks[DEMO_TEETH - 1] = {sample::Look::Kind::Plain, {0.15f, 0.14f, 0.12f}};
     out.looks[DEMO_TONGUE - 1] = {sample::Look::Kind::Plain, {0.11f, 0.045f, 0.04f}};
     out.looks[DEMO_CUT - 1] = {sample::Look::Kind::Plain, {0.02f, 0.02f, 0.02f}};

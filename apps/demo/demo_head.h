@@ -1,4 +1,4 @@
-// The head of the demo: one of the two that come with the project, or somebody's mesh.
+// The head of the demo: one of the two that come with the project, or a mesh of the user.
 #pragma once
 #include "io/mesh/mesh_file.h"
 #include "io/scene/scene_file.h"

@@ -15,7 +15,7 @@ constexpr double albedo[] = {0.07, 0.045, 0.03}, gloss = 0.03;  // dark brown
 // The light of a strand, by Kajiya and Kay: a diffuse cylinder, a highlight of the hair's colour and a
 // narrower one of its surface.
 std::array<double, 3> lightOf(const Strand& strand, const StrandLight& light, Vec3 eye) {
-    // A little before the skin: light that comes in flat reaches hair behind the skin's horizon.
+    // Starts a little in front of the skin: grazing light reaches hair behind the skin's horizon.
     const Vec3 middle = strand.points[strand.points.size() / 2] + strand.normal * 3;
     const Vec3 along = normalize(strand.points.back() - strand.points.front());
     const sample::Rgb sky = light.sky.radiance(strand.normal);
@@ -63,7 +63,7 @@ sample::Image drawStrands(const std::vector<Strand>& strands, const StrandLight&
         const Vec3 c = toClip.project(p);
         return Vec3{(0.5 + 0.5 * c.x) * g.width, (0.5 - 0.5 * c.y) * g.height, depthOf(p)};
     };
-    // The nearest first; what a pixel has got hides the others.
+    // The nearest strand first; the coverage that a pixel has already hides the others.
     std::vector<std::pair<double, const Strand*>> order;
     for (const Strand& strand : strands) {
         const Vec3 root = strand.points.front();

@@ -15,7 +15,7 @@ bool isEye(uint32_t id) {
     return id == DEMO_EYES || id == DEMO_RIGHT_EYE;
 }
 
-// Lids stand before the ball: how far they are from a pixel's place as one sees it.
+// The distance of a pixel from the lids, mostly across the view: lids are in front of the ball.
 double apart(Vec3 way) {
     return length(Vec3{way.x, way.y, 0.3 * way.z});
 }

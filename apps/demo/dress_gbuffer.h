@@ -1,4 +1,4 @@
-// What the demo adds to a G-buffer of its head where surfaces meet.
+// Details that the demo adds to the G-buffer of its head where surfaces meet.
 #pragma once
 #include "demo/demo_head.h"
 #include "sample/gbuffer.h"
@@ -10,8 +10,8 @@ namespace pellucid::demo {
 // is: 1 at its edge, 0 beyond the lids' edges.
 std::vector<float> dressEyes(sample::GBuffer& gbuffer, sample::Vec3 up);
 
-// Little of the light that gets between lips and hairs or into a nostril comes out again; from the wet edges
-// of lids more does. `occlusion`: as of ambientOcclusion. `wetness`: by dressEyes.
+// Little of the light that enters gaps between lips and hairs or a nostril leaves again; more leaves from the
+// wet edges of lids. `occlusion`: as of ambientOcclusion. `wetness`: by dressEyes.
 void darkenFolds(sample::GBuffer& gbuffer, const sample::Image& occlusion, const std::vector<float>& wetness);
 
 }  // namespace pellucid::demo

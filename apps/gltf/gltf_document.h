@@ -1,5 +1,5 @@
 // The container of a glTF: its JSON, its buffers, and accessors decoded with every bound checked. A small
-// file can name the same accessor or image many times, so all that is decoded counts towards inputLimit().
+// file can name the same accessor or image many times, so all decoded data count towards inputLimit().
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 

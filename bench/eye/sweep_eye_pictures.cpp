@@ -13,7 +13,7 @@ namespace {
 
 constexpr int side = 320;
 
-// Facing the camera, its iris drawn, under a soft light and a lamp from `toLight`.
+// An eye that faces the camera, with a drawn iris, under a soft light and a lamp from `toLight`.
 EyeScene portrait(Vec3 toLight, double strength = 1.1) {
     EyeScene scene;
     scene.size = side;

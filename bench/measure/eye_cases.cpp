@@ -86,7 +86,7 @@ struct EyeSquare {
     }
 };
 
-// Skin everywhere, but a square of 5 % of the pixels that shows the front of a ball: an eye.
+// Skin everywhere, except for a square of 5 % of the pixels that shows the front of a ball, an eye.
 struct EyeFrame {
     uint32_t width, height;
     std::vector<float> position;

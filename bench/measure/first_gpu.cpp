@@ -1,4 +1,4 @@
-// Judges what the first time on a device gave: pictures and operations by tolerances, passes by a roofline.
+// Judges the results of --first-gpu: pictures and operations by tolerances, passes by a roofline.
 #include "measure.h"
 #include "tolerances.h"
 
@@ -26,8 +26,8 @@ constexpr Tolerance operationTolerances[] = {{"normals", tolerance::normalCompon
                                              {"shade-surface", tolerance::shadeSum},
                                              {"shade-32-taps", tolerance::shadeSum},
                                              {"shade-eye", tolerance::shadeSum}};
-// Of pictures, share of white: at nine of ten drawn pixels, and RMS. Where rounding decides otherwise, a
-// pixel takes other samples. Between the compilers of PoCL and Intel the largest error of all is 1.1e-6.
+// Tolerances of pictures, share of white: at nine of ten drawn pixels, and RMS. Rounding may change which
+// samples a pixel takes. Between the compilers of PoCL and Intel the largest error of all is 1.1e-6.
 constexpr double pictureP90 = 3e-5, pictureRms = 5e-4;
 
 // NAN: it is not judged.
@@ -47,8 +47,8 @@ bool isWithin(const Json& e, double tolerance) {
     return below("error_p90", tolerance) && below("error_rms", pictureRms) && e.at("repeats").get<bool>();
 }
 
-// How often the counted work of a kernel is done for `pixels` times the counted pixels, a light in place of
-// two, and its map.
+// The factor on a kernel's counted work for `pixels` times the counted pixels, one light in place of two, and
+// its map.
 double workOf(const std::string& kernel, double pixels, double countedMap) {
     if (kernel == "light_texels" || kernel == "light_reduce") return std::pow(2048 / countedMap, 2) / 2;
     for (const char* ofLight : {"wide_shadow", "light_seen", "light_hidden", "light_classify"})
@@ -68,9 +68,9 @@ std::string passOf(const std::string& kernel, const std::string& method) {
 // limits it.
 void predict(Json& pass, const Json& row, const Json& device, const Json& warps) {
     constexpr double memoryShare = 0.8, arithmeticShare = 0.5;  // as docs/roofline.md
-    // Of the instructions as kernels are written, those that compilers leave: by the operations that
-    // docs/roofline.md counts of two passes. A simulated V100 took 1.1 to 1.6 times as long for wide_shadow,
-    // light_hidden and shade.
+    // The share of a kernel's counted instructions that remains after compilation, estimated from the
+    // operations that docs/roofline.md counts for two passes. A simulated V100 took 1.1 to 1.6 times as long
+    // for wide_shadow, light_hidden and shade.
     constexpr double instructionsLeft = 0.3;
     const Json &copies = device.at("copy_bytes_per_second"), &peak = device.at("operations_per_second");
     const Json& methods = warps.at("methods");
@@ -80,7 +80,7 @@ void predict(Json& pass, const Json& row, const Json& device, const Json& warps)
     const std::string name = pass.at("name"), setting = row.at("setting");
     if (name.starts_with("scatter_") && setting.ends_with("half rate")) return;
     if (method == "Lambert") method = "none";
-    // Tables stand in for what `shade` reads elsewhere; passes before it are the same for all methods.
+    // The counts of `shade` by tables stand for all methods; passes before it are the same for all.
     if (!methods.contains(method)) {
         if (name == "shade" || name == "irradiance") return;
         method = "auto";

@@ -126,8 +126,8 @@ Json measureCases(const Request& request) {
     for (const Running& r : running) {
         Json e = summary(r);
         const double seconds = e["median_ms"].get<double>() * 1e-3;
-        // Beyond the whole, the bytes came from a cache, or the device was slower when its limits were
-        // measured: then the share is not known.
+        // Above 1, the bytes came from a cache, or the device was slower when its limits were measured: then
+        // the share is not known.
         const auto share = [&](const char* key, double work, double limit) {
             const double part = work / seconds / limit;
             if (work > 0 && limit > 0) e[key] = part < 1.001 ? Json(std::min(part, 1.0)) : Json();

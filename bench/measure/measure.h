@@ -24,7 +24,7 @@ struct Case {
     std::string truth{};             // what the result is compared with, and in which unit
 };
 
-// Making a case may need memory and time, and may fail on a device that lacks something.
+// Creating a case may need memory and time, and may fail if the device lacks a feature.
 struct Factory {
     std::string name, group;
     std::function<Case()> make;
@@ -68,8 +68,8 @@ struct Request {
     std::string powercap = "/sys/class/powercap";  // folder of the counters of processors' energy
     std::string command;                           // path of the pellucid command, for processes of their own
     std::function<void(const std::string&)> progress;  // a line now and then
-    // What happens, for whoever waits: {"begin": name, "group"}, {"say": text}, {"row": an operation that is
-    // done and need not be measured again}
+    // Receives events for the waiting process: {"begin": name, "group"}, {"say": text}, {"row": a finished
+    // operation, which need not be measured again}
     std::function<void(const nlohmann::ordered_json&)> event;
     std::function<bool()> cancelled;
 
@@ -94,15 +94,15 @@ nlohmann::ordered_json measureCases(const Request& request);
 // In this process: {"scenes", "operations", "pictures"} (docs/guide/measuring.md).
 nlohmann::ordered_json measureMethods(const Request& request);
 
-// In this process, for the first time on a device: each method's picture against the one kept in
-// `request.data`, then its passes at 1080p and 4K. Operations are events.
+// The checks of --first-gpu, in this process: compares each method's picture with the one kept in
+// `request.data`, then measures its passes at 1080p and 4K. Operations are sent as events.
 void measureFirst(const Request& request);
 
 // Writes the pictures that measureFirst() compares with into `folder`.
 void keepPictures(const Request& request, const std::string& folder);
 
-// What the first time on a device says. Adds to the operations of a report their "tolerance" and "within",
-// to passes of frames "predicted_ms" and "limited_by" (null: not predicted) by the counts of `warps`
+// Judges the results of --first-gpu. Adds to the operations of a report their "tolerance" and "within", to
+// passes of frames "predicted_ms" and "limited_by" (null: not predicted) by the counts of `warps`
 // (bench/roofline), and "first_gpu": {"checked", "out": [names]}.
 void judgeFirst(nlohmann::ordered_json& report, const nlohmann::ordered_json& warps);
 
@@ -118,7 +118,7 @@ nlohmann::ordered_json measureStability(const Request& request);
 void makeTruth(const Device& device, const std::string& folder, const std::string& headFile,
                const std::function<void(const std::string&)>& say, const std::function<bool()>& cancelled);
 
-// The fastest launch sizes of a device; those that are built in where no others gain more than the noise.
+// The fastest launch sizes of a device; the built-in sizes unless others are faster by more than the noise.
 struct Tuned {
     pel::LaunchPolicy sizes;
     double ratio = 1;  // of its times over those of what is built in
@@ -129,7 +129,7 @@ using TuneProgress = std::function<void(double fraction, const char* what)>;
 Tuned tuneLaunches(const Device& device, const std::string& selector, bool quick,
                    const TuneProgress& progress);
 
-// What a process pays once for its first table and frame: {"device_ms", "table_ms", "shade_ms", "total_ms"}.
+// One-time cost of a process's first table and frame: {"device_ms", "table_ms", "shade_ms", "total_ms"}.
 nlohmann::ordered_json firstUse(const std::string& device);
 
 // This machine and this build. reportFormat: changes where a reader of reports would have to.

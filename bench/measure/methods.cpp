@@ -1,4 +1,4 @@
-// What the methods of scattering cost on the frozen scenes, and how far they are from light.
+// The time and the error of the methods of scattering on the frozen scenes.
 
 #include "io/choice_keys.h"
 #include "io/image/flip.h"
@@ -112,7 +112,7 @@ std::vector<float> valuesAt(const std::vector<float>& rgb, const std::vector<siz
     return some;
 }
 
-// Into `row`: how far values at the drawn pixels are from light; P99 and CIEDE2000 with the walks' noise.
+// Adds to `row` the errors of values at the drawn pixels; P99 and CIEDE2000 include the walks' noise.
 void addErrors(Json& row, const std::vector<float>& values, const Truth& truth,
                const std::vector<uint8_t>& subsets) {
     const auto compared = [&](const std::vector<uint8_t>& mask) {
@@ -160,7 +160,7 @@ class InTexture {
         lighting_.shader.commit();
         params_.profile = profile.get(), params_.scale = float(scale);
     }
-    // Returns what it took, milliseconds.
+    // Returns the time in milliseconds.
     double run() {
         lighting_.shader.execute();
         scatter_.execute(params_, imageOf(lighting_.out), nullptr, imageOf(scattered_));
@@ -302,7 +302,7 @@ class Methods {
         SceneRequest request = scene.request;
         request.profileScale = scale;
         LitScene s = Stage(device_, scene.body(headFile()), 1).look(request, profile_);
-        // Instead of the mesh's, which the device has made: each operation is judged by itself.
+        // Replaces the mesh's curvature, made by the device: each operation is judged separately.
         for (size_t i = 0; i < s.covered.size(); ++i) s.gbuffer.curvature.data[i] = 0.02f * float(1 + i % 10);
         return s;
     }
@@ -377,7 +377,7 @@ class Methods {
     }
     static Json finite(double v) { return std::isfinite(v) ? Json(v) : Json(); }
 
-    // Lambert comes with every other, for the times beyond it.
+    // Lambert is measured with every other method, for times relative to it.
     bool wanted(const std::string& scene, const Setting& s) const {
         return (s.quick || !request_.quick) && request_.wants(scene + ": " + s.name());
     }
@@ -398,8 +398,8 @@ class Methods {
         }
     }
 
-    // All contenders in turns, in another order each time, so that a machine that drifts slows all. Each runs
-    // for two seconds at most, or once.
+    // Runs all contenders in turns, in another order each time, so that drift of the machine affects all.
+    // Each runs for two seconds at most, or once.
     void run(std::vector<Contender>& contenders, const std::string& scene, const char* group, int rounds) {
         std::mt19937 random(1);
         for (int round = 0; round < rounds; ++round) {
@@ -561,7 +561,7 @@ class Methods {
         }
     }
 
-    // How much more, or less, a method changes from frame to frame than light does.
+    // How much more, or less, a method changes from frame to frame than the true light.
     void measureClips() {
         std::optional<Stage> stage;
         for (const FrozenClip& clip : frozenClips) {

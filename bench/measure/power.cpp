@@ -53,7 +53,7 @@ EnergyMeter packageEnergy(const std::string& folder) {
     std::vector<Package> packages;
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-        // Parts of packages (intel-rapl:0:0) and a whole machine ("psys") contain or are contained in others.
+        // Parts of packages (intel-rapl:0:0) and the whole machine ("psys") overlap with other counters.
         std::string name;
         if (!entry.path().filename().string().starts_with("intel-rapl:") ||
             !(std::ifstream(entry.path() / "name") >> name) || !name.starts_with("package"))

@@ -29,7 +29,7 @@ std::string compareOne(Json& out, const Json& before, const Json& after, double 
     if (before.contains("failed") || !(ratio > 0) || std::isinf(ratio)) return "not compared";
     out["old_ms"] = value(before, "median_ms");
     out["new_ms"] = value(after, "median_ms");
-    // Neither the times nor the errors of two sizes can be compared.
+    // Times and errors of different sizes cannot be compared.
     for (const char* key : {"items", "what"})
         if (before.value(key, Json()) != after.value(key, Json())) return "other size";
     const double noise =
@@ -230,7 +230,7 @@ double uncertaintyOf(const Json& device, const Json& e) {
     return pixels > 0 ? 2 * 2 * variance / std::sqrt(3 * pixels) : 0;
 }
 
-// Whether frames with a time budget keep it, and how near they are to what was as fast with the same images.
+// Whether frames keep their time budget, and their error relative to the best method that was as fast.
 void summarizeBudgets(Json& device) {
     size_t frames = 0, kept = 0, near = 0;
     double worst = 0;

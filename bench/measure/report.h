@@ -21,7 +21,7 @@ nlohmann::ordered_json compareReports(const nlohmann::ordered_json& before,
                                       const nlohmann::ordered_json& after);
 std::string describeComparison(const nlohmann::ordered_json& comparison);  // a table for people
 
-// The setting of "auto" that is given an image which the others are not.
+// The setting of "auto" that gets an image that the others do not get.
 constexpr const char* withThickness = "with thickness";
 
 // What a reader asks first. Adds to a device of a report:

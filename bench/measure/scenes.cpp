@@ -87,8 +87,8 @@ std::vector<std::vector<float>> read(const std::string& path, const std::vector<
     return layers;
 }
 
-// Row by row the pixels of the window, wholly covered, over which unscattered light spreads most: where
-// scattering changes most. Of equal windows the one nearest to the picture's middle.
+// The pixels, row by row, of the fully covered window in which unscattered light varies most, so that
+// scattering changes most. Of equal windows, the one nearest to the picture's middle.
 std::vector<size_t> croppedPixels(const LitScene& s) {
     std::vector<size_t> best, window;
     std::pair<double, int> bestRank{-1, 0};
@@ -249,7 +249,7 @@ Crop readCrop(const std::string& folder, const std::string& name, const LitScene
     const std::vector<std::vector<float>> halves =
         readLayers(fileOf(folder, "crop-" + name), 3 * crop.pixels.size());
     for (size_t i = 0; i < halves[0].size(); ++i) crop.light.push_back((halves[0][i] + halves[1][i]) / 2);
-    // A half is as far from the mean as the mean is from light.
+    // The difference of a half from the mean is as large as that of the mean from the true light.
     crop.noise = io::flip(halves[0], crop.light, cropSide);
     return crop;
 }
@@ -338,7 +338,7 @@ void makeTruth(const Device& device, const std::string& folder, const std::strin
             for (size_t& pixel : shown)
                 if (pixel == SIZE_MAX) pixel = pixels[0][0];  // nobody reads it
             const Say tell = progress(clip.name + (", frame " + std::to_string(k)));
-            // The same seed walks the same ways in every frame, so that differences are of the light alone.
+            // With one seed the paths are the same in every frame: differences come only from the light.
             const sample::WalkedLight light =
                 walk(stage, frames[size_t(k)], shown, clipScale, clipWalks, tell);
             layers.push_back(light.first);

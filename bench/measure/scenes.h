@@ -1,4 +1,4 @@
-// The frozen scenes by which methods of scattering are measured, and what light does there.
+// The frozen scenes by which methods of scattering are measured, and their ground truth.
 #pragma once
 
 #include "diffusion/lit_scenes.h"
@@ -64,7 +64,7 @@ constexpr ShownPart shownParts[] = {{"side-4", 0.46, 0.56, 0.5, 1}, {"ear-4", 0.
 std::vector<float> readPart(const std::string& folder, const ShownPart& part,
                             const lit_scenes::LitScene& scene);
 
-// What each method made of a scene on PoCL, for an albedo of 1: three values for each of `pixels`.
+// The results of each method on PoCL, for an albedo of 1: three values for each of `pixels`.
 struct KeptPictures {
     std::vector<size_t> pixels;
     std::vector<std::vector<float>> light;

@@ -1,4 +1,4 @@
-// The pass over a screen of folded skin, by what is on, against the sum of section 6 in double precision.
+// The pass over a screen of folded skin, with several features, against section 6 in double precision.
 #include <random>
 
 #include "measure.h"

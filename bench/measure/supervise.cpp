@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double startSeconds = 120;
 
-// The pellucid command again, or another program, read line by line. It ends with this process.
+// A child process, the pellucid command or another program, read line by line. It ends with this process.
 class Again {
   public:
     // `environment`: "NAME=VALUE" added to this process's own. Without `loud`, standard error is discarded.
@@ -57,7 +57,7 @@ class Again {
     }
     Again(const Again&) = delete;
 
-    // The next line of its output as JSON; nothing where there is none, of which why() tells the reason.
+    // The next line of its output as JSON; empty if there is none, for the reason that why() returns.
     std::optional<Json> next(double seconds) {
         for (const double end = milliseconds() + 1e3 * seconds;;) {
             if (const size_t at = heard_.find('\n'); at != std::string::npos) {
@@ -97,8 +97,8 @@ class Again {
     std::string heard_, why_;  // heard_: beyond the last line
 };
 
-// The report of one process; null if it did not get there. `part`: what it measures. `at`: its last case.
-// `done`: gets what it measured before.
+// The report of one process; null if it did not finish. `part`: its task. `at`: its last case. `done`: gets
+// what it measured before.
 Json runApart(const Request& request, const char* part, const std::set<std::string>& without, Json& at,
               Json& done, std::string& why) {
     std::vector<std::string> words{
@@ -129,7 +129,7 @@ Json runApart(const Request& request, const char* part, const std::set<std::stri
 Json measureApart(const Request& request, const char* part) {
     std::set<std::string> without;
     Json done = Json::array();
-    // After a loss all others that are not done are measured again.
+    // After a failure, all unfinished operations are measured again.
     for (;;) {
         Json at;
         std::string why;
@@ -148,8 +148,8 @@ Json measureApart(const Request& request, const char* part) {
     }
 }
 
-// "first_use" and "warm_start" of a report: the command again in an empty cache of every driver known here,
-// then in the cache that this left.
+// "first_use" and "warm_start" of a report: runs the command with an empty cache of every known driver, then
+// with the cache that this run has filled.
 void measureFirstUse(const Request& request, Json& report) {
     struct Cache {
         std::filesystem::path folder =

@@ -52,7 +52,7 @@ std::vector<float> decoded(const Lut& lut, PelLutEncoding encoding, uint32_t sid
     return values;
 }
 
-// How far a table is from the truth between its texels, where it is looked up.
+// The error of a table's look-ups between its texels.
 Case lookUpCase(const Device& device, PelCurvatureForm form, reference::Form truth, PelLutEncoding encoding,
                 uint32_t side, int samples) {
     PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
@@ -98,7 +98,7 @@ Case lookUpCase(const Device& device, PelCurvatureForm form, reference::Form tru
     return c;
 }
 
-// What pipelines make by the thousand: a profile of each skin, its two tables, halves on the host.
+// A batch as pipelines make it by the thousand: a profile of each skin, its two tables, halves on the host.
 Case pairCase(const Device& device, uint32_t count) {
     constexpr uint32_t side = 32, texels = 3 * side * side;
     // The tables of one kind of the first skins, of which every `step`th; the profiles live as long.

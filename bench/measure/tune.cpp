@@ -99,7 +99,7 @@ class Tuner {
         }
         result.sizes = builtIn;
         if (best == builtIn) return result;
-        // Together, against what is built in, over everything: what was chosen by chance is not faster twice.
+        // All chosen sizes together against the built-in ones: a size chosen by chance is not faster twice.
         std::vector<Candidate> both;
         add(both, builtIn, true, true);
         add(both, best, true, true);

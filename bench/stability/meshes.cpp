@@ -9,7 +9,7 @@ namespace {
 constexpr const char* meshRange =
     "size 1e-5 to 1e7 units, up to 500 sizes away from the origin, flattened down to 0.02";
 
-// A torus stretched, scaled and moved away from the origin: float positions lose what the distance takes.
+// A torus stretched, scaled and moved away from the origin, so that float positions lose digits.
 struct MovedMesh {
     reference::Mesh mesh;
     std::vector<float> positions, normals, uvs;
@@ -197,7 +197,7 @@ std::vector<float> uvScale(const MovedMesh& m) {
 }
 
 std::vector<double> smoothed(const MovedMesh& m) {
-    // Whether a triangle has a plane is a decision.
+    // Whether a triangle has a plane depends on a threshold.
     for (const auto& t : m.mesh.triangles)
         for (int i = 0; i < 3; ++i) {
             const reference::Vec3 p = m.mesh.positions[size_t(t[i])],
@@ -217,7 +217,7 @@ std::vector<double> smoothed(const MovedMesh& m) {
     return smooth;
 }
 
-// Values of the edge estimator, which is exact to 2e-7, so that what is seen is the smoothing.
+// Values of the edge estimator, which is exact to 2e-7, so that the error comes from the smoothing.
 Operation passes() {
     return mesh(
         {"smoothing passes", "; 1 to 32 passes", Unit::largest, tolerance::edgeCurvature, 5, 400},

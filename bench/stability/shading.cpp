@@ -48,7 +48,7 @@ enum Dimension {
 };
 
 enum class Lit { directional, point, spot, all, constant, harmonics, cube };
-// What the shading normal is turned away from.
+// The direction from which the shading normal is tilted.
 enum class Focus { light, half };
 struct Kind {
     Lit lit;
@@ -100,7 +100,7 @@ const Frame& base() {
     return frame;
 }
 
-// Leaves of the lights those that are wanted; the others are black, so that the program stays the same.
+// Keeps the requested lights and makes the others black, so that the program stays the same.
 Frame litBy(Lit lit) {
     Frame f = base();
     const bool ambient = lit >= Lit::constant;

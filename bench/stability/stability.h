@@ -44,7 +44,7 @@ enum class Unit {
     length     // mm
 };
 
-// What the page says of an operation.
+// The page's description of an operation.
 struct Header {
     std::string name, range;
     Unit unit = Unit::absolute;
@@ -58,8 +58,8 @@ struct Axis {
     const char* label;
 };
 
-// The same inputs on the device and in the oracle; as many values for each point that it is made of. A truth
-// of NaN is left out: there the result depends on a threshold.
+// The same inputs on the device and in the oracle; as many values for each point that it is made of. Values
+// whose truth is NaN are left out: there the result depends on a threshold.
 struct Case {
     std::function<void(Jitter&)> move;
     std::function<std::vector<float>()> measured;

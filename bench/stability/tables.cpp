@@ -210,7 +210,7 @@ Operation specularTable() {
                 });
                 return t;
             };
-            // Two whole numbers are all it hangs on.
+            // The result depends only on two whole numbers.
             return Case{[](Jitter&) {}, measured, truth, text("%.0f x %.0f texels", desc.width, desc.height)};
         }};
 }

@@ -33,7 +33,7 @@ std::string dataFolder() {
     return std::filesystem::path(bench).parent_path().string();
 }
 
-// A number with a unit, such as "1ms" or "10%".
+// Reads a number with a unit, such as "1ms" or "10%".
 double numberOf(const std::string& text, const std::string& unit, const char* option) {
     float value = 0;
     if (!text.ends_with(unit) || !readNumber(text.substr(0, text.size() - unit.size()), value) ||
@@ -82,9 +82,9 @@ bench::Request requestOf(const BenchArguments& a, const std::string& device) {
     return request;
 }
 
-// What the process that waits for this one reads.
+// Measures in a child process and writes its events to the parent process.
 void measureWithEvents(const BenchArguments& a) {
-    // Drivers may print; not among the events.
+    // Drivers may print to standard output, which must not mix with the events.
     std::FILE* out = ::fdopen(::dup(STDOUT_FILENO), "w");
     ::dup2(STDERR_FILENO, STDOUT_FILENO);
     const auto tell = [out](const Json& event) {
@@ -116,7 +116,7 @@ void makeTruth(const BenchArguments& a) {
     bench::keepPictures(request, a.truth);
 }
 
-// What --first-gpu found; the page has the rest.
+// Prints the findings of --first-gpu; the page has the rest.
 void printFirst(const Json& device) {
     const Json& first = device.at("first_gpu");
     std::printf("%s\n  %d pictures and operations judged, %d out of tolerance or not done\n",
@@ -137,7 +137,7 @@ void printFirst(const Json& device) {
     std::printf("  In brackets: predicted.\n");
 }
 
-// The methods, fastest first: those that no other beats in both time and error.
+// Prints the Pareto-optimal methods in time and error, fastest first.
 void printMethods(const Json& device) {
     std::vector<Json> best;
     for (const Json& e : device.at("summary"))
@@ -164,7 +164,7 @@ void measure(const BenchArguments& a) {
     if (folder.empty()) throw UsageError("-o is needed: a folder for bench.json");
     if (a.firstGpu && (a.stability || a.stabilityShare > 0))
         throw UsageError("--first-gpu does not search for the worst errors: leave --stability out");
-    // As GPUs have it. A window of pixels that lanes share makes small differences.
+    // One lane, as on GPUs: a window of pixels shared by several lanes gives slightly different results.
     if (a.firstGpu) pel::system::setVariable("PELLUCID_MATH_WIDTH", "1");
     const std::string jsonPath = folder + "/bench.json";
     std::vector<double> budgets;

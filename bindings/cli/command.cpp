@@ -150,7 +150,7 @@ void Run::finish() {
         return;
     }
     for (const auto& [key, value] : report.items()) {
-        // Tables are for programs: people saw theirs on the way.
+        // Tables are only for --json: in text mode they have been printed already.
         if (value.is_array() && (value.empty() || value[0].is_object())) continue;
         std::cout << key << ": "
                   << (value.is_string() ? io::printable(value.get<std::string>()) : jsonText(value, -1))

@@ -1,4 +1,4 @@
-// What every subcommand of `pellucid` shares: the device, the report, progress, exit codes.
+// Shared by every subcommand of `pellucid`: the device, the report, progress, exit codes.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -12,7 +12,7 @@ namespace pellucid::cli {
 // exitWorse: `bench compare` found something slower or less accurate.
 enum ExitCode { exitDone = 0, exitWorse = 1, exitWrongUse = 2, exitBadInput = 3, exitNoDevice = 4 };
 
-// Wrong use that only shows once the arguments are looked at together.
+// Wrong use that only a check of several arguments together can find.
 class UsageError : public std::runtime_error {
     using runtime_error::runtime_error;
 };
@@ -28,7 +28,7 @@ struct ExitWith : std::runtime_error {
     ExitCode code;
 };
 
-// Progress on stderr, from the first second of a command on, and its end by Ctrl-C.
+// Shows progress on stderr after the first second of a command, and cancels the command on Ctrl-C.
 class Progress {
   public:
     Progress();
@@ -62,7 +62,7 @@ class Run {
     void note(const std::string& text) const { std::fprintf(stderr, "%s\n", text.c_str()); }  // for people
     // To stderr, and into the report; with --strict an InputError. Before anything is written.
     void warn(const std::string& text);
-    // Key and value of the report, in this order. Numbers, texts, arrays and objects alike.
+    // The keys and values of the report, in this order: numbers, texts, arrays and objects.
     nlohmann::ordered_json report;
 
     // Prints the report: one JSON object with --json, else a line per entry.
@@ -84,10 +84,10 @@ double milliseconds(Work&& work) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-// One JSON object on standard output. What is no UTF-8 in names of files becomes U+FFFD.
+// Prints one JSON object on standard output. Bytes of file names that are not UTF-8 become U+FFFD.
 void printJson(const nlohmann::ordered_json& report);
 std::string jsonText(const nlohmann::ordered_json& value, int indent = 2);
-// That object, or a line for each value, which begins after `width` characters.
+// Prints that object, or a line per value, with the values in column `width`.
 void printReport(const nlohmann::ordered_json& report, bool json, int width);
 
 // Checks of option values. CLI11's own checks answer a wrong value with lists of names and numbers, let NaN
@@ -115,7 +115,7 @@ bool readNumber(const std::string& text, float& number);
 CLI::Validator isPositive();
 CLI::Validator isNotNegative();
 
-// What can follow the help of an option, beside the check of its values.
+// Further arguments after the help of an option, besides the check of its values.
 struct Word {
     const char* of;  // the value, in the help; without one a text is a path
 };
@@ -125,8 +125,8 @@ struct Count {
 struct Needs {
     CLI::Option* other;
 };
-// shown: the value that the variable has now is the default in the help. oneEach: of several values, each is
-// given by the option's name. separated: by commas.
+// shown: the help shows the variable's current value as the default. oneEach: the option is repeated for each
+// of several values. separated: the values are separated by commas.
 enum class Mark { required, shown, oneEach, separated, hidden };
 using enum Mark;
 
@@ -150,7 +150,7 @@ CLI::Option* option(CLI::App& app, const char* names, Value& value, const std::s
 }
 void jsonOption(CLI::App& app, bool& json);
 
-// A subcommand that calls `run` with what its options, which the caller adds, have filled in.
+// A subcommand that calls `run` with the arguments filled in by its options, which the caller adds.
 template <class Arguments, class Function>
 auto subcommand(CLI::App& app, const char* name, const char* what, Function run) {
     const auto arguments = std::make_shared<Arguments>();
@@ -193,7 +193,7 @@ void addView(CLI::App& app);  // and gallery
 void addDescribe(CLI::App& app);
 
 std::shared_ptr<CLI::FormatterBase> helpFormatter();
-// After CLI::ExtrasError: which words are not expected, and what may have been meant.
+// For CLI::ExtrasError: lists the unexpected words, and suggests similar options.
 std::string unknownOptions(const CLI::App& app);
 
 // Names of types (Word) whose values shells complete. A text without a name of its own is a path.

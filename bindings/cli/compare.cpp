@@ -84,7 +84,7 @@ void requireSameSize(const std::string& pathA, const Rgb& a, const std::string& 
                      "; only pictures of the same size can be compared");
 }
 
-// The sub-sets of each pixel, with regard to the light that --light names. Clears `mask` off materials.
+// The sub-sets of each pixel, for the light that --light names. Clears `mask` where there is no material.
 std::vector<uint8_t> subsets(const CompareArguments& a, const Rgb& one, const Rgb& two,
                              std::vector<uint8_t>& mask) {
     const io::SceneFile scene = io::readScene(a.scene);
@@ -191,7 +191,7 @@ void runCompare(const CompareArguments& a) {
         two.secondHalf = half.values;
     }
     std::vector<uint8_t> mask(one.values.size() / 3, 1);
-    // Where a pixel is not wholly covered, two renderers filter the edge in their own ways.
+    // Two renderers filter partly covered pixels differently, so these do not count.
     for (const Rgb* picture : {&one, static_cast<const Rgb*>(&two)})
         for (size_t i = 0; i < picture->alpha.size(); ++i) mask[i] = mask[i] && picture->alpha[i] >= 0.999f;
     std::vector<uint8_t> parts;

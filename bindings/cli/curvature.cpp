@@ -75,7 +75,7 @@ void runCurvature(const CurvatureArguments& a) {
     }
     if (!a.picture.empty()) {
         const bool squared = params.quantity == PEL_QUANTITY_GAUSSIAN;
-        // The few sharpest places would leave one colour for all the others.
+        // With the few sharpest vertices in the range, all others would have nearly the same colour.
         const auto [low, high] = scale(0.1);
         writeCurvaturePicture(a.picture, mesh, result.values, low, high, a.up[0],
                               squared ? "1/length^2" : "1/length");

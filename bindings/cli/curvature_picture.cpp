@@ -8,7 +8,8 @@ namespace pellucid::cli {
 constexpr int viewWidth = 900, viewHeight = 1000;
 constexpr io::Srgb8 background{20, 20, 20};
 
-// A little darker where the surface turns away. Rendered `supersampling` times as wide and high.
+// Shaded a little darker where the surface turns away from the view. Rendered `supersampling` times as wide
+// and high.
 static io::Picture curvatureView(const sample::Scene& scene, const sample::HeadPose& pose,
                                  const sample::Framing& framing, int width, int height, int supersampling,
                                  float low, float high) {

@@ -16,7 +16,7 @@ class Stages {
     explicit Stages(const Run& run) : run_(run) {}
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
 
-    // Milliseconds. Says on a terminal what is being done, until its line comes.
+    // Returns milliseconds. On a terminal it shows the current stage until the stage's line is printed.
     template <class Work>
     void measure(const std::string& name, Work&& work) {
         const bool seen = pel::system::errorsAreSeen();
@@ -45,7 +45,7 @@ std::string standardHead() {
         "OFF, OBJ, PLY or STL file");
 }
 
-// What the head is made of in the last row of the sheet, with tints for an albedo of skin, chosen by eye.
+// The materials of the head in the last row of the sheet, with tints of the skin's albedo, chosen by eye.
 constexpr struct {
     const char* profile;
     float tint[3];
@@ -68,7 +68,7 @@ bool yIsUp(const DemoArguments& a) {
     return a.up == "y" || (a.up == "auto" && std::filesystem::path(a.mesh).extension() == ".obj");
 }
 
-// Somebody's mesh: all of it is skin.
+// A mesh of the user: all of it is skin.
 DemoHead loadMeshAsHead(Run& run, const DemoArguments& a) {
     DemoHead head;
     io::MeshLoadOptions load;
@@ -114,7 +114,7 @@ std::vector<DemoViewRequest> requests(const DemoArguments& a) {
     return {key, back};
 }
 
-// Shades a variant of a view's scene as a stage, uploads and kernels that are missing included.
+// Shades a variant of a view's scene as a stage, including uploads and the compilation of missing kernels.
 std::vector<float> shadeAs(Run& run, Stages& stages, io::LutStore& luts, const DemoView& view,
                            const char* name, const io::SceneFile& scene) {
     std::vector<float> radiance;
@@ -126,7 +126,7 @@ std::vector<float> shadeAs(Run& run, Stages& stages, io::LutStore& luts, const D
     return radiance;
 }
 
-// What each view is shaded as: Lambert, by tables, on the screen.
+// The variants of each view: Lambert, by tables, on the screen.
 std::array<io::SceneFile, 3> scenesOf(const DemoView& view) {
     return {withoutScattering(view.scene), byTables(view.scene), view.scene};
 }
@@ -157,7 +157,7 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const DemoBod
     return shaded;
 }
 
-// Adds pictures rendered at twice the size, but for views that are large already.
+// Adds pictures rendered at twice the size, except for views that are large already.
 void addFinePictures(Run& run, Stages& stages, io::LutStore& luts, const DemoBody& body,
                      const DemoSurface& coarse, std::vector<DemoViewRequest> requests,
                      std::vector<ShadedView>& views) {
@@ -251,7 +251,7 @@ void runDemo(DemoArguments a) {
     nlohmann::ordered_json& files = run.report["pictures"];
     files.push_back(writeSheet(a.output, views, materials, curvatureLut, shadowLut));
     const DemoView& backlit = views.back().view;
-    // By tables, for thickness and transmission are parts of theirs alone.
+    // By tables, because only they give thickness and transmission as separate parts.
     io::SceneFrame parts(
         run.device(), backlit.gbuffer, byTables(backlit.scene), luts, backlit.images,
         pelShaderOptionsDefaults(),

@@ -1,4 +1,4 @@
-// The demo: what the stand-in host renders of each view, and its pictures.
+// The demo: the images that the sample renderer makes for each view, and its pictures.
 #pragma once
 #include "demo/demo_head.h"
 #include "io/image/picture.h"
@@ -37,7 +37,7 @@ struct DemoViewRequest {
 // A scene with only the two tables that the views use, curvature and shadow.
 io::SceneFile standardLuts();
 
-// What the stand-in host renders of the head whatever its light.
+// The images of the head that do not depend on its lights.
 struct DemoSurface {
     sample::Camera camera;
     sample::GBuffer gbuffer;
@@ -45,7 +45,7 @@ struct DemoSurface {
     std::vector<float> wetness;  // of eyes, or empty
 };
 
-// What rays find of a view's light.
+// The ray-traced lighting of a view.
 struct DemoLightImages {
     std::vector<sample::Image> shadows;  // of each lamp
     sample::Image indirect;
@@ -57,7 +57,7 @@ struct DemoBody {
     const sample::Scene &mesh, &hair;
 };
 
-// `coarse`: of the same view, whose occlusion is enlarged in place of rays.
+// `coarse`: a smaller surface of the same view, whose occlusion is enlarged instead of traced again.
 DemoSurface renderDemoSurface(const DemoBody& body, const DemoViewRequest& request,
                               const DemoSurface* coarse = nullptr);
 // `surface`: of the same size and framing.
@@ -89,7 +89,7 @@ io::Picture developed(const DemoView& view, const std::vector<float>& radiance);
 // name of the first, as do the next two.
 std::string writePicture(const std::string& folder, const ShadedView& view);
 
-// The contact sheet, demo.png: a row per view, where light comes through most, tables, and `materials`.
+// The contact sheet, demo.png: a row per view, the spot with most transmission, tables, and `materials`.
 std::string writeSheet(const std::string& folder, const std::vector<ShadedView>& views,
                        const std::vector<io::Tile>& materials, const Lut& curvatureLut, const Lut& shadowLut);
 

@@ -56,7 +56,7 @@ io::Picture cropped(const io::Picture& picture, const Crop& c) {
     return part;
 }
 
-// What scattering changes: grey where that is nothing, elsewhere its colour.
+// The change by scattering, in its own colour; grey where nothing changes.
 io::Picture difference(const ShadedView& view, float times) {
     std::vector<float> d(view.complete);
     for (size_t i = 0; i < d.size(); ++i) d[i] = 0.2f + times * (d[i] - view.lambert[i]);
@@ -77,7 +77,8 @@ Crop brightestChange(const ShadedView& view) {
             for (int v = y; v < y + h; v += step)
                 for (int u = x; u < x + w; u += step) {
                     const size_t i = 3 * (size_t(v) * width + u);
-                    // Light that came through is red; what Lambert lights is bright enough, and has pores.
+                    // Transmitted light is red. Places lit by Lambert are excluded: they are bright enough,
+                    // and have pores.
                     const auto redness = [i](const std::vector<float>& v) { return v[i] - v[i + 2]; };
                     if (view.lambert[i] < 0.15f) sum += redness(view.complete) - redness(view.lambert);
                 }

@@ -115,14 +115,13 @@ std::vector<io::SceneMaterial> materialsOf(const DemoHead& head) {
 // Radiance behind the head: the same everywhere, so that files stay small and are read quickly.
 constexpr float backdrop[] = {0.018f, 0.02f, 0.023f};
 
-// Lays hair over planes of the G-buffer: skin under it sends less light back, by albedo and specular, but
-// scatters on. Returns what the scene's radiance holds before shading, which is added: the light of hair, the
-// backdrop.
+// Blends hair into the G-buffer: skin under it has a lower albedo and specular, but still scatters. Returns
+// the initial content of the scene's radiance, to which shading adds: the light of hair, and the backdrop.
 sample::Image layHair(sample::Image& albedo, sample::Image& specular, std::vector<float>& ids,
                       sample::Image hair) {
     for (size_t i = 0; i < ids.size(); ++i) {
         const float left = 1 - hair.plane(3)[i];
-        // An eye's gloss knows neither albedo nor specular.
+        // An eye's gloss depends on neither albedo nor specular.
         const bool eye = ids[i] == float(demo::DEMO_EYES) || ids[i] == float(demo::DEMO_RIGHT_EYE);
         if (left < 0.5f && eye) ids[i] = demo::DEMO_LASHES;
         for (int c = 0; c < 3; ++c) {
@@ -217,8 +216,8 @@ void addPixels(DemoView& view, const DemoBody& body, const DemoSurface& surface,
     const sample::Image before =
         layHair(albedo, specular, ids, demo::drawStrands(body.head.strands, onHair, surface.camera, g));
     view.gbuffer.width = g.width, view.gbuffer.height = g.height;
-    // What has few values, or the same over large parts, takes a twentieth of the space as half floats, and
-    // of the time to read.
+    // Channels with few values, or constant over large areas, take a twentieth of the space as half floats,
+    // and of the time to read.
     const auto add = [&](PelImageSlot slot, const char* name, const char* components,
                          std::span<const float> planes, io::ChannelType type = io::ChannelType::Float) {
         io::addPlanes(view.scene, view.gbuffer, slot, name, components, planes, type);

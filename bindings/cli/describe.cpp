@@ -1,5 +1,5 @@
-// pellucid describe: every subcommand and option as one JSON object, from the parsers themselves. Manual
-// pages, completions for shells and the tables of docs/guide/command-line.md are made from it
+// pellucid describe: every subcommand and option as one JSON object, taken from the parsers. Manual pages,
+// shell completions and the tables of docs/guide/command-line.md are generated from it
 // (packaging/command_pages). --help shows options in the same words.
 #include "command.h"
 #include "io/spelling.h"
@@ -105,7 +105,7 @@ std::string unknownOptions(const CLI::App& app) {
     }
     std::vector<std::string> words = app.remaining(true);
     const bool ended = std::erase(words, "--") > 0;  // no option stands behind it
-    // A value behind an unknown option is not another mistake.
+    // The value of an unknown option is not reported as a second mistake.
     const auto isOption = [&](const std::string& word) { return !ended && word.starts_with("-"); };
     if (std::any_of(words.begin(), words.end(), isOption))
         std::erase_if(words, [&](const auto& word) { return !isOption(word); });

@@ -1,4 +1,4 @@
-// pellucid devices [--json]: what OpenCL offers here.
+// pellucid devices [--json]: lists the OpenCL devices.
 
 #include "command.h"
 
@@ -47,7 +47,7 @@ void addDevices(CLI::App& app) {
     auto options = std::make_shared<Run::Options>();
     addRunOptions(*command, *options);
     command->callback([options] {
-        // Making the device that would be used is the check that it works; without any device it is an error.
+        // Creates the default device to check that it works; without any device this is an error.
         Run run(*options);
         const uint32_t standard = run.device().info().index;
         run.report["default"] = standard;

@@ -22,7 +22,7 @@ struct LutArguments {
     PelEyeLutDesc eye = pelEyeLutDescDefaults();
 };
 
-// The description of a preset with what the command line gives in the place of its own.
+// The description of a preset, overridden by the options of the command line.
 template <class Desc>
 void applyPreset(LutArguments& a, Desc& given, Desc preset, const CLI::App& command,
                  const std::vector<std::pair<const char*, float Desc::*>>& lengths) {
@@ -54,7 +54,7 @@ uint32_t rowsOf(const Desc& desc) {
     return desc.height;
 }
 
-// What the table is, with all that followed from its profile.
+// Describes the table, including the values that follow from its profile.
 void describe(const PelLutInfo& info, nlohmann::ordered_json& report) {
     if (info.kind == PEL_LUT_CURVATURE) {
         report["form"] = io::curvatureForms[info.curvature.form];

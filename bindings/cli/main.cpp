@@ -13,7 +13,7 @@ static int fail(ExitCode code, const char* message) {
     return code;
 }
 
-// CLI11 would only say that a subcommand is required. Also for those that need one, such as `lut`.
+// Also checks subcommands that need one themselves, such as `lut`. CLI11 would not list the choices.
 static void checkSubcommand(const CLI::App& app, int argc, char** argv, const std::string& path = "") {
     if (argc < 2 || argv[1][0] == '-' || app.get_require_subcommand_min() == 0) return;
     std::string names;
@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
     } catch (const io::FileError& e) {
         return fail(exitBadInput, e.what());
     } catch (const Error& e) {
-        // The library refuses wrong arguments: wrong use. All its other errors are the device's.
+        // Arguments that the library refuses are wrong use. All its other errors come from the device.
         const bool use = e.code() == PEL_ERROR_INVALID_ARGUMENT || e.code() == PEL_ERROR_INVALID_STATE;
         return fail(use ? exitWrongUse : exitNoDevice, e.what());
     } catch (const std::exception& e) {

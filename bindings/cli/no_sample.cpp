@@ -1,4 +1,4 @@
-// What stands in the place of commands and pictures that need the sample renderer, in a build without it.
+// Replaces the commands and pictures that need the sample renderer, in a build without it.
 #include "mesh_curvature.h"
 
 namespace pellucid::cli {

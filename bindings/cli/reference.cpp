@@ -129,7 +129,7 @@ WalkMedium mediumOf(const PelSkin& skin, double scale) {
     return out;
 }
 
-// Of skin or of a Burley profile. No medium is known of other kinds of profile.
+// For skin or a Burley profile. Other kinds of profile do not determine a medium.
 WalkMedium mediumOf(const WalkArguments& walk, const Diffusion& d, const RgbValues& reflectance,
                     const std::string& material) {
     if (d.skin) return mediumOf(*d.skin, d.scale);
@@ -494,7 +494,7 @@ class Reference {
         return walk(run_, a_.walk, body, lighting_, points.places, medium_, reflectance, name);
     }
 
-    // What a large plane of the medium reflects. A texture varies the albedo over one medium.
+    // The reflectance of a large plane of the medium. An albedo texture does not change the medium.
     RgbValues reflectanceOf(const Diffusion& d, const io::SceneMaterial* material,
                             const std::vector<float>& albedos, const std::vector<size_t>& pixels) const {
         RgbValues A{0.8, 0.8, 0.8};

@@ -13,7 +13,7 @@
 namespace pellucid::cli {
 namespace {
 
-// Says on standard error, after a second of its life, what takes the time.
+// After one second, reports on standard error that kernels are being built.
 class BuildNotice {
   public:
     BuildNotice()
@@ -32,7 +32,7 @@ class BuildNotice {
 
 constexpr float longest = 30;  // mm of thickness; hardly anything comes through more of skin
 
-// What can be shown; "final", then the output slots by their keys.
+// The values of --show: "final", then the output slots by their keys.
 std::vector<std::string> showableParts() {
     std::vector<std::string> parts{"final"};
     for (const io::OutputKey& output : io::outputKeys) parts.emplace_back(output.key);
@@ -113,8 +113,8 @@ struct Inputs {
     std::optional<io::SceneFrame> frame;
 };
 
-// Reads what the scene names into the device's memory. A second thread prepares the frame meanwhile; where it
-// fails, the pictures are read again, and the frame is made with them and reports the error.
+// Reads the scene's images into the device's memory. A second thread prepares the frame meanwhile. If that
+// fails, the images are read again, and the frame is made with them and reports the error.
 Inputs frameOf(const std::string& gbuffer, const Device& device, const io::SceneFile& scene,
                io::LutStore& luts, const PelShaderOptions& options,
                const std::vector<PelImageSlot>& outputs) {

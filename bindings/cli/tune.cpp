@@ -48,7 +48,7 @@ void tune(const TuneArguments& a) {
     run.report["time_ratio"] = tuned.ratio;
     if (a.run.json) run.report["measured"] = tuned.measured;
     if (tuned.sizes == builtIn) {
-        // An older file would go on counting.
+        // An older file would still be used.
         if (a.output.empty()) std::filesystem::remove(path, error);
         run.report["file"] = "none: no other sizes are faster by more than 5 % and the noise";
     } else {

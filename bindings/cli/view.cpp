@@ -1,4 +1,4 @@
-// pellucid view and pellucid gallery: of the Python package, which this hands everything over to.
+// pellucid view and pellucid gallery: run the Python package with all arguments.
 
 #include "command.h"
 #include "system/process.h"
@@ -6,7 +6,7 @@
 namespace pellucid::cli {
 namespace {
 
-// Says what is missing in words of this command before it starts the module.
+// Reports missing Python packages in the terms of this command, then starts the module.
 constexpr const char* starter = R"(
 import importlib.util, runpy, sys
 if importlib.util.find_spec("pellucid") is None:

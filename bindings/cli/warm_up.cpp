@@ -15,7 +15,7 @@ struct WarmUpArguments {
 };
 
 void runWarmUp(const WarmUpArguments& a) {
-    // Binaries as well: they load in a fraction of the time that PoCL takes to find its own.
+    // Also keep binaries: they load in a fraction of the time that PoCL needs to find its own.
     if (!std::getenv("PELLUCID_CACHE")) pel::system::setVariable("PELLUCID_CACHE", "on");
     Run run(a.run);
     uint32_t groups = (a.luts ? PEL_PROGRAMS_LUTS : 0) | (a.tableLuts ? PEL_PROGRAMS_TABULATED_LUTS : 0) |

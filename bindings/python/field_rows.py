@@ -20,7 +20,7 @@ ROW = re.compile(
 
 
 class Row(NamedTuple):
-    """A field: its range, and what files, pages and sliders show of it."""
+    """A field: its range, and its key, documentation and slider."""
 
     kind: str  # FLOAT, UINT, COLOR, FREE, FREE_UINT, VECTOR or MATRIX
     name: str  # in C

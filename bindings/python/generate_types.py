@@ -1,4 +1,4 @@
-"""Writes what the binding needs to know about pellucid.h, so that structures and comments stand there alone.
+"""Generates the binding's types from pellucid.h, so that structures and comments exist only there.
 
     generate_types.py HEADER OUT_PY OUT_INC
 
@@ -37,7 +37,7 @@ def comment_before(text, position):
 
 
 def comments_behind(body):
-    """The body of a structure or enumeration with each comment that stands above a member moved behind it."""
+    """The body of a structure or enumeration, with each comment above a member moved behind the member."""
     comment, member = r"^[ ]*/\*((?:(?!\*/).)*)\*/[ ]*\n", r"([ ]*\w[^;,/\n]*(?:[;,]|(?=\n)))[ ]*$"
     return re.sub(comment + member, r"\2 /*\1*/", body, flags=re.S | re.M)
 

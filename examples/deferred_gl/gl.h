@@ -1,4 +1,4 @@
-// What the renderer needs of EGL and OpenGL 4.5: a context without a window, programs, textures, targets.
+// EGL and OpenGL 4.5 for the renderer: a context without a window, programs, textures, targets.
 #pragma once
 #define GL_GLEXT_PROTOTYPES
 #include <EGL/egl.h>

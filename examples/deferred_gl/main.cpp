@@ -1,9 +1,9 @@
-// A deferred renderer in OpenGL whose skin is Pellucid's: a head turns before a wall under three lights with
-// shadow maps, and each frame becomes a PNG file (`usage` below).
+// A deferred renderer in OpenGL whose skin is shaded by Pellucid: a head turns before a wall under three
+// lights with shadow maps, and each frame becomes a PNG file (`usage` below).
 //
 // Needs OpenGL 4.5 through EGL, without a window: a GPU's driver, or Mesa without one. Textures are shared
-// where a driver has cl_khr_gl_sharing, and copied where none has, or with --copy. --stages writes what
-// the first frame consists of, too. docs/guide/hosts.md walks through it.
+// where a driver has cl_khr_gl_sharing, and copied where none has, or with --copy. --stages also writes the
+// images of the first frame. docs/guide/hosts.md walks through it.
 #include <png.h>
 
 #include <algorithm>

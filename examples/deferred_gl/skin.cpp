@@ -31,7 +31,7 @@ bool hasGlSharing(cl_device_id device) {
 
 }  // namespace
 
-// Looks for a device of OpenCL that takes textures of the current OpenGL context as they are.
+// Looks for an OpenCL device that can share textures of the current OpenGL context.
 bool SkinPass::share() {
     cl_platform_id platforms[16];
     cl_uint numPlatforms = 0;
@@ -106,7 +106,7 @@ SkinPass::SkinPass(const Renderer& renderer, PelScattering method, bool copy) {
     for (size_t i = 0; i < lights.size(); ++i)
         shader_.set(uint32_t(i), PEL_LIGHT_SHADOW_MAP, described(images_[4 + i]));
     shader_.set(renderer.ambient).set(renderer.camera);
-    // Camera and lights rest here. Where they move, set them and commit in each frame.
+    // Camera and lights do not move here. If they move, set them and commit in each frame.
     shader_.commit();
 }
 

@@ -1,4 +1,4 @@
-"""The promise that programs built against an older or newer pellucid.h keep working.
+"""Checks that programs built against an older or newer pellucid.h keep working.
 
     check_abi.py list HEADER_DIR              prints what the header promises now: functions, values, sizes
     check_abi.py check HEADER_DIR LIBRARY     compares with promises.txt; that the library exports what the

@@ -102,7 +102,7 @@ cl_int copied(cl_int code, const cl_event* event, size_t bytes) {
     return withEvent(code, event);
 }
 
-// References of the library to buffers: drivers have references of their own for a while.
+// References of the library to buffers; drivers may hold further references for a while.
 struct Held {
     size_t bytes;
     int64_t references;

@@ -1,6 +1,6 @@
-// What the library asks of OpenCL, counted between it and the loader (cl_spy.cpp is linked before the loader
-// into each test program). At the end of the program nothing of OpenCL may be left, and
-// no kernel may have compiled with warnings: the spy then fails it.
+// Counts the library's calls of OpenCL, between it and the loader (cl_spy.cpp is linked before the loader
+// into each test program). If OpenCL objects are left at the end of the program, or a kernel compiled with
+// warnings, the spy fails the program.
 #pragma once
 #include <cstdint>
 
@@ -32,11 +32,11 @@ struct [[gnu::visibility("default")]] Counts {
 [[gnu::visibility("default")]] uint64_t launchesOf(const char* kernel);
 [[gnu::visibility("default")]] uint64_t programsWith(const char* kernel);
 
-// Calls that fail on demand, before they reach OpenCL. `host` is for a program that has others to fail.
+// Calls that fail on demand, before they reach OpenCL. `host` is for programs with other calls to fail.
 enum class Call { none, host, createBuffer, createKernel, launch, destructorCallback };
 // From now on the nth call of this kind fails, and where that is `lasting` all after it.
 [[gnu::visibility("default")]] void failAt(Call call, int nth, bool lasting = false);
-// Whether this call is one to fail; and how many must still come before the first one: 0 or less when it has.
+// Whether this call has to fail; and the number of calls before the first failure, 0 or less after it.
 [[gnu::visibility("default")]] bool strikes(Call call);
 [[gnu::visibility("default")]] int callsUntilFailure();
 

@@ -1,5 +1,5 @@
-// Leaves one buffer and one event behind; named `profile`, one profile, which is no object of OpenCL's. The
-// watches are to fail it: one that sees nothing passes everything.
+// Leaks one buffer and one event; if named `profile`, one profile, which is not an OpenCL object. The leak
+// checks must fail this program, which proves that they find leaks.
 #include <cstring>
 #include <pellucid/pellucid.hpp>
 

@@ -1,4 +1,4 @@
-// In the place of NVIDIA's NVML: a GPU on bus C1, and the same or another one at index 0.
+// Replaces NVIDIA's NVML: a GPU on bus C1, and the same or another GPU at index 0.
 //   NVML_STAND_IN   "energy": 5 J more at each reading, 3 J by the index; "two": the same, with two GPUs;
 //                   "power": no energy, but 70 W; "none": no GPU answers
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // Programs that are built while the caller goes on (PelShaderOptions.buildInBackground), by other processes
-// where the driver is PoCL: what stands in, what takes over and when, and what goes wrong.
+// if the driver is PoCL: the stand-in, the switch to the materials' own methods, and errors.
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr auto patience = std::chrono::minutes(5);
 
-// No program of another process or run: PoCL's folder and the library's are new. Before OpenCL is used.
+// New folders for PoCL and the library, without programs of other processes. Set before OpenCL is used.
 struct NewCaches {
     char folder[32] = "/tmp/pellucid-new-XXXXXX";
     NewCaches() {
@@ -32,7 +32,7 @@ bool onPocl(const Device& on) {
     return on.info().platform == std::string("Portable Computing Language");
 }
 
-// By tables that follow from the profile, and specular light: none of them are in what stands in.
+// With tables that follow from the profile, and specular light: the stand-in has neither.
 Frame tableFrame() {
     Frame f = reliefFrame(1, 90, 40, 0.4f);
     f.lights.resize(1);
@@ -114,7 +114,7 @@ TEST(Background, NoneStandsInUntilTheMethodTakesOver) {
     EXPECT_TRUE(stood);
     EXPECT_EQ(first, lambert);
     EXPECT_NE(first, last);
-    // Now that all is in memory nothing stands in, and on disk for other devices as well.
+    // With all programs in memory, or on disk for other devices, there is no stand-in.
     Running again(own, f);
     again.shader.commit();
     EXPECT_EQ(again.shader.stats().standsIn, 0u);
@@ -127,7 +127,7 @@ TEST(Background, NoneStandsInUntilTheMethodTakesOver) {
     EXPECT_EQ(there.picture(), truth);
 }
 
-// Host memory that faults where it is read or written once it is gone.
+// Host memory whose use after its release is a fault.
 class FaultingMemory {
   public:
     explicit FaultingMemory(const std::vector<float>& values) : bytes_(values.size() * sizeof(float)) {

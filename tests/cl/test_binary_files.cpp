@@ -1,4 +1,4 @@
-// Files of compiled programs: whole or not there, and no more of them than there may be.
+// Files of compiled programs: complete or absent, and no more than the limit.
 #include <sys/stat.h>
 
 #include "cl/binary_files.h"
@@ -115,7 +115,7 @@ TEST_F(BinaryFile, WhereItIs) {
     EXPECT_EQ(folder(nullptr, "relative", "/home/x"), "/home/x/.cache/pellucid");
     EXPECT_EQ(folder("/mine", "/var/c", "/home/x"), "/mine");
     for (const char* off : {"", "0", "off"}) EXPECT_EQ(folder(off, "/var/c", "/home/x"), "");
-    // Without HOME, where the system says that this user's home is.
+    // Without HOME, in the user's home folder according to the system.
     const std::string system = folder(nullptr, nullptr, nullptr);
     EXPECT_TRUE(system.starts_with("/") && system.ends_with("/.cache/pellucid")) << system;
 }

@@ -1,4 +1,4 @@
-// Where PoCL keeps compiled kernels: in a folder of this user's alone, with nothing that PoCL would die of.
+// PoCL's folder of compiled kernels: private to this user, without files that would crash PoCL.
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/file.h>
@@ -19,7 +19,7 @@ namespace {
 
 class PoclCache : public FolderTest {
   protected:
-    // What a process ends with that is the first to use OpenCL: what `work` returns, or 1000 and a signal.
+    // Exit status of a process that is the first to use OpenCL: the result of `work`, or 1000 plus a signal.
     static int inFork(const std::function<int()>& work) {
         std::fflush(nullptr);
         const pid_t child = ::fork();
@@ -155,7 +155,7 @@ TEST_F(PoclCache, DamagedFilesAreCompiledAgain) {
             }
             EXPECT_EQ(table([] {}), 0) << extension << " " << how;
             EXPECT_GE(kernels(ours(), extension).size(), 1u);
-            // And again, when the last look is later than the damage could be.
+            // And again, if the last check is later than the damage could be.
             EXPECT_EQ(pel::cl::removeDamagedPrograms(ours()), 0u) << extension << " " << how;
         }
 }
@@ -173,7 +173,7 @@ TEST_F(PoclCache, LibrariesOfOtherMachinesAreLeftAlone) {
     EXPECT_TRUE(fs::exists(path("programs") + "/ab/d/kernel.so"));
 }
 
-// A large cache is not walked: who damages a file used its program.
+// A large cache is not searched: only programs that were used can be damaged.
 TEST_F(PoclCache, ProgramsThatNobodyUsesAreNotRead) {
     ASSERT_EQ(table([] {}), 0);
     pel::cl::removeDamagedPrograms(ours());
@@ -191,7 +191,7 @@ TEST_F(PoclCache, ProgramsThatNobodyUsesAreNotRead) {
     damage(std::chrono::minutes(9));
     EXPECT_EQ(pel::cl::removeDamagedPrograms(ours()), programs);
 
-    // A machine that started since may have lost power before all was on its disk.
+    // If the machine has restarted since, it may have lost power before all was on its disk.
     ASSERT_EQ(table([] {}), 0);
     damage(std::chrono::minutes(11));
     fs::last_write_time(ours() / "checked", now - std::chrono::years(10));

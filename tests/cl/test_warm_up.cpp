@@ -1,5 +1,5 @@
-// Programs built ahead of their first use: nothing is left to build, nothing of the caller's is touched,
-// and it can be stopped.
+// Programs built ahead of their first use: afterwards nothing is left to build, the caller's data are
+// untouched, and the warm-up can be stopped.
 #include "cl/cl_spy.h"
 #include "mesh/mesh_calls.h"
 #include "shading/pass_scene.h"

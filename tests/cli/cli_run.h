@@ -1,4 +1,4 @@
-// Runs the built `pellucid` command as its users do, and keeps what it says.
+// Runs the built `pellucid` command as its users do, and keeps its output.
 #pragma once
 #include <sys/wait.h>
 
@@ -44,9 +44,8 @@ class CommandTest : public FolderTest {
         EXPECT_EQ(filesInFolder(), files) << line;
     }
 
-    // A picture that a command drew is that in tests/cli/pictures, at which somebody looked. After a change
-    // that is meant to be visible, look at the new pictures at full size and keep them:
-    // PELLUCID_KEEP_PICTURES=1.
+    // Compares a picture of a command with the reviewed one in tests/cli/pictures. After a change that is
+    // meant to be visible, look at the new pictures at full size and keep them: PELLUCID_KEEP_PICTURES=1.
     void expectKept(const std::string& made, const std::string& name, const std::string& maxRmse) const {
         const std::string kept = PELLUCID_SOURCE_DIR "/tests/cli/pictures/" + name;
         if (!keeps(made, kept)) done("compare @" + made + " '" + kept + "' --max-rmse " + maxRmse);

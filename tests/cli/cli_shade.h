@@ -62,7 +62,7 @@ class Shade : public CommandTest {
         said_ = done(shade_ + " --json " + more);
         return pellucid::io::readImage(path("o.exr")).interleaved(colorNames);
     }
-    // What is wrong with them.
+    // Expects an error for them.
     void refuses(const std::string& message, const std::string& more = "") {
         std::filesystem::remove(path("o.exr"));
         pellucid::io::writeExr(path("g.exr"), gbuffer_);

@@ -126,7 +126,7 @@ TEST_F(BenchCommand, MeasuresTimeShareAndError) {
     EXPECT_GT(device.at("copy_bytes_per_second").get<double>(), 1e8);
     EXPECT_GT(device.at("operations_per_second").get<double>(), 1e8);
     for (const char* key : {"name", "platform", "version", "driver"}) EXPECT_NE(device.at(key), "");
-    // A process that starts from nothing, and again from what that left.
+    // A process with empty caches, and another one with the caches that the first has filled.
     for (const char* key : {"first_use", "warm_start"})
         EXPECT_GT(device.at(key).at("total_ms").get<double>(), 0.0);
     std::string names;
@@ -139,7 +139,7 @@ TEST_F(BenchCommand, MeasuresTimeShareAndError) {
         EXPECT_GE(number("samples"), 5) << name;
         EXPECT_FALSE(e.contains("watts")) << "there is no counter";
         if (e.at("group") == "device") continue;
-        // Right answers, and no faster than the device itself, or not known.
+        // Results are right, and shares of the device's limits are at most 1, or unknown.
         EXPECT_LT(number("error_max"), tolerance::shadeSum) << name;
         EXPECT_GE(number("error_max"), number("error_rms")) << name;
         ASSERT_TRUE(e.contains("bandwidth_share")) << name;
@@ -215,7 +215,7 @@ TEST_F(BenchCommand, MeasuresMethodsAgainstLight) {
     EXPECT_TRUE(contains(page, device.at("name").get<std::string>()));
     EXPECT_FALSE(contains(page, "/*reports*/"));
     EXPECT_FALSE(contains(page, "http://") || contains(page, "https://")) << "it needs nothing else";
-    // What was measured is what is expected of the same method: here its 90th percentile is the one scene.
+    // The record predicts the method's measured time: with one scene, the 90th percentile is that scene.
     done("bench --quick --limit 600 --only 'ball-4: auto, budget' -o @again",
          "PELLUCID_TUNING=" + path("out/tuning.txt"));
     const auto again = nlohmann::json::parse(read(path("again/bench.json"))).at("devices").at(0);
@@ -352,7 +352,7 @@ TEST_F(BenchCommand, LimitsTheRegistersOfNvidiasCompiler) {
 }
 #endif
 
-// The pictures are those that PoCL made with one lane, which is what runs here too.
+// The kept pictures were made by PoCL with one lane, which this test uses too.
 TEST_F(BenchCommand, TheFirstTimeOnAGpuJudgesWhatItMakes) {
     const std::string command =
         "bench --first-gpu --quick --limit 600 --only table-arc --only 'ball-4: disk' --only 'ball-4: auto' "
@@ -514,7 +514,7 @@ TEST_F(BenchCommand, ComparesOnlyWhatIsComparable) {
         write("b.json", worse.dump());
         refused("bench compare @a.json @b.json", 3, "all operations have other sizes");
     }
-    // Two devices, one in each report. Their bandwidths differ, which is no noise.
+    // Two devices, one in each report. Their difference in bandwidth does not count as noise.
     const Json other = edited([](Json& d) {
         d[0]["name"] = "E", d[0]["copy_bytes_per_second"] = 4e10;
         d[0]["operations"][0]["median_ms"] = 5;

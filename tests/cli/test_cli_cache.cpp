@@ -1,6 +1,6 @@
-// Compiled programs on disk: a second process compiles nothing and computes the same bits; whatever is wrong
-// with the files is no error. Each process is the `pellucid` command, with PELLUCID_CACHE=on, for PoCL keeps
-// programs itself.
+// Compiled programs on disk: a second process compiles nothing and computes the same bits; damaged files are
+// not an error. Each process is the `pellucid` command, with PELLUCID_CACHE=on, for PoCL keeps programs
+// itself.
 #include "cl/binary_files.h"
 #include "cli_run.h"
 
@@ -50,7 +50,7 @@ TEST_F(ProgramsOnDisk, ASecondProcessCompilesNothingAndComputesTheSameBits) {
     EXPECT_EQ(table(on), truth);
     EXPECT_EQ(int(files().size()), n) << "the table's programs were among them";
 
-    // Whole files with the right checksum of what is no program: compiled again and replaced.
+    // Files with a right checksum that hold no program are compiled again and replaced.
     for (const fs::path& file : files()) {
         const std::string nonsense(1000, 'n');
         const Digest sum = Digest().addPart(file.stem().string()).add(nonsense);

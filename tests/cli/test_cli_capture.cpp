@@ -100,7 +100,7 @@ TEST_F(Capture, RepeatsLightsAndTables) {
                          thickness.readAll<float>()));
 }
 
-// What radiance held stays without a material, and is added to.
+// The previous radiance stays where there is no material, and is added to elsewhere.
 TEST_F(Capture, RepeatsWhatRadianceHeld) {
     Frame f = randomFrame(5, 70, 40, 2);
     for (size_t i = 0; i < f.pixels(); i += 3) f.slots[PEL_SLOT_MATERIAL].values[i] = 0;
@@ -155,7 +155,7 @@ TEST_F(Capture, RepeatsEveryMethodAndProfile) {
           PEL_SCATTERING_LIGHT, PEL_SCATTERING_TEXTURE, PEL_SCATTERING_AUTO}) {
         SCOPED_TRACE(int(scattering));
         Frame f = scatteringFrame(scattering, 96, 64);
-        // Both materials have one profile, but in one frame.
+        // Both materials have the same profile, except in one frame.
         const Profile first = all[scattering], second = scattering == PEL_SCATTERING_AUTO ? all[0] : first;
         f.materials[1].profile = first.get();
         f.materials[2].profile = second.get();
@@ -242,7 +242,7 @@ TEST_F(Capture, RepeatsFormsOfShadowMaps) {
     }
 }
 
-// What a PelScatter makes of light that somebody else computed.
+// A PelScatter with irradiance of the host.
 TEST_F(Capture, RepeatsScatteringAlone) {
     namespace scene = scatter_scene;
     scene::Picture p = scene::ball(72, 10, 0.3, {0.8, 0.6, 0});
@@ -397,7 +397,7 @@ TEST_F(Capture, WritesEachShaderOnceAndNothingOver) {
     EXPECT_EQ(read(path("captures/shader-4/scene.toml")), before);
 }
 
-// What a scene cannot hold is said, and a folder that cannot be written to; the frame is shaded all the same.
+// Settings that a scene cannot hold, and an unwritable folder, are reported; the frame is still shaded.
 TEST_F(Capture, SaysWhatIsLeftOut) {
     Frame f = randomFrame(1, 32, 16, 1);
     f.options.scratchBudget = 64 << 20;

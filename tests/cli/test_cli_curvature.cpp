@@ -47,7 +47,7 @@ TEST_F(CliCurvature, OfASphereLikeMesh) {
 }
 
 TEST_F(CliCurvature, ColoursAndWeights) {
-    // On one range, meshes of different curvature differ in colour; each on its own, they look alike.
+    // With one range, meshes of different curvature differ in colour; with their own ranges they look alike.
     write("m.off", octahedron());
     const auto colored = [&](const std::string& options) {
         done("curvature @m.off -o @r.ply --scale " + options);

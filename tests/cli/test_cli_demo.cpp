@@ -1,4 +1,4 @@
-// `pellucid demo`: mesh in, pictures out, and `pellucid shade` makes the same of what it leaves.
+// `pellucid demo`: mesh in, pictures out, and `pellucid shade` makes the same pictures from the demo's files.
 #include "cli_shade.h"
 #include "sample/vector.h"
 
@@ -30,7 +30,7 @@ TEST_F(Demo, ShadeMakesTheSamePicturesAndSomebodyLookedAtThem) {
     for (const char* part :
          {"G-buffer (sample host)", "key: light and shadow maps (sample host)", "key: kernels"})
         EXPECT_TRUE(stages.contains(part)) << part;
-    // The scenes of which bench/roofline counts instructions can be made of the demo's, and can be read.
+    // The scenes of bench/roofline can be derived from the demo's scenes, and can be read.
     const std::string roofline = "python3 '" PELLUCID_SOURCE_DIR "/bench/roofline' --scenes @demo";
     ASSERT_EQ(std::system(filled(roofline).c_str()), 0);
     for (const std::string scene : {"surface", "taps", "wide", "blur"}) {

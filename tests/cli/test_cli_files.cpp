@@ -1,4 +1,4 @@
-// The command with files that are none, full disks, names that are no text, and limits of the system.
+// The command with non-files, full disks, names that are not UTF-8, and limits of the system.
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/mount.h>
@@ -147,7 +147,7 @@ TEST_F(Files, StandardOutputThatIsFullOrClosed) {
                                    "devices --json", "--help", "--version", "lut --help"})
         for (const char* to : {" >/dev/full", " >&-"})
             refused(line + to, 3, "standard output cannot be written", "timeout 60");
-    // A file does not become standard output because that was closed.
+    // If standard output is closed, no file may get its descriptor.
     EXPECT_EQ(cli("lut shadow --size 8x8 -o @o.npy >&- 2>/dev/null").exitCode, 3);
     EXPECT_EQ(std::filesystem::file_size(path("o.npy")), 128 + 8 * 8 * 3 * 4u);
     done("profile list <&- >/dev/null 2>&-");

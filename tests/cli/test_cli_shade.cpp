@@ -43,7 +43,7 @@ TEST_F(Shade, PicturesToLookAt) {
     }
 }
 
-// A frame of NaN gives a warning, not a black picture without a word.
+// A frame of NaN gives a warning, not a black picture without a message.
 TEST_F(Shade, InvalidPixelsAreCountedAndWarnedOf) {
     const std::vector<float> good = gbuffer_.channels[0].pixels;
     shaded("--strict");
@@ -136,8 +136,8 @@ TEST_F(WarmUp, BuildsAheadForTheDriversCache) {
     expectNothingLeftToCompile("POCL_CACHE_DIR=@cache PELLUCID_CACHE_DIR=@binaries", ".so");
 }
 
-// More vectors of pixels, and of texels of the shadow map, than the ranges for which PoCL compiles a kernel
-// by itself.
+// More vectors of pixels, and of shadow-map texels, than the size above which PoCL compiles kernels
+// separately.
 TEST_F(WarmUp, OfALargeFrameThatScatters) {
     gbuffer_ = imageOf(1440, 760, positionNames, [](int x, int y, size_t c) {
         return c == 0 ? 0.1 * (x - 720) : c == 1 ? 0.1 * (380 - y) : 0;
@@ -158,7 +158,7 @@ TEST_F(WarmUp, OfALargeFrameThatScatters) {
     expectNothingLeftToCompile("PELLUCID_CACHE=auto POCL_CACHE_DIR=@cache", "light_texels.so");
 }
 
-// What commands say in JSON, but times and what the device has.
+// The JSON reports of commands, without times and properties of the device.
 TEST_F(Shade, ReportsOfCommandsAreThoseThatWereKept) {
     std::filesystem::copy_file(PELLUCID_SOURCE_DIR "/data/heads/head_male.obj", path("m.obj"));
     const std::regex changes("ms|.*_ms|device|warnings|passes|launches|bytes.*");

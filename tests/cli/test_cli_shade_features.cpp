@@ -146,7 +146,7 @@ TEST_F(ShadeFeatures, PartsOfThePictureAreFiles) {
     }
 }
 
-// What each makes of its texels: tests/cli/test_cli_capture.cpp, with the bits of the library.
+// Their values are tested in tests/cli/test_cli_capture.cpp, against the bits of the library.
 TEST_F(ShadeFeatures, CubesAndEnvironmentsAreReadFromFiles) {
     const auto file = [&](int across, int down, const Names& names = colorNames) {
         io::writeExr(path("sky.exr"), imageOf(across, down, names, ones));
@@ -224,8 +224,8 @@ TEST_F(ShadeFeatures, SizesThatCannotBeTheProfilesAreSaid) {
     }
 }
 
-// Distances below 1, as a scene in metres has them, would be places that are much too near or too far apart;
-// so would the right depth of a scene whose unit is wrong.
+// Distances below 1, as in a scene in metres, would give positions that are much too close together or too
+// far apart; so would the right depth with a wrong unit.
 TEST_F(ShadeFeatures, DepthThatGivesNoLikelySizeIsSaid) {
     const io::Image without = gbuffer_;
     const auto with = [&](float value, float unit) {

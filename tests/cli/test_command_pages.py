@@ -1,4 +1,4 @@
-"""Manual pages and completions are made from the command, and the guide's tables are what it says today.
+"""Manual pages and completions are generated from the command, and the guide's tables agree with it.
 
 test_command_pages.py COMMAND
 """

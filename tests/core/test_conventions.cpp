@@ -1,5 +1,5 @@
-// Matrices of each convention, by the interfaces' own definitions: what a shadow map and a depth buffer
-// hold is read back to the places that it came from.
+// Matrices of each convention, by the definitions of the graphics APIs: the content of a shadow map and of a
+// depth buffer is mapped back to the original positions.
 #include "test.h"
 
 #include <pellucid/pellucid_conventions.hpp>

@@ -1,5 +1,5 @@
-// The counters of a device against what the driver was really asked for: a counter that stands still would
-// pass any comparison with itself.
+// The counters of a device against the driver's calls: a counter that never changes would pass any comparison
+// with itself.
 #include "test.h"
 
 #include "cl/cl_spy.h"
@@ -13,7 +13,7 @@ struct Change {
     spy::Counts asked;
 };
 
-// What `work` changes. Reading the counters waits, and asks the driver for nothing that is counted.
+// The change by `work`. Reading the counters waits, and makes no call that is counted.
 template <class Work>
 Change changeBy(const Device& device, const Work& work) {
     const Change before{device.stats(), spy::counts()};
@@ -73,7 +73,7 @@ TEST_F(Counters, LaunchesAreTheDrivers) {
     EXPECT_EQ(c.stats.bytesToHost, 3u * 64 * 2);
 }
 
-// A frame in the host's memory: read and written where it lies.
+// A frame in the host's memory is read and written in place.
 TEST_F(Counters, NothingIsCopiedOfAHostsFrame) {
     if (!device.info().sharedMemory) GTEST_SKIP() << "memory is not shared";
     constexpr uint32_t width = 64, height = 48, pixels = width * height;
@@ -107,7 +107,7 @@ TEST_F(Counters, NothingIsCopiedOfAHostsFrame) {
     EXPECT_EQ(frame[3 * pixels], 0.5f);
 }
 
-// Every object that a call makes goes with what holds it, failures included.
+// Every object that a call creates is released with its owner, also after failures.
 TEST_F(Counters, NothingIsLeft) {
     const auto work = [&] {
         PelEvent done = nullptr;

@@ -1,5 +1,5 @@
-// What pellucid.hpp adds to the C interface: what it keeps alive, what it does not compile, and short
-// forms. That messages name the image they are about.
+// The additions of pellucid.hpp to the C interface: objects that it keeps alive, code that it does not
+// compile, short forms, and messages that name the image.
 #include "shading/shader_ready.h"
 
 using namespace pellucid;

@@ -1,4 +1,4 @@
-// Devices, buffers, errors, events: what every other object stands on.
+// Devices, buffers, errors and events, which all other objects use.
 #include <CL/cl.h>
 
 #include <cstring>
@@ -63,8 +63,8 @@ TEST(Handles, OlderCallersGetTheFieldsTheyKnow) {
     EXPECT_EQ(info.clockMhz, 12345u) << "written beyond the caller's structure";
 }
 
-// Sizes that no header has had would give fields of which a part is the caller's and a part a default. A
-// later header's structures are longer; what lies behind this one's fields is left alone.
+// A size that no header has had would split a field between the caller's value and the default. Structures of
+// a later header are longer; their further fields are not touched.
 TEST(Handles, StructuresAreWholeFields) {
     const Device device("");
     const Shader shader(device);

@@ -1,4 +1,4 @@
-// A fork of a process that uses OpenCL has drivers' locks without their threads: calls say so at once.
+// A fork of a process that uses OpenCL has the drivers' locks without their threads: calls fail at once.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -61,7 +61,7 @@ TEST(Fork, ItCanEnd) {
     EXPECT_EQ(inFork([]() -> int { std::exit(5); }), 5);
 }
 
-// While other threads are in the middle of something, the error callback included.
+// While other threads are in the middle of calls, including the error callback.
 TEST(Fork, InTheMiddleOfThings) {
     pelSetErrorCallback([](void*, PelError, const char*) {}, nullptr);
     std::atomic<bool> done{false};

@@ -1,5 +1,5 @@
-// Handles of every type, used wrongly: released twice, used after their release, invented, of another
-// type, by many threads. Each is an error that says so, and no object suffers.
+// Handles of every type, used wrongly: released twice, used after their release, invented, of another type,
+// by many threads. Each use is an error that names the mistake, and no object is damaged.
 #include "core/handle_kinds.h"
 
 using handles::Handle;
@@ -21,7 +21,7 @@ struct Heard {
             this);
     }
     ~Heard() { pelSetErrorCallback(nullptr, nullptr); }
-    // Whether exactly one error came since the last question, and says all of `parts`.
+    // Whether exactly one error came since the last check, and its message has all of `parts`.
     testing::AssertionResult once(const std::vector<std::string>& parts) {
         const auto all = std::exchange(errors, {});
         if (all.size() != 1) return testing::AssertionFailure() << all.size() << " errors";
@@ -142,7 +142,7 @@ TEST(Handles, NullIsNoError) {
     EXPECT_EQ(heard.errors.size(), 0u);
 }
 
-// More at a time than one piece of the table holds.
+// More handles at a time than one block of the table holds.
 TEST(Handles, ManyAtATime) {
     std::vector<Profile> all;
     std::set<PelProfile> seen;

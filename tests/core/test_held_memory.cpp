@@ -1,4 +1,4 @@
-// What objects say of the memory that they hold is what OpenCL was asked for: it goes when they go.
+// The memory that objects report equals the memory requested from OpenCL, and is freed with them.
 #include "cl/cl_spy.h"
 #include "diffusion/lit_ball.h"
 #include "mesh/mesh_fixture.h"
@@ -54,7 +54,7 @@ TEST(HeldMemory, OfAShaderByMethod) {
         shader.set(std::vector{lamp.light});
         shader.set(0, PEL_LIGHT_SHADOW_MAP,
                    pellucid::imageDesc(map, PEL_FORMAT_R32F, lamp.width, lamp.height));
-        // What a commit would take is known before it, without the memory, and is what it takes.
+        // The memory of a commit is known before it, without an allocation, and equals the actual memory.
         const std::vector<PelPassMemory> before = shader.memory();
         const spy::Counts counts = spy::counts();
         const std::vector<PelPassMemory> again = shader.memory();

@@ -81,7 +81,7 @@ TEST_F(LaunchSizes, DamagedFilesAreIgnoredWithTheReason) {
         EXPECT_TRUE(contains(rule.warning, path("tuning.txt") + " does not set launch sizes: "))
             << rule.warning;
     }
-    // What is whole but impossible becomes possible.
+    // Well-formed but impossible sizes are replaced by possible ones.
     write("tuning.txt", head + "launch 1048576 3 1048576 1" + made);
     EXPECT_EQ(pel::launchRule(info).policy, (LaunchPolicy{256, 2, 4096, 16}));
     PelDeviceInfo small = infoOf(16);

@@ -89,7 +89,7 @@ TEST(Memory, AddressSpaceRunsOut) {
             CHILD_EXPECT(std::strstr(pelGetErrorMessage(), "memory") ||
                          std::strstr(pelGetErrorMessage(), "ulimit"));
             CHILD_EXPECT(all.size() * bytes > 500u << 20);
-            // What there is goes on working, and so does everything once there is room.
+            // Existing objects go on working, and everything works again once there is memory.
             const int value = 7;
             all.back().write(&value, sizeof value, bytes - sizeof value);
             int back = 0;
@@ -100,7 +100,7 @@ TEST(Memory, AddressSpaceRunsOut) {
     });
 }
 
-// Whatever allocates says so, not buffers alone.
+// All calls that allocate report it, not only buffers.
 TEST(Memory, TablesAndTopologiesRunOutOfIt) {
     inFork([] {
         const Device device("");
@@ -248,7 +248,7 @@ TEST(Memory, DriversThatRefuse) {
     });
 }
 
-// As with Wine's loader: the driver's memory stands in the library's place.
+// As with Wine's loader: memory is allocated by the driver, not by the library.
 TEST(Memory, IsTheDriversWhereBuffersEndUnseen) {
     inFork([] {
         const Device device("");

@@ -1,4 +1,4 @@
-// What a call writes to its caller: nothing that was not asked for, and nothing if the call is refused.
+// Outputs of calls: only requested outputs are written, and none if the call is refused.
 #include "mesh/mesh_calls.h"
 
 using namespace pellucid;

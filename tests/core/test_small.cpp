@@ -1,5 +1,4 @@
-// Nearly every kernel once, at sizes that are no multiple of anything, against the oracle: the quickest
-// look at another device or tool.
+// Nearly every kernel once, at odd sizes, against the oracle: the quickest check of another device or tool.
 #include "lut/lut_cases.h"
 #include "mesh/mesh_fixture.h"
 #include "mesh/reference_meshes.h"

@@ -1,4 +1,4 @@
-// What the files in folders named `posix` and `windows` do: outputs, inputs, this process, libraries.
+// The code in folders named `posix` and `windows`: outputs, inputs, this process, libraries.
 #ifndef _WIN32
 #include <fcntl.h>
 #include <sys/resource.h>

@@ -1,5 +1,5 @@
-// Objects that several threads use at a time give each of them what it would have got alone. The check for
-// data races (./run check tsan) also finds races here that do no harm by chance.
+// Objects that several threads use at a time give each thread the same results as alone. The check for data
+// races (./run check tsan) also finds races here that happen to be harmless.
 #include "mesh/mesh_fixture.h"
 
 namespace {

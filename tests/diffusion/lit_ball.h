@@ -13,7 +13,7 @@ inline constexpr Form forms[] = {Form::parallel, Form::reversed, Form::perspecti
                                  Form::spot,     Form::cube,     Form::radial,
                                  Form::cascades, Form::moments,  Form::exponential};
 
-// The distance along a ray to the ball in the origin; infinite beside it.
+// The distance along a ray to the ball at the origin; infinite if the ray misses it.
 inline double hitBall(Vec3 from, Vec3 direction) {
     const double along = -dot(from, direction), rest = along * along - dot(from, from) + radius * radius;
     return rest < 0 ? double(infinity) : along - std::sqrt(rest);

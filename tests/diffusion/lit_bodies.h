@@ -49,7 +49,7 @@ inline double pores(double x, double y) {
     return -0.02 * x * x - 0.3 * std::pow((2 + a + b) / 4, 4);
 }
 
-// A square of relief with walls and a floor, without which light from below would come through it.
+// A square of relief with walls and a floor, which block light from below.
 inline Body relief(int cells, double half = 15, double (*height)(double, double) = saddle) {
     Body body{"relief", {}, {{0, 1, 0}, {0, 0, 1}}};
     sample::Mesh& mesh = body.mesh;

@@ -1,4 +1,4 @@
-// Bodies under one hard light, with what light does on them: the scenes by which methods of scattering are
+// Bodies under one hard light, with their ground truth: the scenes by which methods of scattering are
 // measured.
 #pragma once
 #include "diffusion/lit_bodies.h"
@@ -95,7 +95,7 @@ class Stage {
         }
     }
 
-    // The picture, its map and its irradiance, without what light does.
+    // The picture, its map and its irradiance, without the ground truth.
     LitScene look(const SceneRequest& request, const Profile& profile) const {
         LitScene s;
         s.unit = unit_;
@@ -143,14 +143,14 @@ class Stage {
         return s;
     }
 
-    // What light does there: the surface integral.
+    // Adds the ground truth: the surface integral.
     void addTruth(const Device& device, LitScene& s, const Profile& profile, double profileScale) const {
         const PelProfileInfo info = profile.info();
         const double scale = profileScale / unit_,
                      narrowest = scale * *std::min_element(info.width, info.width + 3),
                      widest = scale * *std::max_element(info.width, info.width + 3);
         sample::LitMeshOptions options;
-        // Half a pixel will do where a pixel is wider than the profile.
+        // Half a pixel suffices if a pixel is wider than the profile.
         options.finest = narrowest / 2;
         options.coarsest = std::max(widest, 2 * options.finest);
         options.material = material();
@@ -216,7 +216,7 @@ inline LitScene make(const Device& device, const Body& body, const SceneRequest&
     return s;
 }
 
-// The same scene with positions in another unit, which is `unit` mm long. What light does there is the same.
+// The same scene with positions in another unit, which is `unit` mm long. The ground truth does not change.
 inline LitScene inUnit(LitScene s, double unit) {
     const double by = unit / s.unit;
     s.unit = unit;
@@ -284,7 +284,7 @@ inline std::vector<float> thicknessOf(const Stage& stage, const LitScene& s) {
     return thickness;
 }
 
-// What a shader made of a scene; `shader` makes the same frame again.
+// The result of a shader for a scene; `shader` makes the same frame again.
 struct Shot {
     std::vector<float> light;
     PelShaderStats stats;

@@ -1,4 +1,4 @@
-// What the tests of scattering share: pictures, and what a PelScatter, a shader or the oracle makes of them.
+// Shared by the tests of scattering: pictures, and how a PelScatter, a shader and the oracle scatter them.
 #pragma once
 #include "tools.h"
 
@@ -76,7 +76,7 @@ inline Picture ball(uint32_t side, double radius, double size, Vec3 toLight) {
     return p;
 }
 
-// What a ball of 10 mm scatters by the cosine to the light: the closed form `sphere` of section 2.
+// The scattered light of a ball of 10 mm by the cosine to the light: the closed form `sphere` of section 2.
 inline std::function<Vec3(double)> lightOnBall(const reference::Profile& profile) {
     constexpr int steps = 200;
     std::vector<Vec3> curve;
@@ -145,7 +145,7 @@ struct Material {
     PelScatterControls controls = pelScatterControlsDefaults();
 };
 
-// What a call has beside irradiance and positions.
+// The inputs of a call besides irradiance and positions.
 struct Extra {
     std::vector<float> weights, albedo, back, normals, curvature;
     std::vector<float> depth;  // in place of positions
@@ -238,7 +238,7 @@ inline PelMaterial whiteMaterial(const Profile& profile, PelScattering scatterin
     return material;
 }
 
-// Of which only the place matters.
+// Only its position matters.
 inline PelCamera standingAt(Vec3 place) {
     PelCamera camera = pelCameraDefaults();
     std::fill_n(camera.inverseViewProjection, 16, 0.0f);

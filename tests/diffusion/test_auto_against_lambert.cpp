@@ -1,7 +1,7 @@
-// With default settings `auto` is no further from light that walks through the volume than Lambert with a
-// ray-traced shadow, in no channel and no sub-set, with a few exceptions, which knownWorse lists with
-// their size. The walks are made here, with few paths: the difference of two squared errors is linear in
-// what was walked, so that little noise remains.
+// With default settings, the error of `auto` against random walks is at most that of Lambert with a
+// ray-traced shadow, in each channel and sub-set, except for the cases in knownWorse, which lists their size.
+// The walks are made here with few paths: the difference of two squared errors is linear in the walks, so
+// little noise remains.
 #include "diffusion/reference_scenes.h"
 #include "lit_scenes.h"
 #include "sample/random_walk.h"
@@ -24,15 +24,15 @@ const Contender contenders[] = {{"auto, traced", {.traced = true, .gain = 1}},
                                 {"auto", {.gain = 1}},
                                 {"auto, thickness", {.gain = 1}, true}};
 
-// Where both are further from light than Lambert: root of the difference of the squared errors, 1e-4 of
-// white: red, green, blue; 0: it is not.
+// Cases in which both are worse than Lambert: root of the difference of the squared errors, 1e-4 of white:
+// red, green, blue; 0: not worse.
 struct Known {
     const char *where, *part;
     double most[3];
 };
 // A thin body loses light through its far side, so that the lit side of a leaf is darker than that of a
-// half-space, most of all at its rim. Without a thickness nothing tells how thick the body is below lit
-// surface; the gain of curvature makes the rim brighter besides.
+// half-space, most of all at its rim. Without a thickness image the thickness of the body below the lit
+// surface is not known; the gain of curvature also makes the rim brighter.
 constexpr Known knownWorse[] = {
     {"leaf, side", "thin", {163, 83, 0}},
     {"leaf, side", "rest", {323, 169, 0}},
@@ -123,7 +123,7 @@ void compareBody(const Body& body, const std::string& name, const SceneRequest& 
     }
 }
 
-// Of heads the profile is four times as wide, so that it is wider than pixels.
+// For heads the profile is four times as wide, so that it is wider than a pixel.
 SceneRequest requestOf(int size, double profileScale = 1, bool fromBehind = false) {
     SceneRequest request;
     request.profileScale = profileScale;
@@ -158,7 +158,7 @@ TEST(AutoAgainstLambert, Balls) {
         compareBody(ball(radius, sized(96, 8)), "ball of " + std::to_string(int(radius)) + " mm",
                     requestOf(48));
 }
-// The unit is no matter of the light.
+// The unit does not change the light.
 TEST(AutoAgainstLambert, AnyUnit) {
     const Device device("");
     const Profile skin = reference_scenes::profile();

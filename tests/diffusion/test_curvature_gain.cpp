@@ -151,8 +151,8 @@ TEST(CurvatureGain, NeedsNeitherAllNeighboursNorTheWholeFrame) {
     }
 }
 
-// A window is as many pixels as the surface at this pixel asks for, whatever its neighbours' in a vector are,
-// and differences that reach beyond the frame are left out one by one.
+// The size of the window depends on the surface at its own pixel, not on the other pixels of a vector, and
+// differences that reach beyond the frame are left out one by one.
 TEST(CurvatureGain, DoesNotDependOnTheWidthOfVectors) {
     const Surface waves{"waves", [](double x, double y) { return 3 * std::cos(x) + 0.1 * y * y; }, 0};
     constexpr uint32_t side = 96;
@@ -170,9 +170,9 @@ TEST(CurvatureGain, DoesNotDependOnTheWidthOfVectors) {
 }
 
 // A groove of two planes, of which the left one is lit, seen from above: where the medium is known, less
-// light crosses the air in it. Over a ridge more takes its way through the body. A shadow map of the left
-// plane alone gives the same: what lies deep below a receiver that is turned to the light is no slab's far
-// side.
+// light crosses the air in it. Over a ridge more light travels through the body. A shadow map of only the
+// left plane gives the same: surface deep below a receiver that faces the light is not the far side of a
+// slab.
 TEST(CurvatureGain, LightTakesItsWayThroughTheBody) {
     const uint32_t side = 64;
     const double size = 0.15;

@@ -1,5 +1,5 @@
-// Light of earlier frames in that of this one (PelShaderOptions.historyWeight): against the oracle, and what
-// must hold in any sequence of frames.
+// Blending with the light of earlier frames (PelShaderOptions.historyWeight): against the oracle, and
+// invariants of any sequence of frames.
 #include "diffusion/lit_ball.h"
 #include "reference/diffusion_taps.h"
 #include "test.h"
@@ -154,7 +154,7 @@ TEST(History, AtRestComesCloserToAllTaps) {
     }
 }
 
-// More of them than a byte counts.
+// More frames than a byte counts.
 TEST(History, GoesOnForHundredsOfFrames) {
     const Picture p = movedBall({}, 16);
     ShownImages shown(device(), 1, 1);
@@ -162,7 +162,7 @@ TEST(History, GoesOnForHundredsOfFrames) {
         ASSERT_EQ(shade(clipFrame(p, disk, 8, k, {}), shown).stats.pixelsHistory, k ? covered(p) : 0) << k;
 }
 
-// What a frame does not hold itself round a pixel, the ones before it do not bring.
+// Light that a frame does not have around a pixel is not added from earlier frames.
 TEST(History, LightThatWentOutLeavesNoTrail) {
     Picture p = movedBall({}, sized(64u, 24u));
     ShownImages shown(device(), 1, 1);
@@ -256,7 +256,7 @@ TEST(History, SameFramesGiveTheSameBits) {
     EXPECT_EQ(one.out.readAll<float>(), shade(c, two).light);
 }
 
-// A camera that moves sees what rests at other distances: those are known from its matrices.
+// A moving camera sees resting surfaces at other distances, which follow from its matrices.
 TEST(History, FollowsTheCamera) {
     Picture p = plane(32, 24, 0.25, [](double x, double y) { return Vec3{x / 8, y / 6, 0.5}; });
     const auto turned = [](double x) {

@@ -1,4 +1,4 @@
-// Frames with fields at random, by every method and form of shadow map, beside kept results.
+// Frames with random fields, by every method and form of shadow map, compared with kept results.
 #include "device_lanes.h"
 #include "diffusion/lit_ball.h"
 #include "kept_sums.h"
@@ -25,7 +25,7 @@ Profile profileOf(Draw& draw) {
     }
 }
 
-// Something before a part of what each map shows: 3 mm, or a third of the way from the light.
+// An occluder in front of a part of each map's surface: by 3 mm, or at a third of the way from the light.
 void addOccluder(LitBall& ball, Form form, Draw& draw) {
     const PelLight& l = ball.light;
     const auto nearer = [&](float z) {
@@ -66,7 +66,7 @@ Frame frameOf(uint32_t structure, uint32_t copy, uint32_t side = 40, bool behind
         if (!draw.oneOf(4)) addOccluder(lights.back(), form, value);
     };
     addLight(forms[structure % std::size(forms)]);
-    // What the maps of all lights hold has to be the same.
+    // All lights must have maps of the same content.
     if (draw.oneOf(3) && structure % std::size(forms) < 7) addLight(forms[draw.below(7)]);
     Frame f = lit_ball::frameOf(lights, side, methods[structure % std::size(methods)],
                                 draw.oneOf(4) ? 0 : value.in(0.2f, 3), profileOf(value));
@@ -119,7 +119,7 @@ Frame frameOf(uint32_t structure, uint32_t copy, uint32_t side = 40, bool behind
     return f;
 }
 
-// What skipping left of the work. Another number of lanes leaves other tiles and blocks alone.
+// The work that skipping has left. Another number of lanes skips other tiles and blocks.
 std::vector<uint64_t> workOf(const PelShaderStats& s) {
     std::vector<uint64_t> work{s.pixelsShaded,     s.pixelsIrradiance,   s.pixelsShadowLut,
                                s.pixelsWideShadow, s.pixelsShadowTexels, s.pixelsScattered,
@@ -158,7 +158,7 @@ TEST(KeptResults, OfFramesWithFieldsAtRandom) {
     }
 }
 
-// Faults in what may be left out change the time that frames take, not their pixels.
+// Faults in skipping change the time of frames, not their pixels.
 TEST(KeptResults, WorkOfFramesWithFieldsAtRandom) {
     if (testsAreSmall()) GTEST_SKIP() << "for whole pictures";
     const Device oneLane = lanes::deviceOf(1);  // as GPUs have

@@ -64,7 +64,7 @@ LitBall lampFromBehind(double extent) {
     return lamp;
 }
 
-// What a lamp from behind is seen through: pixels of 0.1 mm round the origin.
+// The sheet in front of a lamp from behind: pixels of 0.1 mm round the origin.
 Frame sheet(uint32_t side, PelScattering method) {
     Frame f(plane(side, side, 0.1, [](double, double) { return Vec3{}; }), method);
     for (size_t i = 0; i < f.picture.positions.size(); ++i)
@@ -143,8 +143,8 @@ TEST(LightSpace, IsTheSumOverAllTexelsOfAllLights) {
     }
 }
 
-// Of a map only what the profile reaches from the pixels that scatter is made into lit surface, and nothing
-// where none does.
+// Only texels within the profile's reach of scattering pixels become lit surface; if no pixel scatters, none
+// do.
 TEST(LightSpace, OnlyTexelsWithinReachAreMade) {
     constexpr uint32_t mapSide = 384;
     const Profile profile = Profile::gaussians({{0.002f, {1, 0.8f, 0.6f}}});
@@ -174,7 +174,7 @@ TEST(LightSpace, OnlyTexelsWithinReachAreMade) {
     }
 }
 
-// And that is enough: other pixels, on all sides, for which more of the map is made, change no bit.
+// These texels suffice: further pixels on all sides, for which more of the map is used, change no bit.
 TEST(LightSpace, TexelsBeyondReachDoNotCount) {
     constexpr uint32_t side = 48, middle = side / 2, row = middle + 1;  // of three pixels
     const LitBall ball = makeBall(Form::parallel, normalized(Vec3{0.7, 0.2, 0.5}), sized(768u, 192u));
@@ -203,8 +203,8 @@ TEST(LightSpace, TexelsBeyondReachDoNotCount) {
     }
 }
 
-// Texels of what the camera sees as another object are left out, whether that scatters or not. No pixel is
-// dark, which would mark nothing.
+// Texels of a surface that the camera sees as another object are left out, whether it scatters or not. No
+// pixel is dark, because a dark pixel would mark nothing.
 TEST(LightSpace, TexelsOfOtherObjectsDoNotCount) {
     constexpr uint32_t side = 32;
     // Single texels of a narrow profile, clusters of texels of a wide one.
@@ -228,7 +228,7 @@ TEST(LightSpace, TexelsOfOtherObjectsDoNotCount) {
     }
 }
 
-// Light adds up: what two lights scatter is what each of them scatters alone.
+// Light is additive: the result for two lights is the sum of the results for each alone.
 TEST(LightSpace, TwoLightsAreTheSumOfEachAlone) {
     const uint32_t side = sized(64u, 20u);
     const std::vector<LitBall> both = lightsFrom({{0.7, 0.2, -0.5}, {-0.6, 0.5, -0.4}}, sized(192u, 64u));
@@ -253,8 +253,8 @@ TEST(LightSpace, TwoLightsAreTheSumOfEachAlone) {
         }
 }
 
-// Where the ball is dark all light has come through it: every texel counts, and no pixel does. Where the
-// medium is known, too: what lies as deep as on a sphere of the curvature is no slab's far side.
+// Where the ball is dark, all light has come through it: every texel counts, and no pixel does. This also
+// holds for a known medium: surface as deep as on a sphere of that curvature is not the far side of a slab.
 TEST(LightSpace, ThroughABallIsTheSurfaceIntegralForEveryFormOfMap) {
     const float d = 0.8f, paths[] = {1.1f * d, 1.1f * d, 1.1f * d}, white[] = {0.8f, 0.8f, 0.8f};
     const Profile burley = Profile::burley(paths, white);
@@ -304,8 +304,8 @@ TEST(LightSpace, ThroughABallIsTheSurfaceIntegralForEveryFormOfMap) {
     }
 }
 
-// A thin strip that is lit from behind, before something bright and far away: light comes through it, also
-// where a tile of pixels is mostly what lies behind.
+// A thin strip that is lit from behind, in front of a bright and distant surface: light comes through it,
+// also where most pixels of a tile show the background.
 TEST(LightSpace, LightComesThroughAStripInEveryTile) {
     constexpr double pixel = 0.25, halfWidth = 1, thickness = 0.8, extent = 16;  // mm
     const uint32_t side = sized(64u, 32u);
@@ -314,7 +314,7 @@ TEST(LightSpace, LightComesThroughAStripInEveryTile) {
     lamp.maps = {texelsOf(lamp.width, [&](double s, double, int) {
         return std::abs(s * extent / 2) < halfWidth ? 1 - 0.05 * thickness : 1;
     })};
-    // What comes through at x: the sum over the strip's back, infinitely long.
+    // The transmitted light at x: the sum over the strip's back, infinitely long.
     const auto through = [&](double x) {
         constexpr double step = 0.05, far = 12;
         reference::Rgb sum;
@@ -386,8 +386,8 @@ TEST(LightSpace, SlabsLetThroughWhatRandomWalksDo) {
     }
 }
 
-// Its lit side, where the host says how thick it is: what does not leave on the far side. A thickness that is
-// unknown, or without end, changes nothing.
+// The lit side of a slab whose thickness the host gives: the light that does not leave on the far side. An
+// unknown or infinite thickness changes nothing.
 TEST(LightSpace, SlabsReflectWhatRandomWalksDo) {
     constexpr float path[] = {0.3f, 0.6f, 1.2f};  // mm
     const float albedos[] = {0.8f, 0.8f, 0.8f};
@@ -468,7 +468,7 @@ TEST(LightSpace, NothingIsLitBetweenSurfaces) {
     }
 }
 
-// What is exchanged between the channels of lights and profile is exchanged in the result, to the bit.
+// Exchanging channels of lights and profile exchanges the channels of the result, to the bit.
 TEST(LightSpace, ChannelsAreTreatedAlike) {
     for (const PelScattering method : {byLight, byAuto}) {
         Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{0.9, 0, -0.4}), sized(256u, 64u)),
@@ -516,8 +516,8 @@ TEST(LightSpace, AnIdIsButAName) {
     }
 }
 
-// A light without a map beside it: as on the screen, and said. So are maps, faces of cubes one by one, of
-// which 24 are the most.
+// If a light has no map, the result is as by `screen`, with a warning. The same holds for more than 24 maps,
+// counting each face of a cube.
 TEST(LightSpace, WithoutAllMapsTheScreenDoes) {
     const auto said = [](const Shown& lit) {
         return lit.warnings.find("shadow maps do not hold all light") != std::string::npos;
@@ -540,8 +540,8 @@ TEST(LightSpace, WithoutAllMapsTheScreenDoes) {
     EXPECT_TRUE(said(frameOf(lights, 16, byLight).shade()));
 }
 
-// A light's shadow image counts for `auto` where it is plain, as irradiance with that shadow does. Others are
-// left aside beside a map, and scattered by tables without one.
+// `auto` uses a light's plain shadow image, like irradiance with that shadow. Other shadow images are ignored
+// if there is a map, and without a map the material is shaded by tables.
 TEST(LightSpace, PlainShadowImagesAreScatteredBy) {
     constexpr uint32_t side = 40;
     Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{0.5, 0.2, 0.8}), 64)}, side, byAuto, 0.4f);

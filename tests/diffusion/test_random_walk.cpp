@@ -1,4 +1,4 @@
-// The volumetric oracle against what is known of the medium, and against another program's walk of the same
+// The volumetric oracle against known results for the medium, and against another program's walk of the same
 // ball.
 #include "test.h"
 
@@ -37,7 +37,7 @@ TEST(RandomWalk, HalfSpaceReflectsWhatIsKnown) {
     const reference::WalkResult walk =
         reference::walkSlab({1, albedo}, INFINITY, 50, 20, sized(200000, 2000), 1);
     EXPECT_NEAR(walk.reflected, halfSpace(), testsAreSmall() ? 0.05 : tolerance::walkReflected);
-    // Scaling the medium scales the distances alone.
+    // Scaling the medium only scales the distances.
     const reference::WalkResult twice =
         reference::walkSlab({2, albedo}, INFINITY, 100, 20, sized(200000, 2000), 1);
     EXPECT_NEAR(twice.reflected, walk.reflected, 1e-12);

@@ -49,8 +49,8 @@ constexpr PelScattering byAuto = PEL_SCATTERING_AUTO, byLight = PEL_SCATTERING_L
 
 }  // namespace
 
-// Taps are as near as those of other people's prototypes. Where shadows come from the map alone, blue,
-// which scatters less far than a texel is wide, is wrong at the map's edges.
+// Taps are as accurate as in other prototypes. With shadows only from the map, blue, which scatters less far
+// than a texel is wide, is wrong at the map's edges.
 TEST(ReferenceScenes, Head) {
     const char *references = std::getenv("PELLUCID_RULER_DIR"),
                *gbuffers = std::getenv("PELLUCID_GBUFFER_DIR");

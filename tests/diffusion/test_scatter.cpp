@@ -1,5 +1,5 @@
-// A PelScatter: blocks of pixels, taps on a disk and the separable filter against the sums that they stand
-// for, and what must hold for any picture.
+// A PelScatter: blocks of pixels, taps on a disk and the separable filter against the sums that they
+// approximate, and invariants of any picture.
 
 #include "device_lanes.h"
 #include "diffusion/scatter_scene.h"
@@ -88,9 +88,9 @@ TEST(Scatter, OneLaneFindsTheLightOfSixteen) {
     EXPECT_LT(difference(p, light(1), light(16)).most, tolerance::scatterLanes);
 }
 
-// Dots in the middle of nine tiles, which the middle tile and the four beside it take into account. Pixels
-// are too far apart for light to get from one to the next, but for those of one tile: every tile round it
-// reckons with pixels as near.
+// Dots in the middle of nine tiles, which affect the middle tile and the four beside it. Pixels are too far
+// apart for light to get from one to the next, except in one tile: every tile round it must assume pixels as
+// close.
 TEST(Scatter, ATileCountsWhereAnyTileAroundItIsFine) {
     const Profile profile = Profile::burleyDistance({0.02, 0.02, 0.02});
     const auto tapped = [&](uint32_t fineX, uint32_t fineY) {
@@ -201,7 +201,8 @@ TEST(Scatter, HalfRateKeepsDetail) {
         }
 }
 
-// Beside highlights of a single pixel, where the share of a pixel in its light is not that of taps.
+// Beside highlights of a single pixel, where the pixel's share of its own light differs from that of the
+// taps.
 TEST(Scatter, HalfRateLeavesNoLightBelowZero) {
     for (const auto& [method, taps] : byTaps)
         for (float scale : {0.03f, 0.1f, 0.3f}) {
@@ -216,7 +217,7 @@ TEST(Scatter, HalfRateLeavesNoLightBelowZero) {
         }
 }
 
-// And hosts that average frames, whose taps are turned, get what more taps give.
+// Hosts that average frames with rotated taps get the same result as with more taps.
 TEST(Scatter, ManyTapsOrFramesAreTheWholeProfile) {
     Picture p = scene(false);
     const auto whole = reference::scatterOnScreen(p.exact(), *reference::skinProfile());
@@ -270,7 +271,7 @@ TEST(Scatter, AProfileAsWideAsThePicture) {
     EXPECT_LT(d.most, tolerance::scatterWideMost);
 }
 
-// What is exchanged between the channels of light and profile is exchanged in the result, to the bit.
+// Exchanging channels of light and profile exchanges the channels of the result, to the bit.
 TEST(Scatter, ChannelsAreTreatedAlike) {
     Picture p = scene();
     for (size_t i = 0; i < p.pixels(); ++i) {
@@ -317,7 +318,7 @@ TEST(Scatter, NothingFlowsBetweenIdsUnlessAsked) {
         const auto joined = scatterBy(one, 1, controlsOf(method, taps)).scattered;
         EXPECT_LT(rms(open, joined), 2e-3);  // sizes of pixels next to the border are measured on one side
         EXPECT_GT(rms(open, apart), 0.02);
-        // Teeth, eyes, clothes: an id that does not scatter gives nothing either way.
+        // Teeth, eyes, clothes: no light flows to or from an id that does not scatter.
         for (uint8_t& id : p.ids) id = id == 2 ? 9 : id;
         EXPECT_EQ(scatterBy(p, 1, controlsOf(method, taps, 1)).scattered, p.irradiance);
     }
@@ -366,9 +367,9 @@ TEST(Scatter, LightTooLargeToSumStaysWhereItIs) {
     }
 }
 
-// Tiles are chosen alike from all sides: pixels lie close together in one tile of two and far apart in the
-// other, and the picture is mirrored and transposed. Contrasts pass the bound, so that tiles begin to
-// scatter on the way.
+// The choice of tiles does not depend on orientation: pixels are close together in one of two tiles and far
+// apart in the other; the picture is mirrored and transposed; the contrast grows until tiles begin to
+// scatter.
 TEST(Scatter, TwoTilesAreChosenAlikeFromEverySide) {
     uint64_t tapped[3] = {};
     const int contrasts = 60;
@@ -456,10 +457,10 @@ TEST(Scatter, DepthIsAsGoodAsPositions) {
     }
 }
 
-// What no sum over lit surface can bring: less than the darkest or more than the brightest irradiance of the
-// picture, and, in a dark gap between lit walls, less light of a channel that scatters farther. Two rods that
-// touch, as lips do, seen along -z and lit from above, the upper one casting its shadow on the lower: below
-// the middle of the upper one lies a dark gap, which ends at a limb.
+// Results that no sum over lit surface has: less than the darkest or more than the brightest irradiance, and,
+// in a dark gap between lit walls, less light of a channel that scatters farther. Two rods that touch, as
+// lips do, seen along -z and lit from above, the upper one casting its shadow on the lower: below the middle
+// of the upper one lies a dark gap, which ends at a limb.
 TEST(Scatter, NeitherBrighterThanItsLightNorBlueInADarkGap) {
     const uint32_t side = sized(96u, 24u);
     size_t dark = 0;

@@ -1,5 +1,5 @@
-// Bad and extreme input, through the shader, for every method: a finite result that is documented, or an
-// error that says what is wrong. And what the controls of scattering accept.
+// Bad and extreme input, through the shader, for every method: a finite, documented result, or an error that
+// says what is wrong. Also the values that the controls of scattering accept.
 #include "diffusion/lit_ball.h"
 #include "test.h"
 
@@ -62,7 +62,7 @@ void expectLight(const std::vector<float>& light, float most, const std::string&
 
 }  // namespace
 
-// A pixel without a number in its light or normal is counted and black; its neighbours miss its light, and
+// A pixel with NaN or Inf in its light or normal is counted and black; its neighbours lack its light, and
 // beyond the profile's reach nothing changes.
 TEST(ScatterBadInput, NoNumberSpreadsNoFurtherThanTheProfile) {
     const Frame clean = frame(sized(64u, 24u));
@@ -108,7 +108,7 @@ TEST(ScatterBadInput, NoNumberSpreadsNoFurtherThanTheProfile) {
     }
 }
 
-// A texel of a scattered texture without a number: its four neighbours' pixels and no others.
+// A texel of a scattered texture with NaN affects the pixels that read it, and no others.
 TEST(ScatterBadInput, NoNumberInATextureIsThatTexelsOwn) {
     Frame f = frame(32);
     const Way& texture = ways[5];
@@ -182,8 +182,8 @@ TEST(ScatterBadInput, EveryPixelOfItsOwnId) {
     }
 }
 
-// Empty maps, maps of NaN, and maps that look elsewhere: as if there were none; `light`, which takes all
-// that is further than some pixels from its maps, only loses light.
+// Empty maps, maps of NaN, and maps that point elsewhere count as absent; `light`, which takes all light from
+// beyond some pixels from its maps, only loses light.
 TEST(ScatterBadInput, MapsWithoutTheObject) {
     const Frame clean = frame(sized(40u, 20u));
     Frame without = clean;

@@ -1,5 +1,5 @@
-// What lies before and after the methods of scattering: albedo before and after, light from behind thin
-// sheets, weights, and adding.
+// Steps before and after the methods of scattering: albedo before and after, light from behind thin sheets,
+// weights, and accumulation.
 #include "diffusion/scatter_scene.h"
 #include "test.h"
 
@@ -44,13 +44,13 @@ TEST(ScatterBlend, AlbedoBeforeAndAfterAndWeights) {
         expectNear(f.shade().light, 1e-6,
                    [&](size_t i) { return E[i] + weights[i / 3] * (plain[i] - E[i]); });
         f.images.erase(PEL_SLOT_SCATTER_WEIGHT);
-        // One colour: however it is split, the same.
+        // With a uniform albedo the result is the same, however the albedo is split.
         std::fill_n(f.material.albedo, 3, 0.36f);
         for (float m : {0.0f, 0.5f, 1.0f}) {
             f.material.albedoBefore = m;
             expectNear(f.shade().light, 1e-3, [&](size_t i) { return 0.36 * plain[i]; });
         }
-        // All of it before: what scattering alone gives of irradiance times albedo.
+        // All of the albedo before: equals scattering of irradiance times albedo.
         for (size_t i = 0; i < E.size(); ++i) albedo.push_back(0.25f + 0.5f * float(i / 30 % 2));
         Frame product(stripes(), method);
         for (size_t i = 0; i < E.size(); ++i) product.picture.irradiance[i] *= albedo[i];
@@ -60,7 +60,7 @@ TEST(ScatterBlend, AlbedoBeforeAndAfterAndWeights) {
         // None of it: as ever.
         f.material.albedoBefore = 0;
         expectNear(f.shade().light, 1e-6, [&](size_t i) { return albedo[i] * plain[i]; });
-        // Black stays black but for what flows in before.
+        // Black stays black, except for light that flows in with albedo before.
         std::fill_n(f.images[PEL_SLOT_ALBEDO].begin() + 3 * 96 * 20, 3 * 96 * 4, 0.0f);
         EXPECT_EQ(f.shade().light[3 * (96 * 21 + 80)], 0.0f);
         f.material.albedoBefore = 1;
@@ -88,7 +88,7 @@ TEST(ScatterBlend, EachMaterialHasItsOwnShareOfAlbedo) {
     }
 }
 
-// A leaf with the light behind it: what a slab of its thickness lets through, however it scatters then.
+// A leaf with the light behind it: the transmission of a slab of its thickness, whatever the method.
 TEST(ScatterBlend, ThinSheetsLetLightThrough) {
     const double thickness = 0.4;
     const auto through = Profile::skin().transmission({thickness});
@@ -116,7 +116,7 @@ TEST(ScatterBlend, ThinSheetsLetLightThrough) {
     }
 }
 
-// A thickness image takes light from bodies alone: what a sheet reflects is its albedo.
+// A thickness image darkens only bodies: the albedo of a sheet already is its reflectance.
 TEST(ScatterBlend, ThicknessLeavesSheetsAlone) {
     Frame f(stripes(), screen);
     f.profile = Profile::burleyDistance({2, 1, 0.5});
@@ -211,7 +211,7 @@ TEST(ScatterBlend, AloneAddsAndMultiplies) {
     }
 }
 
-// What blocks of pixels cannot do is done by a disk of taps, alone too, and the shader says so.
+// Settings that blocks do not support are handled by a disk of taps, also in a PelScatter; a shader warns.
 TEST(ScatterBlend, BlocksBecomeADiskWhereTheyHaveTo) {
     const Picture p = stripes(true);
     const auto alone = [&](uint32_t taps, bool border) {

@@ -1,4 +1,4 @@
-// What scattering leaves out costs nothing: by the counters, and by what OpenCL was asked for.
+// Skipped work costs nothing: checked by the counters, and by the calls of OpenCL.
 #include "cl/cl_spy.h"
 #include "device_lanes.h"
 #include "diffusion/lit_ball.h"
@@ -92,10 +92,10 @@ TEST(ScatterCost, WhatIsNotCoveredCostsNothing) {
     }
 }
 
-// Nothing is lit: every kernel leaves every tile, and the picture stays. No light at all: no kernel of a
-// method is launched.
+// If nothing is lit, every kernel leaves every tile early, and the picture stays. Without any light, no
+// kernel of a method is launched.
 TEST(ScatterCost, WithoutLightNothingIsDone) {
-    // With its shadow map: a ball that the light does not reach has nothing hidden that is lit either.
+    // With a shadow map: a ball that the light does not reach has no hidden lit surface either.
     LitBall nothing = makeBall(Form::parallel, normalized(Vec3{0.3, 0.2, -1}), 64);
     std::ranges::fill(nothing.maps[0], 1.0f);
     const uint32_t side = sized(128u, 64u);
@@ -137,8 +137,8 @@ TEST(ScatterCost, OneLaneSumsAsManyBlocksAsSeveral) {
     EXPECT_EQ(taps(1), several);
 }
 
-// What OpenCL is asked for, of skin and an eye under two lights with shadow maps: in a frame like the one
-// before, and in a commit and a frame after the lights have changed.
+// The OpenCL commands for skin and an eye under two lights with shadow maps: in a frame like the one before,
+// and in a commit and a frame after the lights have changed.
 TEST(ScatterCost, AFrameAfterAnotherTakesFewCommands) {
     const Device oneLane = lanes::deviceOf(1);
     const uint32_t side = sized(128u, 64u);

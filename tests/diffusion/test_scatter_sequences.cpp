@@ -1,5 +1,5 @@
-// Objects keep memory, tables and levels from one picture to the next. Each picture of a sequence must
-// equal, to the bit, what a new object makes of it.
+// Objects keep memory, tables and levels from one picture to the next. Each picture of a sequence must equal,
+// to the bit, the picture of a new object.
 #include "device_lanes.h"
 #include "diffusion/lit_ball.h"
 
@@ -203,7 +203,7 @@ TEST(ScatterSequences, EachTextureEqualsThatOfANewObject) {
     }
 }
 
-// What a device computes does not depend on how many lanes it computes at a time.
+// Results do not depend on the number of lanes of the device.
 TEST(ScatterSequences, WidthsAgree) {
     for (Form form : {Form::parallel, Form::perspective})
         for (PelScattering method : {byLight, byAuto}) {

@@ -1,4 +1,4 @@
-// What is left out of a picture, between tiles that took different ways, and while the light moves slowly.
+// The skipped light of a picture: overall, between tiles handled differently, and while the light moves.
 #include "diffusion/lit_scenes.h"
 #include "test.h"
 
@@ -34,7 +34,7 @@ std::vector<float> scatteredOf(const LitScene& s, double targetError, uint64_t* 
     return result.scattered;
 }
 
-// What is left out of a picture, per value.
+// The skipped light of a picture, per value.
 struct LeftOut {
     double most = 0, acrossTiles = 0;  // the second: its largest change over the border of two tiles
 };
@@ -64,7 +64,7 @@ void expectLeftOut(const LeftOut& left, double allowed, const std::string& where
 
 }  // namespace
 
-// Anywhere; and a larger error that is allowed saves taps, and is kept to.
+// The bound holds everywhere; a larger target error saves taps, and is kept as well.
 TEST(ScatterSteady, LeavesOutNoMoreThanTheTargetError) {
     const Device device("");
     for (const Body& body : bodies()) {

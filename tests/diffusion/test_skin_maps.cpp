@@ -39,7 +39,7 @@ PelSkin skinOf(float melanin, float blood, float oxygenation = 0.75f) {
 
 }  // namespace
 
-// As near to the sum over every pixel as with an even radius as wide as the widest.
+// As close to the sum over every pixel as with a uniform radius as large as the largest.
 TEST(SkinMaps, SumsTakeARadiusPerPixel) {
     const uint32_t side = sized(72u, 24u);
     const Factor even = [](double, double) { return 1.5; },
@@ -100,7 +100,7 @@ TEST(SkinMaps, TheRadiusHasALeastFactor) {
     }
 }
 
-// Nothing that is left out makes more than the target error, whatever the radius of a pixel.
+// Skipped light stays below the target error, whatever the radius of a pixel.
 TEST(SkinMaps, TheTargetErrorHolds) {
     Frame f = ballFrame(byAuto, sized(128u, 32u));
     f.images[PEL_SLOT_SCATTER_WEIGHT] =

@@ -204,7 +204,7 @@ TEST(TextureScatter, OtherProfilesAreAFewGaussians) {
     const Profile burley = Profile::burleyDistance({1.0f, 0.4f, 0.2f}),
                   table = Profile::table({0.1f, 1, 2}, {1, 1, 1, 0.5f, 0.3f, 0.2f, 0.01f, 0.01f, 0.01f});
     double before = 1;
-    // Measured: the fit is the best of its kind, so that another would have a greater error.
+    // Measured errors: the fit is optimal, so another fit would have a larger error.
     for (const auto& [count, measured] : {std::pair{3u, 0.0824}, {6u, 0.0187}, {12u, 0.0029}}) {
         PelTextureScatterParams params = pelTextureScatterParamsDefaults();
         params.gaussians = count;
@@ -272,7 +272,7 @@ TEST(TextureScatter, BadInput) {
     EXPECT_EQ(place.readAll<float>(), again.run(light, Profile::skin()));
 }
 
-// What a shader makes of it: bilinear at the pixel's coordinates, repeated, times albedo.
+// A shader samples it bilinearly at the pixel's coordinates, repeated, times albedo.
 TEST(TextureScatter, ShadersSampleIt) {
     const uint32_t side = 24;
     std::vector<float> texture, uvs, normals, irradiance(3 * side * side, 9.0f);

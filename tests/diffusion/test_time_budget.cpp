@@ -1,4 +1,4 @@
-// PelShaderOptions.timeBudget: what auto takes by a record of the device, and damaged records.
+// PelShaderOptions.timeBudget: the choices of auto by a record of the device, and damaged records.
 #include "diffusion/lit_scenes.h"
 #include "test.h"
 

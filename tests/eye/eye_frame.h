@@ -61,7 +61,7 @@ class EyeFrame {
         stats = shader.stats();
         return out_.readAll<float>();
     }
-    // By a new shader, which `change` may change before it is committed.
+    // Shades with a new shader, which `change` may modify before the commit.
     std::vector<float> shade(const std::function<void(pellucid::Shader&)>& change = {},
                              PelTileLists lists = PEL_TILES_ONE_LIST) {
         pellucid::Shader shader(device);

@@ -1,4 +1,4 @@
-// What a commit costs after lights and camera moved: no buffer is made and no image drawn again.
+// The cost of a commit after lights and camera moved: no buffer is made and no image drawn again.
 #include "cl/cl_spy.h"
 #include "eye/eye_frame.h"
 
@@ -54,7 +54,7 @@ class AfterAChange : public testing::Test {
 
 }  // namespace
 
-// Whatever of a frame's numbers changes, and where images lie: only constants are sent.
+// If only numbers of a frame change, or the location of images, only constants are sent.
 TEST_F(AfterAChange, TheNextFrameCostsWhatASteadyOneDoes) {
     const Asked steady = asked([] {});
     EXPECT_EQ(steady.transfers, 0u);

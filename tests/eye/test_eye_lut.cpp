@@ -1,4 +1,4 @@
-// Tables of caustics: against photons in double precision, and what must hold exactly.
+// Tables of caustics: against photons in double precision, and exact invariants.
 #include "eye/eye_lut_error.h"
 #include "test.h"
 

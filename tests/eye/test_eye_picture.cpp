@@ -91,7 +91,7 @@ TEST(EyePicture, AnIrisInTheOpenShowsItsColour) {
     EXPECT_GT(count, 100u);
 }
 
-// Light that is given per pixel, and the same from everywhere.
+// Indirect light per pixel equals the same light from everywhere.
 TEST(EyePicture, IndirectLightIsLikeAmbientLight) {
     EyeScene scene;
     std::fill_n(scene.ambient.constant, 3, 0.4f);

@@ -1,5 +1,5 @@
-// Eyes cost nothing where there are none, and bad input of them and around them is an error by name or a
-// finite picture.
+// Pixels without eyes cost nothing extra, and bad input for eyes is an error that names it, or gives a finite
+// picture.
 #include "cl/cl_spy.h"
 #include "device_lanes.h"
 #include "eye/eye_frame.h"

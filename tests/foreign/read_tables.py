@@ -1,4 +1,4 @@
-"""Tables in every format by the built command, read by other people's readers and compared with one another.
+"""Tables in every format by the built command, read by third-party readers and compared with one another.
 
     read_tables.py PELLUCID WORK
 

@@ -48,7 +48,7 @@ std::string inputOf(const fuzz::Reader& reader, const std::vector<std::string>& 
     return reader.mend && random.below(8) ? reader.mend(bytes) : bytes;
 }
 
-// From where the last child ended to the end. With a limit of time, each reader has its share.
+// Continues where the last child ended. With a time limit, each reader has its share.
 void work(const Options& o, Place& place, double begin) {
     const std::vector<fuzz::Reader> readers = fuzz::readers();
     const std::string &only = o.at("--only"), seconds = o.at("--seconds");

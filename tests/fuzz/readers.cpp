@@ -67,7 +67,7 @@ std::vector<Reader> readers() {
     io::writeScene(folder / "s.toml", scene());
     all.push_back(text("scene", {bytesOf(folder / "s.toml")},
                        [](const std::string& t) {
-                           // What can be read can be written, and that can be read.
+                           // A scene that can be read can be written, and read again.
                            io::parseScene("s.toml", io::sceneText(io::parseScene("s.toml", t)));
                        },
                        {"[[light]]", "[[material]]", "[channels]", "[outputs]", "shadow_map", "cascade_1",

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What compilers for GPUs make of the kernels: registers, stack and spills, without a GPU.
+"""Registers, stack and spills of the kernels with compilers for GPUs, without a GPU.
 
     tests/gpu/check.py BUILD_DIR [--write] [--scenes DIR]
 
@@ -113,7 +113,7 @@ def amd_rows(clang, source, options, work):
 
 
 def name_of(source):
-    """A name that stays: the kernels' files and the options, not the hash of the text."""
+    """A stable name: the kernels' files and the options, not the hash of the text."""
     text = source.read_text()
     kernels = re.findall(r"__kernel[^;{]*?void\s+(\w+)\s*\(", text)
     options = re.findall(r"-DPEL_(FEATURES|HIDDEN|SHADOW_CONTENT|PIXELS|ESTIMATOR|FORM)=(\w+)",

@@ -1,5 +1,5 @@
-// host/io/atomic_file.h and input_file.h: files that appear whole or not at all, under temporary names that
-// nobody can foresee; what is no regular file; limits.
+// host/io/atomic_file.h and input_file.h: files that appear whole or not at all, under unpredictable
+// temporary names; files that are not regular; limits.
 //
 // This program defines calls to the disk itself, which are linked before the C library's and fail on demand.
 #include <dlfcn.h>
@@ -116,7 +116,7 @@ TEST_F(AtomicFileTest, TemporaryNamesAreRandomAndNoLinkIsFollowed) {
     std::filesystem::rename(first, path("away"));
     const AtomicFile two(path("o.exr"));
     EXPECT_NE(temporary(), first);
-    // A link in place of the target is replaced; what it leads to stays.
+    // A link in place of the target is replaced; the file that it points to stays.
     write("elsewhere", "precious");
     std::filesystem::create_symlink("elsewhere", path("link"));
     writeWholeFile(path("link"), "new");

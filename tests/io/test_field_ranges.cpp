@@ -74,7 +74,7 @@ class FieldRanges : public ::testing::Test {
             EXPECT_EQ(accepts([&] { io::parseScene("scene.toml", scene); }), right) << scene;
         }
     }
-    // By the table; other types are checked where they are read.
+    // Whether the rows define a range for the type; other types are checked where they are read.
     static bool isChecked(std::string_view type) {
         return type == "FLOAT" || type == "UINT" || type == "COLOR";
     }
@@ -109,7 +109,7 @@ TEST_F(FieldRanges, LibraryAndSceneFileAgree) {
     EXPECT_GT(fields_, 20);
 }
 
-// Lights and options, whose files have other keys and other conditions.
+// Lights and options, which have other keys and conditions in files.
 TEST_F(FieldRanges, TheLibraryChecksLightsAndOptions) {
     PelLight spot = pelLightDefaults();
     spot.type = PEL_LIGHT_SPOT;

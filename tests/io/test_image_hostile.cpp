@@ -1,4 +1,4 @@
-// Hostile images: other formats under a known name, sizes that nothing could hold, headers that lie.
+// Hostile images: other formats under a known name, impossible sizes, false headers.
 #include <OpenImageIO/imageio.h>
 #include <sys/resource.h>
 
@@ -12,7 +12,7 @@ using namespace pellucid::io;
 
 namespace {
 
-// An EXR of one pixel whose header can be bent.
+// An EXR of one pixel whose header can be modified.
 struct Exr {
     int data[4] = {0, 0, 0, 0}, display[4] = {0, 0, 0, 0};
     std::vector<std::string> channels{"B", "G", "R"};
@@ -50,7 +50,7 @@ struct Exr {
 
 class HostileImage : public FolderTest {
   protected:
-    // The refusal, found out with less than 64 MiB more memory than before.
+    // The error message, which must take less than 64 MiB of additional memory.
     std::string refusal(const std::string& name, const std::string& bytes,
                         uint64_t limit = inputLimit()) const {
         const double before = peak();

@@ -1,4 +1,4 @@
-// host/io/mesh/mesh_file.h: what is loaded of each format, warnings, what is refused with which message.
+// host/io/mesh/mesh_file.h: the data loaded from each format, warnings, and error messages.
 #include <regex>
 
 #include "io/file_error.h"
@@ -206,7 +206,7 @@ TEST_F(MeshFile, PlyListsOfEitherByteOrder) {
             }
 }
 
-// A length of -1 in one byte is 255 to a reader that ignores its type, and all those values are there.
+// A length of -1 in one byte reads as 255 if the type is ignored, and the file has that many values.
 TEST_F(MeshFile, LengthsOfListsAreChecked) {
     for (const bool big : {false, true}) {
         const auto values = [&](const std::string& type, const std::vector<double>& all) {
@@ -365,7 +365,7 @@ TEST_F(MeshFile, TrianglesThatFaceAnotherWayThanTheirNeighboursAreToldOrTurned) 
                                       1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 1, 0});
     EXPECT_EQ(load("soup.stl", soup).warnings.size(), 1u);
     EXPECT_EQ(load("soup.stl", soup, orient).trianglesTurned, 1u);
-    // Normals of the file are asked where two of three triangles are wrong (how: test_mesh_orient.cpp).
+    // If two of three triangles are wrong, the file's normals decide (how: test_mesh_orient.cpp).
     mesh = load("flat.obj",
                 "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 2 0\nvn 0 0 1\nf 1//1 3//1 2//1\nf 1//1 3//1 4//1\n"
                 "f 4//1 5//1 3//1\n",

@@ -108,7 +108,7 @@ TEST(ProfileFit, MoreGaussiansFitBetter) {
     EXPECT_THROW(io::fitGaussians(marble, 0), std::invalid_argument);
 }
 
-// What is printed is what the saved file gives: weights of 1 in each channel, and the loaded profile's error.
+// The printed values are those of the saved file: weights of 1 per channel, and the loaded profile's error.
 TEST(ProfileFit, TheSavedFileHasThePrintedError) {
     for (const char* name : {"marble", "skin", "skin-burley", "ketchup"})
         for (int count : {1, 2, 3, 6}) {

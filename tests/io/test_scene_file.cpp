@@ -91,7 +91,7 @@ TEST_F(SceneFileTest, DirectionsAreMadeUnit) {
                          at("to_light") + "'to_light' in [[light]] is (0, 0, 0)"));
 }
 
-// What a material leaves to its profile is not written.
+// Values that a material takes from its profile are not written.
 TEST_F(SceneFileTest, DefaultsOfAMaterialStayDefaults) {
     SceneFile scene = readScene(write("s.toml", example()));
     scene.materials[0] = SceneMaterial();

@@ -41,7 +41,7 @@ TEST(LutApi, RefusesWhatMakesNoSense) {
     shadow("widthMax", [](auto& d) { d.widthMax = INFINITY; });
     shadow("sharpening", [](auto& d) { d.sharpening = 0.5f; });
     shadow("sharpening", [](auto& d) { d.sharpening = NAN; });
-    // A range that ends before it begins, once the profile's lengths are known.
+    // A range that is reversed once the profile's lengths are filled in.
     curvature("radiusMax", [](auto& d) { d = pelCurvatureLutDescDefaults(), d.radiusMin = 1e5f; });
     shadow("widthMin", [](auto& d) { d = pelShadowLutDescDefaults(), d.widthMax = 0.1f; });
     const PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
@@ -51,7 +51,7 @@ TEST(LutApi, RefusesWhatMakesNoSense) {
     EXPECT_EQ(lut, nullptr);
 }
 
-// What is left out follows from the profile, as in the tables that a material makes.
+// Omitted values follow from the profile, as in the tables that a material makes.
 TEST(LutApi, LengthsThatAreLeftOutAreTheProfiles) {
     for (const char* name : {"skin", "marble"}) {
         const Profile profile = Profile::named(name);
@@ -88,7 +88,7 @@ TEST(LutApi, LengthsThatAreLeftOutAreTheProfiles) {
     }
 }
 
-// A program whose header had neither closed ends nor axes of shadow tables means those that it knew.
+// A program whose header had neither closed ends nor axes of shadow tables gets the tables of that header.
 TEST(LutApi, WhatAnOlderHeaderLacksIsAsItWas) {
     PelShadowLutDesc desc = pelShadowLutDescFaceWorks();
     desc.structSize = offsetof(PelShadowLutDesc, closedEnds);
@@ -147,8 +147,8 @@ TEST(LutApi, TexelsFromOutsideComeBackBitForBit) {
     EXPECT_THROW(Lut(device(), wrong, texels), Error);
 }
 
-// Each table of a stack is what it is by itself, to the bit: also where launches end between tables, and
-// beside tabulated profiles, which are made one by one.
+// Each table of a stack has the same bits as when made alone, also if launches end between tables, and
+// together with tabulated profiles, which are made one by one.
 TEST(LutApi, TablesOfAStackAreThoseOfTheirOwn) {
     const Profile tabulated = Profile::table({0, 1, 2, 4}, {9, 8, 7, 4, 3, 2, 1, .5f, .2f, 0, 0, 0}),
                   narrow = Profile::burleyDistance({0.3f, 0.2f, 0.1f}), skin = Profile::skin();

@@ -14,7 +14,7 @@ std::pair<Desc, Spec> described(Desc desc) {
     return {desc, spec};
 }
 
-// RGBA bytes against the exact steps of every third texel, wherever these are not about to round either way.
+// RGBA bytes against the exact steps of every third texel, except near rounding boundaries.
 template <class Steps>
 void expectRounded(const Lut& lut, uint32_t height, const Steps& stepsOf) {
     const auto bytes = lut.read<uint8_t>(PEL_LUT_FACEWORKS8);
@@ -100,8 +100,8 @@ TEST(LutEncodings, FaceWorksShadowTable) {
                     "fw_lut_shadow_A_u8.npy", true);
 }
 
-// Every half, and what lies between two of them: rounded to the nearest, at a tie to the even one. Beyond the
-// range the nearest finite half stands.
+// Every half, and values between two halves: rounded to the nearest, ties to even. Values beyond the range
+// become the nearest finite half.
 TEST(LutEncodings, HalvesOfAnyTexel) {
     PelLutInfo info = pelLutInfoDefaults();
     info.kind = PEL_LUT_SPECULAR;

@@ -1,5 +1,5 @@
 // Texels of curvature and shadow tables against the oracle's adaptive quadrature: every form, kind of
-// profile, axis, size and range; and what holds for every table.
+// profile, axis, size and range; and invariants of all tables.
 #include "kept_sums.h"
 #include "lut_cases.h"
 
@@ -297,7 +297,7 @@ TEST(LutProperties, MoreDistancesOnTheSameLinesChangeNothing) {
     }
 }
 
-// Where a table has nothing within reach the result is the light itself.
+// If no profile content is within reach, the result is the light itself.
 TEST(LutProperties, NothingWithinReachScattersNothing) {
     const Profile far = Profile::table({1, 1.5f, 2}, {0, 0, 0, 1, 1, 1, 0, 0, 0});
     for (PelCurvatureForm form : {PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_SPHERE}) {
@@ -330,9 +330,9 @@ TEST(LutProperties, WeightsAndVariancesAtTheEdgesOfFloat) {
         const auto beside = texels(form, {{1, {1, 1, 1}}, {4, {1, 3, 1}}, {9, {tiny, tiny, tiny}}});
         for (size_t i = 0; i < beside.size() && form != PEL_FORM_ARC; ++i)
             EXPECT_NEAR(beside[i], expected[i], tolerance::lutTexelGaussians) << int(form) << ' ' << i;
-        // A width of almost 0 gives the light itself. A very large width leaves hardly any light where it
-        // spreads along an arc, and even light where what there is stays on the circle or the sphere; on the
-        // half circle round the point its mean.
+        // A width of almost 0 gives the light itself. With a very large width, hardly any light is left along
+        // an arc; on the circle and the sphere, which keep all light, it becomes uniform; on the half circle
+        // round the point it is the mean there.
         const auto narrow = texels(form, {{tiny, {1, 1, 1}}}), wide = texels(form, {{most, {1, 1, 1}}});
         const double even = form == PEL_FORM_ARC ? 0 : form == PEL_FORM_SPHERE ? 0.25 : 1 / std::numbers::pi;
         const double kept =

@@ -1,4 +1,4 @@
-// What the oracle's tables are made of: the published ring, FaceWorks' encodings in 8 bits, Beckmann's
+// The basis of the oracle's tables: the published ring, FaceWorks' encodings in 8 bits, Beckmann's
 // distribution, energy and widths of profiles, published numbers. test_lut_encodings compares the library
 // with tables that were integrated elsewhere.
 #include "test.h"

@@ -1,4 +1,4 @@
-// Skin by what it is made of, against random walks in its layers and against measured colours of skin.
+// Skin from its pigments, against random walks in its layers and against measured colours of skin.
 #include "test.h"
 
 #include "fields/field_ranges.h"
@@ -86,7 +86,7 @@ TEST(Skin, MorePigmentReflectsLessOverTheWholeRange) {
     }
 }
 
-// Without pigment skin sends back most of what its surface lets in (94 %), and more where it scatters more.
+// Without pigment, skin reflects most of the light that enters it (94 %), and more if it scatters more.
 TEST(Skin, NoLightIsMade) {
     PelSkin skin = pelSkinDefaults();
     skin.melanin = skin.blood = skin.water = 0;
@@ -152,7 +152,7 @@ TEST(Skin, MapsComeBack) {
     pellucid::check(pelSkinFromAlbedo(&skin, albedo.data(), n, m.data(), b.data(), difference.data()));
     for (size_t i = 0; i < n; ++i) {
         EXPECT_LT(difference[i], tolerance::skinRoundTrip) << melanin[i] << ' ' << blood[i];
-        // The table is between its nodes what skin is.
+        // Between its nodes, the table agrees with the exact value.
         PelSkin exact = skin;
         exact.melanin = melanin[i];
         exact.blood = blood[i];
@@ -180,7 +180,7 @@ std::array<float, 3> linearOf(const pel::Lab& lab) {
             float(0.0556434 * xyz[0] - 0.2040259 * xyz[1] + 1.0572252 * xyz[2])};
 }
 
-// How far the nearest skin is from each colour, from the nearest colour on.
+// The difference of each colour from the nearest skin, in ascending order.
 std::vector<float> differencesOf(std::span<const pel::Lab> colors) {
     const PelSkin skin = pelSkinDefaults();
     std::vector<float> all;

@@ -73,7 +73,7 @@ TEST(SpecularTable, ReadsWhatTheTableHolds) {
                 ++lit;
             }
             EXPECT_NEAR(result[i], expected, tolerance::specularTable * std::max(1.0, expected)) << i;
-            // And what the table stands for: 300 x 200 texels of it.
+            // Also against the exact function that the table of 300 x 200 texels approximates.
             if (m > 0.25 && m < 0.6) {
                 EXPECT_NEAR(result[i], reference::specular(n, l, v, m, 1), 0.05 * std::max(0.1, expected))
                     << i;

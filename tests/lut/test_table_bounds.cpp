@@ -81,7 +81,7 @@ void expectBounded(const Desc& usual, const std::vector<Field<Desc>>& fields,
     EXPECT_GT(made, fields.size());
 }
 
-// Profiles with as much content as the library accepts.
+// Profiles with as many terms as the library accepts.
 std::vector<std::pair<const char*, Profile>> largeProfiles() {
     std::vector<PelGaussian> gaussians;
     for (int i = 0; i < 256; ++i) gaussians.push_back({std::pow(10.0f, float(i - 128) / 16), {1, 1, 1}});
@@ -154,7 +154,7 @@ TEST(TableBounds, RefusalsNameTheField) {
     specular.width = 1 << 14, specular.height = 1 << 13;
     EXPECT_FALSE(finishes(device, specular, "2^27 texels"));
     EXPECT_NE(std::string(pelGetErrorMessage()).find("PelSpecularLutDesc.width"), std::string::npos);
-    // An iris far smaller than the limbus, which takes so many cells.
+    // An iris far smaller than the limbus, which takes many cells.
     PelEyeLutDesc desc = pelEyeLutDescDefaults();
     for (const float radius : {0.05f, 1e-6f}) {
         desc.irisRadius = radius;

@@ -1,4 +1,4 @@
-// What a table costs beside its arithmetic: buffers, launches, transfers, waits, and pages that the system
+// The overhead of a table besides arithmetic: buffers, launches, transfers, waits, and pages that the system
 // maps anew.
 #include <sys/resource.h>
 #include "test.h"
@@ -120,7 +120,7 @@ TEST(TableCost, PagesAreUsedAgain) {
         GTEST_SKIP() << "the library allocates tables itself on CPUs only";
     for (const Kind& kind : kinds()) {
         constexpr int tables = 8;
-        // What other threads free late, pages of tables before among it, settles within a few rounds.
+        // Memory that other threads free late, such as pages of earlier tables, settles within a few rounds.
         int64_t least = INT64_MAX;
         for (int round = 0; round < 4; ++round) {
             const int64_t before = pageFaults();

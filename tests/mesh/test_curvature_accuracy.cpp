@@ -83,9 +83,9 @@ TEST(CurvatureAccuracy, EverySurface) {
     }
 }
 
-// At a pole the coordinates of the fit are as wide as long, and the wide circle round it is not part of its
-// neighbourhood. Cells up to 16 times longer than wide: their fourth-order terms must not count
-// as bending across.
+// At a pole the coordinates of the fit are isotropic, and the wide circle round it is not part of its
+// neighbourhood. Cells up to 16 times longer than wide: their fourth-order terms must not count as curvature
+// across.
 TEST(CurvatureAccuracy, SliversAndLongCellsOfASphere) {
     for (auto [rings, columns, radius, bound] : {std::tuple(200, 400, 1.0, tolerance::sliverSphere),
                                                  {200, 400, 1e-6, tolerance::sliverSphere},

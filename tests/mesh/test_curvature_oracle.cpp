@@ -47,7 +47,7 @@ TEST(CurvatureOracle, EdgeAndSmoothingFromNoneToEightPasses) {
         }
 }
 
-// Round its vertices a walk from triangle to triangle comes back, but not to where it began.
+// Around its vertices, a walk from triangle to triangle returns, but not to its starting edge.
 TEST(CurvatureOracle, OneTriangleBesideTwoThatLieOnEachOther) {
     Mesh mesh;
     mesh.positions = {0, 0, 0, 1, 0, 0.1f, 1, 1, 0.3f, 0, 1, 0.2f};
@@ -85,8 +85,8 @@ TEST(CurvatureOracle, NormalsAndUvScale) {
     }
 }
 
-// FaceWorks' values are infinite where an edge has no length; ours are finite there and in what smoothing
-// made of them, so that only the finite ones compare.
+// FaceWorks' values are infinite where an edge has no length; ours are finite there, also after smoothing, so
+// only finite values are compared.
 TEST(CurvatureOracle, RealMeshes) {
     REQUIRE_ORACLE_DIRECTORY(directory);
     for (const std::string name : {"head", "sphere1cm"}) {

@@ -1,5 +1,5 @@
-// What holds for any mesh: units and places, views, quantities of each other, welding. Broken meshes give a
-// clear error, or finite values and a count: never a crash, never a NaN that spreads.
+// Invariants of any mesh: units, positions, views, relations between quantities, welding. Broken meshes give
+// a clear error, or finite values and a count: never a crash, never a NaN that spreads.
 #include "kept_sums.h"
 #include "mesh_fixture.h"
 #include "reference_meshes.h"

@@ -16,8 +16,8 @@ std::vector<std::set<int>> rings(const reference::Mesh& mesh) {
     return all;
 }
 
-// Orders all triangles alike: tessellate() turns those that jitter folded over, and which of two neighbours
-// counts a vertex is a matter of order.
+// Orients all triangles alike: tessellate() flips triangles that jitter folded over, and the order determines
+// which of two neighbours counts a vertex.
 void orient(reference::Mesh& mesh) {
     const Mesh sampled = pairOf(mesh).mesh;
     std::vector<uint32_t> indices(sampled.indices.size());
@@ -137,8 +137,8 @@ TEST(CurvatureQuadricOracle, AllQuantities) {
         for (size_t v = 0; v < expected.size(); ++v) {
             const auto& k = expected[v];
             ASSERT_TRUE(k.measured);
-            // Fewer points than terms, as at a corner of two neighbours: what rounding leaves of the ridge
-            // decides.
+            // With fewer points than terms, as at a corner of two neighbours, rounding of the ridge decides
+            // the result.
             if (k.margin < tolerance::quadricDecision || k.points < 9) {
                 ++left;
                 continue;
@@ -152,7 +152,7 @@ TEST(CurvatureQuadricOracle, AllQuantities) {
                 std::max(std::abs(f[0] - k.first), std::abs(f[1] - k.second)) / largest,
                 std::abs(means[v] - k.mean()) / largest,
                 std::abs(gaussians[v] - k.gaussian()) / (largest * largest),
-                // What turning a form by this angle changes it by.
+                // The change of a form by a rotation by this angle.
                 length(cross(d1, k.firstDirection)) * (k.first - k.second) / largest,
                 length(cross(d2, k.secondDirection)) * (k.first - k.second) / largest,
             };

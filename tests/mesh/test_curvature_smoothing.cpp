@@ -41,8 +41,8 @@ std::vector<double> areasOf(const Mesh& mesh) {
     return areas;
 }
 
-// What `mesh`, tilted at vertex `source` alone, becomes, over what the heat kernel makes of the values
-// before: the largest difference in parts of the peak.
+// Smooths `mesh`, tilted only at vertex `source`, and compares with the heat kernel applied to its values:
+// the largest difference as a share of the peak.
 double spread(Mesh mesh, uint32_t source, double radius, PelSmoothingWeights weights) {
     mesh.normals[3 * source] = 0.01f;
     const auto before = valuesOf(mesh, smoothed(0)), after = valuesOf(mesh, smoothed(radius, weights));
@@ -149,7 +149,7 @@ TEST(CurvatureHeat, APointSpreadsAsTheHeatKernelOfThePlane) {
 }
 
 TEST(CurvatureHeat, AreaWeightsKeepMass) {
-    // Of values that are anything, on triangles that are anything.
+    // With arbitrary values on arbitrary triangles.
     const auto flat = reference::delaunay(reference::uniformPoints(4000, 7));
     reference::Mesh exact = lifted(flat, reference::ellipsoidCap(1, 1.5, 2)).mesh;
     addNoise(exact, 0.1, 3);

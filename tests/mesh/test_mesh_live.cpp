@@ -131,7 +131,7 @@ TEST(MeshTopologyFile, DamageIsRefused) {
     EXPECT_EQ(pelMeshTopologySave(topology.get(), small, &room), PEL_ERROR_INVALID_ARGUMENT);
 }
 
-// Bytes that somebody made: the checksum is right, and a number of one of the arrays is not.
+// Forged files: the checksum is right, and a number in one of the arrays is wrong.
 TEST(MeshTopologyFile, NumbersThatKernelsCannotFollowAreRefused) {
     const std::vector<char> sound = MeshTopology(device(), weldedDesc(soupOf(torus(8, 6)))).save();
     constexpr size_t countsAt = 12, checksumAt = 36, begin = 40 + sizeof(PelMeshReport);

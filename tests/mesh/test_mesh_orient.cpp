@@ -1,4 +1,4 @@
-// Triangles that disagree about the side they face: counted, and turned where that is asked for.
+// Triangles with inconsistent orientation: counted, and flipped on request.
 #include "mesh_fixture.h"
 
 using namespace fixture;
@@ -26,7 +26,7 @@ size_t differing(const Triangles& a, const Triangles& b) {
     return count;
 }
 
-// Edges of two triangles that run along them the same way, by definition.
+// Counts the edges that two triangles traverse in the same direction, by definition.
 uint32_t inconsistent(const Triangles& indices) {
     std::map<std::pair<uint32_t, uint32_t>, std::vector<bool>> edges;
     for (size_t i = 0; i < indices.size(); ++i) {
@@ -71,7 +71,7 @@ TEST(MeshOrient, CountsEdgesWhoseTrianglesDisagree) {
     EXPECT_EQ(reported(mesh), 1u);
     mesh.triangles({0, 1, 4});
     EXPECT_EQ(reported(mesh), 0u);
-    // The analysis that is loaded again says the same.
+    // The loaded analysis has the same count.
     mesh.indices = {0, 1, 2, 0, 1, 3};
     PelMeshReport report = pelMeshReportDefaults();
     const std::vector<char> bytes = MeshTopology(device(), topologyDesc(mesh)).save();
@@ -114,7 +114,7 @@ TEST(MeshOrient, NormalsTellTheSideOfOpenParts) {
     o = Oriented(mesh);
     EXPECT_EQ(differing(o.indices, sound.indices), sound.indices.size() / 3) << "most of them face down";
     EXPECT_EQ(o.found.partsByMajority, 1u);
-    // A given stride, and normals that look the other way on a closed part: these come first.
+    // A given stride, and normals that point the other way on a closed part: normals take precedence.
     mesh = torus(40, 30);
     mesh.indices = flipped(mesh.indices, 0.3, 12);
     std::vector<float> wide;
@@ -126,7 +126,7 @@ TEST(MeshOrient, NormalsTellTheSideOfOpenParts) {
     PelMeshOrientation found = orientMesh(topologyDesc(mesh), indices.data(), wide.data(), 20);
     EXPECT_EQ(found.partsByNormals, 1u);
     EXPECT_EQ(differing(indices, torus(40, 30).indices), indices.size() / 3);
-    // Normals that tell nothing, or are not finite, leave it to the volume.
+    // If normals are zero or not finite, the volume decides.
     for (float bad : {0.0f, std::nanf("")}) {
         found = orientMesh(topologyDesc(mesh), indices.data(),
                            std::vector<float>(mesh.normals.size(), bad).data());
@@ -136,7 +136,7 @@ TEST(MeshOrient, NormalsTellTheSideOfOpenParts) {
 }
 
 TEST(MeshOrient, PartsAreJudgedByThemselves) {
-    // One that is sound and looks inwards, one that is not, a flat one, two triangles that face one
+    // A consistent part that faces inwards, an inconsistent one, a flat one, two triangles that face one
     // another, and a degenerate one.
     Mesh mesh = torus(20, 12);
     for (size_t t = 0; t < mesh.indices.size(); t += 3) std::swap(mesh.indices[t], mesh.indices[t + 1]);

@@ -79,7 +79,7 @@ TEST(MeshRows, NothingBehindTheLastVertexIsRead) {
             Mesh mesh = torus(5, sized(sides, sides - 32));
             if (shuffled) mesh = shuffleVertices(mesh, sides).mesh;
             const uint32_t n = mesh.vertices();
-            // By a vertex without triangles: the others' last one is not the last of the memory.
+            // With one more vertex without triangles, the others' last vertex is not the last in memory.
             Mesh longer = mesh;
             longer.vertex({1, 2, 3});
             const std::vector<float> expected = everything(longer, n);
@@ -93,8 +93,8 @@ TEST(MeshRows, NothingBehindTheLastVertexIsRead) {
 }
 
 TEST(MeshRows, RunsGiveTheBitsOfSingleLoads) {
-    // A grid is nearly all runs. Behind it stands a part that has none and is larger, so that the topology
-    // keeps none: the rows of the grid are the same, but are read one by one.
+    // A grid consists mostly of runs. A larger part without runs is appended, so that the topology keeps
+    // none: the rows of the grid are the same, but are read one by one.
     const Mesh grid = torus(sized(24, 8), sized(40, 8));
     Mesh both = grid;
     both.append(shuffleVertices(torus(sized(40, 10), sized(40, 10)), 3).mesh);

@@ -1,5 +1,5 @@
-// Live meshes: an update of a part gives the bits of measuring everything anew, and counters show that it did
-// not.
+// Live meshes: a partial update gives the same bits as measuring everything anew, and counters show that less
+// was measured.
 #include "held_queue.h"
 #include "mesh_fixture.h"
 #include "reference_meshes.h"
@@ -245,7 +245,7 @@ TEST(MeshSubmit, EachReturns) {
     expectReturns(device(), "pelMeshNormals",
                   [&](const PelSubmit* submit) { topology.normals(normals.at(), normals.result(), submit); });
     EXPECT_NE(normals.out.readAll<float>()[0], -1);
-    // What needs nothing of what is queued.
+    // Calls that do not depend on queued work.
     std::vector<char> bytes;
     expectReturns(device(), "pelMeshTopologySave", [&](const PelSubmit*) { bytes = topology.save(); });
     EXPECT_EQ(bytes, topology.save());

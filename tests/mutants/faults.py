@@ -25,7 +25,7 @@ MESSAGE = r"\b(?:fail|invalidArgument|badFile|warn|note|printf|fprintf|print|thr
 # Declarations of arrays, whose lengths are no faults: one more changes nothing.
 ARRAY = (r"^ *(?!return|case)(?:[\w:<>]+[*&]? )+\w+(?:\[\w+\])+(?:, \w+(?:\[\w+\])+)*"
          r"|^ *(?:const )?std::array<.*?, \d+> \w+(?=[;{]| =)")
-# Guards around what changes nothing where no lane takes part: they save time.
+# Guards around code that has no effect if no lane takes part: they save time.
 SAVES_TIME = r"(?:!SKIPPING \|\| )?anyw\("
 ENDS_EARLY = r"(?:SKIPPING && )?!anyw\("
 # With one lane, loadw(i, p) is p[i], which is i[p]; with more the other order does not compile.
@@ -46,7 +46,7 @@ class Fault:
     new: str
     kind: str
     line: int
-    name: str  # from the lines around it, so that it is found again after edits elsewhere
+    name: str  # from the surrounding lines, so that it is found again after edits elsewhere
 
     def apply(self, text):
         return text[:self.start] + self.new + text[self.end:]
@@ -172,7 +172,7 @@ def candidates(path, text, m):
         if match[1] not in ("<<", ">>") or not (around.count(match[1]) > 1 or '"' in around):
             yield *match.span(1), OPERATOR[match[1]], "operator"
     for match in re.finditer(r"(?<=[\w)\]]) ([-+*/]) (?=[^\s\"])", m):
-        # Texts are joined with + as well, and know no other operator.
+        # Strings are also joined with +, and have no other operator.
         if match[1] == "+" and '"' in line(match, m.find("\n", match.end())):
             continue
         end = term_end(m, match.end(), match[1])
@@ -223,7 +223,7 @@ def end_of_argument(m, at):
 
 
 def meanings(path, text, m):
-    """Faults of a larger kind than an expression, which somebody forgets, or deletes as superfluous."""
+    """Faults larger than an expression: statements that one forgets, or deletes as superfluous."""
     if path.endswith(".py"):
         yield from each(m, "dropped early return", r"\bif ([^\n:]+):\s+(?:return|continue|break)\b", "False")
         yield from each(m, "dropped clear", r"^ +([\w.]+\.clear\(\))$", "pass")

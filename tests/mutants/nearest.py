@@ -67,8 +67,7 @@ class Tests:
         self.rarity = {word: math.log(len(self.words) / count) for word, count in known.items()}
 
     def measure(self, name):
-        """A test without any fault: whether it passes, its processor seconds, and the kernels that it
-        launches."""
+        """Runs a test without any fault: whether it passes, its processor seconds, and its kernels."""
         if name not in self.measured:
             status, seconds, kernels = "does not build", 0, set()
             if self.place.python() if name in self.scripts else self.place.build(name):
@@ -127,7 +126,7 @@ class Tests:
             return not self.includes(name, fault), -near / (1 + seconds) ** 0.5, name
 
         names = self.scripts if fault.is_python() else self.programs
-        if path.is_relative_to("bindings/cli"):  # what does not run the command cannot notice
+        if path.is_relative_to("bindings/cli"):  # only tests that run the command can notice
             names = [name for name in names if "cli" in self.subjects[name] or name in CHECKS]
         return sorted(names, key=distance)
 

@@ -47,7 +47,7 @@ def judge(place, tests, fault, seconds):
     original, kernel = (TREE / fault.path).read_text(), fault.path.startswith("kernels")
     width = faults.lanes(original, fault.line) if kernel else None
     verdict = tried(place, tests, fault, seconds, original, width)
-    # Code for all numbers of lanes may do nothing that shows with the one that the device has.
+    # A fault in code for all numbers of lanes may have no effect with the device's own number.
     return tried(place, tests, fault, seconds, original, 1) if (
         verdict[0] == "survived" and kernel and not width) else verdict
 

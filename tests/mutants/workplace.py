@@ -1,4 +1,4 @@
-"""A copy of the tree in build/mutants, its build, and its Python environment: where faults are put in."""
+"""The copy of the tree in build/mutants that faults are put into, its build, and its Python environment."""
 import contextlib
 import json
 import os
@@ -67,7 +67,7 @@ class Workplace:
         self.applied.unlink(missing_ok=True)
 
     def copy(self):
-        """Makes the copy as the tree is; what did not change keeps its time. Nothing where it is the tree."""
+        """Updates the copy from the tree, unless it is the tree itself; unchanged files keep their time."""
         if TREE == ROOT:
             return
         listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "-z"], cwd=ROOT,

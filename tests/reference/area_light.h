@@ -1,5 +1,4 @@
-// Lights with a size as many small ones: what the closed forms and approximations of the kernels are measured
-// against.
+// Area lights as many small lights: the reference for the closed forms and approximations of the kernels.
 #pragma once
 #include "reference/shade.h"
 

@@ -203,7 +203,7 @@ std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> value
         }
     }
     if (how.byArea) {
-        // Nothing negative; then the second moment that all cotangents together have.
+        // Removes negative weights; then restores the second moment of all cotangents together.
         std::vector<double> factors(count);
         for (size_t i = 0; i < count; ++i) {
             double moment = 0;
@@ -217,7 +217,7 @@ std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> value
         for (size_t i = 0; i < count; ++i)
             for (auto& [to, weight] : edges[i]) weight *= (factors[i] + factors[to]) / 2;
     }
-    // What so many stages can do: slots that even out faster are slowed down to it.
+    // The limit of this number of stages: vertices that even out faster are slowed down to it.
     const double time = how.radius * how.radius / 2, wide = (how.stages > 1 ? how.stages - 1 : 0.5) / 2.63,
                  span = wide * wide / 2, limit = span / time, turn = 2 * std::sin(how.crease / 2);
     std::vector<double> rates(count);

@@ -35,9 +35,9 @@ std::vector<double> smoothed(const Mesh& mesh, std::vector<double> values, int p
 
 // The heat equation on the surface until a point has spread over a standard deviation of `radius`
 // (docs/guide/curvature.md, "Smoothing"; kernels/mesh/curvature_diffuse.cl): cotangents over Voronoi areas
-// or, by area, those that are positive, over a third of the triangles' areas. `stages`: what the library may
-// spend, which bounds how fast a vertex evens out. A triangle has no plane at a corner of which the squared
-// sine is at most this.
+// or, by area, those that are positive, over a third of the triangles' areas. `stages`: the library's number
+// of stages, which limits how fast a vertex evens out. A triangle with a corner of at most this squared sine
+// has no plane.
 constexpr double flatTriangle = 1e-10;
 struct RadiusSmoothing {
     double radius = 0;  // length
@@ -74,7 +74,7 @@ double uvScale(const Mesh& mesh);
 // 1998).
 std::vector<Vec3> estimatedNormals(const Mesh& mesh);
 
-// The two-ring fit of docs/guide/curvature.md ("The fit, exactly").
+// The two-ring fit of docs/mathematics.md, section 5 ("The quadric fit").
 struct QuadricCurvature : PrincipalCurvatures {
     Vec3 firstDirection, secondDirection;  // unit, signs arbitrary
     Vec3 normal;                           // unit, of the fitted surface
@@ -83,9 +83,8 @@ struct QuadricCurvature : PrincipalCurvatures {
     bool low = false;                      // the points do not tell all terms apart even so
     bool border = false;
     int points = 0;  // distinct vertices that tell about this one
-    // How near the nearest yes-or-no decision (replace the normal, leave a point out, fit once more) came to
-    // its threshold, relative: where it is as small as float rounding, single precision may decide the other
-    // way.
+    // The smallest relative distance of a decision (replace the normal, leave a point out, fit once more)
+    // from its threshold: if it is as small as float rounding, single precision may decide the other way.
     double margin = 1, lowMargin = 1;  // the latter of `low`, on which nothing else depends
 };
 
@@ -101,9 +100,9 @@ struct ScreenImage {
     std::vector<uint32_t> ids;             // or none
 };
 
-// 1/length per pixel; 0 for what has id 0, a normal or position that is not finite, or no neighbour to
-// compare with. A neighbour lies beyond an edge if its id differs or the step to it leans by more than
-// asin(edge) out of the surface at either end.
+// 1/length per pixel; 0 for pixels with id 0, with a normal or position that is not finite, or without a
+// neighbour to compare with. A neighbour lies beyond an edge if its id differs or the step to it leans by
+// more than asin(edge) out of the surface at either end.
 std::vector<double> screenCurvature(const ScreenImage& image, double edge);
 
 }  // namespace reference

@@ -40,8 +40,8 @@ Vec3 pointAt(const LightDepths& map, const MappedLight& light, double u, double 
     return solved(rows[0], rows[1], rows[2], right);
 }
 
-// The area that a beam through 1 in u and 1 in v has across the light, where it shines on `p`; by a unit of
-// strength: of directional light it is an area, of others a solid angle.
+// The area across the light, at `p`, of a beam through 1 in u and 1 in v; by a unit of strength: of
+// directional light it is an area, of others a solid angle.
 double beam(const LightDepths& map, const MappedLight& light, Vec3 p) {
     if (map.face >= 0) {
         const Vec3 d = p - light.position;
@@ -103,7 +103,7 @@ double nearShare(double distance, double rho) {
     return saturate(2 - distance / rho);
 }
 
-// R as far as it reaches, so that all of it is 1.
+// R cut at its reach, and scaled so that its integral is 1.
 class Cut {
   public:
     explicit Cut(const Profile& profile)

@@ -30,8 +30,8 @@ struct MappedLight {
     std::vector<LightDepths> maps;  // of cascades the finest first: it has what it holds
 };
 
-// All of a picture's pixels, by the profile within its reach (scatterReach), which is then the whole.
-// `picture.camera` is not looked at.
+// All of a picture's pixels, by the profile cut at its reach (scatterReach) and renormalised.
+// `picture.camera` is ignored.
 std::vector<Rgb> scatterFromLights(const ScatterPicture& picture, const std::vector<MappedLight>& lights,
                                    const Profile& profile);
 

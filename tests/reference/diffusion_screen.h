@@ -24,7 +24,7 @@ struct ScatterPicture {
 // The distance beyond which the profile's light is left out: where no channel has more than 0.4 % left.
 double scatterReach(const Profile& profile);
 
-// A pixel with an id whose position and irradiance are numbers.
+// Whether a pixel has an id, and a finite position and irradiance.
 bool sound(const ScatterPicture& picture, size_t pixel);
 // The shorter of the two steps along (dx, dy) to a sound pixel of the same id; empty where neither is one.
 std::optional<Vec3> shorterStep(const ScatterPicture& picture, int x, int y, int dx, int dy);
@@ -33,8 +33,8 @@ std::optional<Vec3> shorterStep(const ScatterPicture& picture, int x, int y, int
 // is one step, 0 where there is none.
 double surfaceArea(const ScatterPicture& picture, int x, int y);
 
-// The sum divided by that of the weights without the factor of directions. Pixels whose irradiance or
-// position is not finite count for nobody and keep theirs.
+// The sum divided by the sum of weights without the factor of directions. Pixels whose irradiance or position
+// is not finite are ignored by others and keep their value.
 std::vector<Rgb> scatterOnScreen(const ScatterPicture& picture, const Profile& profile);
 
 }  // namespace reference

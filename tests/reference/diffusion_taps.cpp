@@ -236,7 +236,7 @@ std::vector<Rgb> blendHistory(const TapScene& s, const Profile& profile, const s
                             continue;
                         const double change = beyond[there][c] - history[picture.at(u, v)].light[c];
                         sum += change, squares += change * change, ++count;
-                        // All are read beside their places by as much as this one.
+                        // All pixels are read with the same offset from their exact positions as this one.
                         if (!dx && !dy) beside = history[picture.at(u, v)].light[c] - earlier[c] / found;
                     }
                 const double mean = sum / count, change = mean + beside.value_or(-mean),

@@ -24,15 +24,15 @@ std::vector<Rgb> scatterOnDisk(const TapScene& scene, const Profile& profile);
 std::vector<std::optional<Rgb>> betweenSamples(const TapScene& scene, const Profile& profile,
                                                const std::vector<Rgb>& gathered);
 
-// What earlier frames have left at a pixel.
+// The history at a pixel.
 struct HistoryPixel {
     int id = 0, frames = 0;  // 0: nothing
     Rgb light{};
     double distance = 0;  // along z
 };
-// Light of earlier frames from beyond pixels in what this one gathers. `motion`: columns, rows and distance
-// to where each pixel was. Returns the blended light, and replaces the history, which is empty before the
-// first frame.
+// Blends the gathered light with that of earlier frames, except light from within each pixel. `motion`:
+// columns, rows and distance to where each pixel was. Returns the blended light, and replaces the history,
+// which is empty before the first frame.
 std::vector<Rgb> blendHistory(const TapScene& scene, const Profile& profile, const std::vector<Rgb>& gathered,
                               const std::vector<Vec3>& motion, double weight,
                               std::vector<HistoryPixel>& history);

@@ -100,7 +100,7 @@ double fresnel(double cosine, double from, double to) {
 
 namespace {
 
-// Through the cornea, from air to the aqueous: both of its sides, without what goes to and fro between them.
+// Through the cornea, from air to the aqueous: both of its sides, without reflections between them.
 double corneaTransmittance(const Eye& eye, double cosine) {
     const double inside = std::sqrt(max0(1 - (1 - cosine * cosine) / (eye.nCornea * eye.nCornea)));
     return (1 - fresnel(cosine, 1, eye.nCornea)) * (1 - fresnel(inside, eye.nCornea, eye.nAqueous));
@@ -118,7 +118,7 @@ bool refract(Vec3 d, Vec3 n, double from, double to, Vec3* out) {
 
 EyeHit traceEye(const Eye& eye, Vec3 origin, Vec3 d) {
     EyeHit hit;
-    // Near the eye, in steps that no part of the surface is thinner than.
+    // Marches near the eye, in steps smaller than any part of the surface.
     const double middle = -dot(origin, d), reach = 2 * eye.sclera + eye.chamber;
     const Vec3 start = origin + (middle - reach) * d;
     double tCornea = 0, tSclera = 0;
@@ -211,7 +211,7 @@ void carry(const Eye& eye, Vec3 p, Vec3 d, double weight, const Land& land) {
     }
 }
 
-// What enters at a place of the cornea per area of the limbus' plane, and its direction; 0 in shadow.
+// Light that enters at a point of the cornea per area of the limbus' plane, and its direction; 0 in shadow.
 double enter(const Eye& eye, Vec3 toLight, double x, double y, Vec3* p, Vec3* d) {
     *p = {x, y, eye.corneaZ(std::hypot(x, y))};
     const Vec3 n = eye.corneaNormal(x, y);

@@ -31,7 +31,7 @@ double largestAngle(const Eye& eye);
 // Fresnel's equations, the mean of both polarisations.
 double fresnel(double cosine, double from, double to);
 
-// What a ray from the camera meets.
+// The hit of a ray from the camera.
 struct EyeHit {
     bool cornea = false;
     double share = 0;       // of the cornea against the sclera, 0 to 1: a soft border
@@ -43,7 +43,7 @@ struct EyeHit {
 };
 EyeHit traceEye(const Eye& eye, Vec3 origin, Vec3 direction);
 
-// How much of the iris' light a point reflects, beside albedo: 0 in the pupil, less at the limbus.
+// The factor on the iris' reflected light besides albedo: 0 in the pupil, lower at the limbus.
 double irisVisible(const Eye& eye, const EyeHit& hit);
 // Where its albedo is in the square texture, in [0, 1].
 Vec2 irisTexture(const Eye& eye, const EyeHit& hit);
@@ -60,7 +60,7 @@ struct Caustic {
     double at(double x, double y, double iris) const;  // bilinear
 };
 Caustic tracePhotons(const Eye& eye, double angle, int width, int height, uint64_t photons, uint64_t seed);
-// The same by starting anywhere: the flux that enters the cornea and ends within the iris' rim.
+// The same from starting points all over the cornea: the flux that ends within the iris' rim.
 double fluxOnIris(const Eye& eye, double angle, int steps);
 
 // Irradiance on the iris at a distance from its axis under light that is the same from everywhere, against

@@ -71,7 +71,7 @@ double beckmannEncoded(double cosine, double m);  // P^0.1 / 2 [d'Eon & Luebke]
 // --- FaceWorks' 8-bit encodings ---
 
 using Rgba8 = std::array<uint8_t, 4>;
-// Before rounding, in 8-bit steps: how near truth is to a rounding boundary decides what a float may return.
+// Before rounding, in 8-bit steps: near a rounding boundary, a float may return either value.
 Rgb faceworksCurvatureSteps(Rgb d, double u);       // 255 sat(2 (D - max0(u)) + 1/2)
 Rgb faceworksShadowSteps(Rgb t, int x, int width);  // 255 sRGB(fade * T)
 bool faceworksCurvatureClips(Rgb d, double u);      // a channel's residual lies beyond +-1/4

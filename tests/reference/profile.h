@@ -9,7 +9,7 @@
 
 namespace reference {
 
-// All lengths in one unit, millimetres for the built-in skin; numbers are taken as they are. Both views are
+// All lengths in one unit, millimetres for the built-in skin; inputs are not checked. Both views are
 // normalised: the integral of radial(d) 2 pi d over d > 0 and that of lineSpread(s) over all s are 1 in every
 // channel.
 class Profile {

@@ -41,8 +41,8 @@ Panel<Value> kronrodPanel(const F& f, double begin, double end) {
 }
 
 // Integrates f over [points.front(), points.back()]; the points between are kinks or changes of scale and
-// become panel borders. f is never evaluated at a panel's border. Throws when the wanted error is out of
-// reach or a sample is not finite: an oracle must not be quietly wrong.
+// become panel borders. f is never evaluated at a panel's border. Throws if the requested error cannot be
+// reached or a sample is not finite: an oracle must not be silently wrong.
 template <class Value, class F>
 Value integrate(const F& f, const std::vector<double>& points, double absoluteError = 1e-13,
                 double relativeError = 1e-12) {

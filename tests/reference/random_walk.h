@@ -1,4 +1,4 @@
-// Light in a scattering medium, photon by photon: what profiles, and the surface integral, stand for.
+// Light in a scattering medium, photon by photon, which profiles and the surface integral approximate.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace reference {
 
-// A homogeneous medium of the index of its surroundings that scatters to all sides alike.
+// A homogeneous, index-matched medium with isotropic scattering.
 struct Medium {
     double meanFreePath;  // length
     double albedo;        // of a single scattering

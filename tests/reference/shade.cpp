@@ -149,7 +149,7 @@ double sampleMap(const ShadowMap& map, double u, double v) {
     };
     const double x = std::clamp(u * map.width - 0.5, 0.0, map.width - 1.0), fx = x - std::floor(x),
                  y = std::clamp(v * map.height - 0.5, 0.0, map.height - 1.0), fy = y - std::floor(y);
-    // Of a texel of NaN before another, std::lerp gives the other: fewer pixels than by mix() are NaN.
+    // With a NaN texel of weight 0, std::lerp gives the other texel: fewer pixels are NaN than with mix().
     return std::lerp(std::lerp(depth(x, y), depth(x + 1, y), fx),
                      std::lerp(depth(x, y + 1), depth(x + 1, y + 1), fx), fy);
 }

@@ -1,7 +1,7 @@
 // Shading one pixel (section 6 of the mathematics), term by term, in double precision.
 //
-// Inputs are taken as they are: unit vectors, w in [0, 1], radii above 0. What NaN, zero vectors and the like
-// give is not defined here, except where a comment says so.
+// Inputs must be valid: unit vectors, w in [0, 1], radii above 0. Results for NaN, zero vectors and the like
+// are not defined, except where a comment says so.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct CubeMap {
     const Rgb& at(int face, int x, int y) const { return texels[(size_t(face) * size + y) * size + x]; }
 };
 
-// What points out of each face, along its rows and down them [OpenGL 4.6, table 8.19].
+// The axes of each face: outwards, along its rows and down its columns [OpenGL 4.6, table 8.19].
 struct CubeFace {
     Vec3 out, right, down;
 };

@@ -3,7 +3,7 @@
 namespace reference {
 namespace {
 
-// Whether a number so near to a limit might fall on its other side in single precision.
+// Whether a number is so near to a limit that it may be on the other side in single precision.
 bool near(double value, double limit) {
     return std::abs(value - limit) < 1e-4 * std::max(1.0, std::abs(limit));
 }

@@ -18,8 +18,8 @@ struct SurfacePixels {
 };
 
 // Per pixel with an id; none where the pixel's normal or position is NaN or Inf. `doubtful`, if given, is set
-// for pixels whose answer hangs on a decision (how many pixels from tap to tap, where an edge begins) that
-// rounding could turn.
+// for pixels whose result depends on a decision (the pixels between taps, the begin of an edge) that rounding
+// could change.
 std::vector<std::optional<Vec3>> blurredNormals(const SurfacePixels& surface,
                                                 std::vector<bool>* doubtful = nullptr);
 
@@ -66,8 +66,8 @@ struct CubeShadowMap {
     std::vector<double> depth;  // one face after the other, row by row
     bool radial = false;
     DepthDecoding decoding;
-    // Where the light sees something first along a direction of any length, as a multiple of it: the texel
-    // that it meets, and bilinear (of 1 / distance along the axis of its face, or of the distance).
+    // The nearest surface along a direction of any length, as a multiple of it: from the texel that it meets,
+    // and bilinear (of 1 / distance along the axis of its face, or of the distance).
     double nearestReach(Vec3 direction) const;
     double bilinearReach(Vec3 direction) const;
 };

@@ -57,7 +57,7 @@ std::array<LitTriangle, 4> quarters(const LitTriangle& t) {
              {{p[0], p[1], p[2]}, {E[0], E[1], E[2]}}}};
 }
 
-// Triangles that reach near x are split whatever the rule says: it may not have met a narrow R.
+// Triangles close to x are always split: the rule's points may miss a narrow R.
 Rgb adaptive(const Kernel& kernel, const LitTriangle& t, Rgb whole, int depth) {
     const auto parts = quarters(t);
     std::array<Rgb, 4> values;

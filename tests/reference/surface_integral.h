@@ -1,4 +1,4 @@
-// The surface integral (mathematics, section 9) by brute force: every triangle, split until nothing changes.
+// The surface integral (mathematics, section 9) by brute force: triangles are split until the sum converges.
 #pragma once
 
 #include <array>

@@ -70,7 +70,7 @@ auto bilinearAt(double x, double y, const At& at) {
     return mix(mix(at(i, j), at(i + 1, j), x - i), mix(at(i, j + 1), at(i + 1, j + 1), x - i), y - j);
 }
 
-// Where a test that holds at `low` and not at `high` begins to fail.
+// The point between `low`, where a test holds, and `high`, where it fails, at which it begins to fail.
 template <class Test>
 double bisected(double low, double high, const Test& holds) {
     for (int k = 0; k < 70; ++k) {

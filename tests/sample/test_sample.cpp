@@ -1,5 +1,5 @@
-// The sample renderer against surfaces whose every pixel is known: G-buffer, shadow maps of all forms, sky,
-// and irradiance on a mesh that is split where light asks for it.
+// The sample renderer against analytic surfaces: G-buffer, shadow maps of all forms, sky, and irradiance on a
+// mesh that is split where the light is not linear.
 #include "test.h"
 
 #include "sample/lit_mesh.h"
@@ -234,7 +234,7 @@ TEST(SampleDetail, ShadingDiffersFromGeometricAsAsked) {
     EXPECT_EQ(off.blurredNormal.data, off.geometricNormal.data);
 }
 
-// Slopes that the pixel blurs away are in the roughness: the sum of both is the same from near and from afar.
+// Slopes that the pixel blurs away are added to the roughness: their sum does not depend on the distance.
 TEST(SampleDetail, ReliefFinerThanAPixelBecomesRoughness) {
     const sample::Scene scene(sample::makeRectangle(-2000, 2000, -2000, 2000, 0).view());
     sample::GBufferOptions options;
@@ -700,7 +700,7 @@ TEST(LitMesh, SplitsWhereLightIsNotLinear) {
 TEST(LitMesh, LightsAndLimits) {
     sample::Mesh two = sample::makeSphere(radius, 8, 16);
     two.materials.assign(two.triangles.size() / 3, 1);
-    // A little aside: Embree may miss a triangle whose corner a ray meets exactly.
+    // Shifted slightly: Embree may miss a triangle if a ray hits its corner exactly.
     sample::Mesh other = sample::makeSphere(radius, 8, 16, {0.3, 0.7, -300});
     other.materials.assign(other.triangles.size() / 3, 2);
     two.append(other);

@@ -1,5 +1,5 @@
-// Light that walks through the volume of a mesh, against the naive walk of the oracle in double precision,
-// and against walks made outside of this project (PELLUCID_RULER_DIR).
+// Random walks through the volume of a mesh, against the naive walk of the oracle in double precision, and
+// against walks of another program (PELLUCID_RULER_DIR).
 #include <omp.h>
 #include "test.h"
 
@@ -97,7 +97,7 @@ double meanOf(const sample::WalkedLight& light, size_t channel) {
     return sum / double(2 * light.first.size() / 3);
 }
 
-// A box so large that it is a half-space to its top, whose first triangle is 0 0 to 1 1.
+// A box so large that its top is that of a half-space; the top's first triangle is 0 0 to 1 1.
 sample::Mesh largeBox(float s = 100, float deep = 60) {
     sample::Mesh box;
     for (int i = 0; i < 8; ++i)
@@ -137,7 +137,7 @@ TEST(WalkLight, LayersReflectWhatTheOraclesWalkDoes) {
     }
 }
 
-// Beside the edge of a shadow: how far light goes in layers.
+// Beside the edge of a shadow, which shows how far light travels in layers.
 TEST(WalkLight, LayersCarryLightAsFarAsInTheOraclesWalk) {
     sample::Mesh both = largeBox(10, 10);
     both.positions.insert(both.positions.end(), {-10, -10, 5, 0, -10, 5, 0, 10, 5, -10, 10, 5});
@@ -172,7 +172,7 @@ TEST(WalkLight, EqualLayersAreOneMedium) {
     EXPECT_EQ(walked(layers), walked(medium(0.1)));
     for (sample::Wave& w : layers.waves) w.outerAbsorption *= 2;
     EXPECT_NE(walked(layers), walked(medium(0.1)));
-    // A white furnace: what enters the surface comes back.
+    // A white furnace: all light that enters the surface returns.
     layers.refractiveIndex = sample::fresnelIndex;
     for (sample::Wave& w : layers.waves) w.outerAbsorption = w.absorption = 0;
     EXPECT_NEAR(meanOf(walkLight(body, fromEverywhere(), points, layers, {64}), 0), 0.92319, 5e-3)

@@ -1,4 +1,4 @@
-// A frame that was prepared before its pictures came: the same bits, and nothing is read or made twice.
+// A frame that is prepared before its pictures are read: the same bits, and nothing is read or made twice.
 #include "scene/scene_frame.h"
 
 #include "cl/cl_spy.h"
@@ -194,8 +194,8 @@ TEST_F(SceneFrames, PreparedLeavesProgramsToTheBackground) {
     EXPECT_GT(device.stats().programsBuilt, before);
 }
 
-// After a move of lights, camera and eyes: the launches of a steady frame, and no new buffer. Pictures of
-// what is taken away and put back are those of a new frame.
+// After lights, camera and eyes have moved: the launches of a steady frame, and no new buffer. When inputs
+// are removed and restored, the pictures are those of a new frame.
 TEST_F(SceneFrames, UpdateSetsWhatChanged) {
     const Device device("");
     io::SceneFile s = scene();
@@ -290,7 +290,7 @@ std::vector<End<PelEye>> endsOfEyes() {
     return all;
 }
 
-// Ends of ranges, each alone, in small frames: soon there and finite, or refused.
+// Ends of ranges, each alone, in small frames: a finite result in bounded time, or an error.
 class FieldBounds : public SceneFrames {
   protected:
     template <class Struct>

@@ -1,4 +1,4 @@
-// Smooth frames for the passes before the shading kernel, and ways to see what they made.
+// Smooth frames for the passes before the shading kernel, and ways to show their results.
 #pragma once
 #include "reference/shade_passes.h"
 #include "shade_scene.h"

@@ -71,8 +71,8 @@ inline PelLight plainLight() {
     return l;
 }
 
-// Leaves nothing to interpolation, of which an oracle knows nothing. Pixels are counted in all tests but
-// those that say so: each choice is a program of its own, and compiling takes most of the tests' time.
+// Without interpolation, which the oracle does not have. Nearly all tests count pixels, because each choice
+// is a separate program, and compiling takes most of the tests' time.
 inline PelShaderOptions exactOptions() {
     PelShaderOptions o = pelShaderOptionsDefaults();
     o.everyPixel = o.countPixels = 1;

@@ -133,7 +133,7 @@ struct CubeLight {
     Turn turn;
     Vec3 position;
 };
-// `reach` gives the multiple of a direction of the world, from the light, that meets something first.
+// `reach` gives the distance to the first surface along a direction from the light, as a multiple of it.
 inline CubeLight cubeLight(uint32_t size, bool radial, Turn turn, Vec3 position,
                            const std::function<double(Vec3, int)>& reach) {
     CubeLight out;
@@ -174,7 +174,7 @@ inline CubeLight cubeLight(uint32_t size, bool radial, Turn turn, Vec3 position,
 
 // --- parallel and perspective maps ---
 
-// What texels hold of a surface at this distance.
+// The content of a texel for a surface at this distance.
 inline double depthOf(const MapLight& from, double distance) {
     const auto& d = from.view.decoding;
     return d.perspective ? (1 / distance - d.b) / d.a : distance / d.range;
@@ -351,7 +351,7 @@ inline FormTruth truthOf(const ContentLight& from) {
             }};
 }
 
-// From the oracle, and how many pixels are lit, dark and in between, or thick: there is something to see.
+// The worst difference from the oracle, and how many pixels are lit, dark and in between, or thick.
 struct Worst {
     double wide = 0, thickness = 0;
     size_t lit = 0, dark = 0, between = 0, thick = 0;

@@ -1,5 +1,5 @@
-// Spheres and rectangles as lights, against many small lights in double precision; what they are equal to in
-// the limit; and sizes that are none.
+// Spheres and rectangles as lights, against many small lights in double precision; their limits; and invalid
+// sizes.
 #include "scattering_frame.h"
 #include "shader_ready.h"
 #include "test.h"
@@ -262,8 +262,8 @@ TEST(AreaLights, IrradiancePerPixel) {
     }
 }
 
-// Methods by tables, from irradiance, and from shadow maps: what is small is a point, and what is not lights
-// beyond the terminator.
+// Methods by tables, from irradiance, and from shadow maps: a small light equals a point, and a large one
+// lights beyond the terminator.
 TEST(AreaLights, OfMethodsOfScattering) {
     for (const PelScattering method :
          {PEL_SCATTERING_PREINTEGRATED, PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_LIGHT}) {

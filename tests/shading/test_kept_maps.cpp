@@ -1,5 +1,5 @@
-// Shadow maps that rest (PelLight.shadowMapVersion): what is computed from them alone is made once for all
-// frames and shaders, and no bit is another.
+// Unchanged shadow maps (PelLight.shadowMapVersion): data computed only from the maps are made once for all
+// frames and shaders, and no bit changes.
 #include "scattering_frame.h"
 #include "test.h"
 
@@ -79,7 +79,7 @@ TEST_F(KeptMaps, AreMadeOnceForTwoViews) {
     }
     expectSameBits(device(), left.picture(), alone(-5));
     expectSameBits(device(), right.picture(), alone(5));
-    // What the first has made stays when it goes, and another version is made anew.
+    // The first shader's data outlive it, and another version is computed anew.
     left.shader = Shader(device());
     EXPECT_EQ(right.launches(), all - 3);
     set(right, 2, 5);
@@ -125,8 +125,8 @@ TEST_F(KeptMaps, CellsOfTapsBelongToAFilter) {
     expectSameBits(device(), second.picture(), alone(-5));
 }
 
-// Another map, the same one read in another way under the same number, or other content under another: one
-// thing changes after the other.
+// Another map, the same map read in another way under the same number, or other content under another number,
+// one after the other.
 TEST_F(KeptMaps, OfOtherMapsAreOthers) {
     PelLight& light = frame_.lights[0].params;
     uint32_t version = 1;

@@ -36,8 +36,8 @@ TEST(ReferenceShade, GgxIsReciprocalAndLosesWhatMaskingTakes) {
         const double s = std::sqrt(1 - cosine * cosine);
         return Vec3{s * std::cos(angle), s * std::sin(angle), cosine};
     };
-    // What one bounce leaves, by another method: the mean of G2 (V.H) / ((N.V) (N.H)) over half vectors drawn
-    // from D cos.
+    // The energy after one bounce, by another method: the mean of G2 (V.H) / ((N.V) (N.H)) over half vectors
+    // drawn from D cos.
     for (const auto& [a, left] : {std::pair{0.1, 0.9867}, {0.3, 0.8678}, {0.8, 0.4441}}) {
         const Vec3 l = direction(0.7, 0.3), v = direction(0.4, 2.1);
         EXPECT_NEAR(ggxLobe(n, l, v, a), ggxLobe(n, v, l, a), tolerance::oracleExact);
@@ -138,8 +138,8 @@ TEST_F(FaceWorksPixels, ThicknessAgreesOnAverage) {
         }
 }
 
-// The disks of thickness taps: centred, as wide as the disk, and better than random points at what they are
-// for: how much of the disk lies on one side of an edge.
+// The disks of thickness taps: centred, as wide as the disk, and better than random points for their purpose,
+// the area of the disk on one side of an edge.
 class PoissonDisk : public testing::TestWithParam<uint32_t> {};
 
 TEST_P(PoissonDisk, IsCentredInTheUnitDisk) {

@@ -1,5 +1,5 @@
-// PelShaderOptions.regionX to regionHeight: to the bit what cropped images give, nothing outside, and neither
-// memory nor programs for another size.
+// PelShaderOptions.regionX to regionHeight: the bits of cropped images, no effect outside, and neither memory
+// nor programs for another size.
 #include "cl/cl_spy.h"
 #include "device_lanes.h"
 #include "scattering_frame.h"
@@ -175,7 +175,7 @@ TEST(Region, AnotherSizeTakesNoMemoryAndNoPrograms) {
         EXPECT_EQ(after.buffersMade, before.buffersMade);
         EXPECT_EQ(after.waits, before.waits);
         EXPECT_EQ(device().stats().programsBuilt, programs);
-        // Without a region what is not needed is given back.
+        // Without a region, memory that is not needed is freed.
         const uint64_t held = shader.stats().scratchBytes;
         shader.set(f.options).commit();
         EXPECT_LE(shader.stats().scratchBytes, held);

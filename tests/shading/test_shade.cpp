@@ -1,5 +1,5 @@
-// The shading pass against the oracle: each term alone, their sum, outputs beside radiance, irradiance per
-// pixel; and what must not change a bit: layouts of images, and what is in the target.
+// The shading pass against the oracle: each term alone, their sum, outputs besides radiance, irradiance per
+// pixel. Layouts of images, and the content of the target, must not change a bit.
 #include "device_lanes.h"
 #include "shade_scene.h"
 
@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(
                          [](Frame& f) {
                              for (auto& [id, m] : f.materials) m.deepScatterAmbient = 0.1f * float(id);
                          }},
-                    // Shadow maps and taps are there, but measure along the lights.
+                    // There are shadow maps and taps, but they measure along the lights.
                     Term{"NoAmbientScatterWithoutAThicknessImage",
                          PEL_FEATURE_AMBIENT | PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS, DEEP,
                          [](Frame& f) {
@@ -254,7 +254,7 @@ TEST(ShadeIrradiance, UnscatteredIsLambert) {
         }
 }
 
-// The host's irradiance takes the place of lights and ambient in the diffuse part, and in no other.
+// The host's irradiance replaces lights and ambient only in the diffuse part.
 TEST(ShadeIrradiance, TheHostsIsUsedAsItIs) {
     Frame f = lambert(7);
     setScattering(f, PEL_SCATTERING_NONE);

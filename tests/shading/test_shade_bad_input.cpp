@@ -1,4 +1,4 @@
-// What a shader refuses, and what the messages say; pixels with NaN, Inf or no material do not change their
+// Inputs that a shader refuses, and the messages; pixels with NaN, Inf or no material do not change their
 // neighbours.
 #include "cl/cl_spy.h"
 #include "shader_ready.h"

@@ -10,8 +10,8 @@ using lanes::deviceOf;
 
 namespace {
 
-// What the counters of pixels should hold, from the scene in double precision. `doubtful`: pixels that
-// rounding may put on either side.
+// The expected counters of pixels, from the scene in double precision. `doubtful`: pixels that rounding may
+// put on either side.
 struct Counts {
     uint64_t shaded = 0, invalid = 0, shadowLut = 0, thickness = 0, specular = 0, doubtful = 0;
 };

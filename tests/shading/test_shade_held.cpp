@@ -10,7 +10,7 @@ using fixture::expectReturns;
 
 namespace {
 
-// Of the two that the headers have.
+// Of the two devices in the headers.
 const Device& own() {
     return shade_test::device();
 }
@@ -60,7 +60,7 @@ void expectFrames(const char* what, size_t floats, const Make& make, const Chang
         << what;
 }
 
-// What a call makes of a buffer behind the event, and the same at once. `makesBuffers`: also when repeated.
+// The result of a call behind the event, compared with an immediate call. `makesBuffers`: also when repeated.
 template <class Call>
 void expectHeld(const char* what, size_t floats, bool makesBuffers, const Call& call) {
     const Buffer held = guarded(floats), plain = guarded(floats);

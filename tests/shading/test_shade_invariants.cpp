@@ -1,5 +1,5 @@
-// What must change no bit of a frame: skipping, lists of tiles, bands of rows within a budget of scratch
-// memory, a second run, and the frames that the shader made before; and what interpolation may change.
+// Invariants of a frame's bits: skipping, lists of tiles, bands of rows within a budget of scratch memory, a
+// second run, and earlier frames of the shader. Also the changes that interpolation may make.
 #include "eye/eye_frame.h"
 #include "scattering_frame.h"
 #include "shader_ready.h"

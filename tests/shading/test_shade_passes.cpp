@@ -1,5 +1,5 @@
-// What the shader makes itself, against the oracle: normals blurred on screen and from a normal map, and
-// ambient light from a cube map.
+// Inputs that the shader makes itself, against the oracle: normals blurred on screen and from a normal map,
+// and ambient light from a cube map.
 #include "pass_scene.h"
 #include "shader_ready.h"
 

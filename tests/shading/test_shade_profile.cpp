@@ -1,5 +1,5 @@
 // A material that names its profile: tables, widths, transmission and gain that follow from it, against
-// closed forms and the oracle's tables; units; what is said about settings without effect.
+// closed forms and the oracle's tables; units; warnings about settings without effect.
 #include "diffusion/scatter_scene.h"
 #include "shade_scene.h"
 #include "test.h"
@@ -342,7 +342,7 @@ TEST(ShadeProfile, AutoKeepsToTheScratchBudget) {
     EXPECT_EQ(shading.shader.material(2).scattering, PEL_SCATTERING_NONE);
     said(4096);
     EXPECT_EQ(shading.shader.material(2).scattering, PEL_SCATTERING_PREINTEGRATED);
-    // A method that was asked for is not replaced, and bands do not suffice for it.
+    // An explicitly chosen method is not replaced, and cannot work in bands.
     material.scattering = PEL_SCATTERING_SCREEN;
     shading.shader.setMaterial(1, material);
     expectRefused(PEL_ERROR_OUT_OF_MEMORY, {"needs at least"}, [&] { said(needed - 1); });
@@ -417,7 +417,7 @@ TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
     }
 }
 
-// In a cube too: a step of the map makes nothing thin that stands beside its thicker side.
+// Also in a cube: beside a step of the map, the thicker side does not become thin.
 TEST(ShadeProfile, ThicknessFromACubeIsTheGreatestNearby) {
     const Profile profile = Profile::burleyDistance(distance);
     Inputs in{.thickness = false};

@@ -1,5 +1,5 @@
 // Shaders used from several threads, on one device and on several; objects that outlive the caller's device;
-// progress and cancelling; and what a second frame costs.
+// progress and cancelling; and the cost of a second frame.
 #include "held_queue.h"
 #include "pass_scene.h"
 #include "shader_ready.h"
@@ -144,7 +144,7 @@ TEST(ShadeProgress, IsToldAndMayCancel) {
         EXPECT_EQ(listener.calls, bands ? 6 : 4);
         EXPECT_EQ(listener.last, 1);
         EXPECT_EQ(made().first, 0u);
-        // Work that is submitted without waiting tells no progress, so it cannot be cancelled.
+        // Work that is submitted without waiting reports no progress, so it cannot be cancelled.
         listener = {};
         PelEvent done = nullptr;
         const PelSubmit submit{nullptr, 0, &done};

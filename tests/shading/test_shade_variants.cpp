@@ -1,4 +1,4 @@
-// Variants of the shading kernel: few, equal for shaders that mean the same.
+// Variants of the shading kernel: few, and shared by equivalent shaders.
 #include "shade_scene.h"
 #include "test.h"
 
@@ -18,7 +18,7 @@ uint32_t programsOf(const std::vector<Frame>& frames) {
     return own.stats().programsBuilt;
 }
 
-// Numbers, order, and inputs that nothing reads make no other program.
+// Numbers, order, and unused inputs do not change the program.
 TEST(ShadeVariants, EqualMeaningIsOneProgram) {
     std::vector<Frame> frames;
     const auto add = [&](auto change) {

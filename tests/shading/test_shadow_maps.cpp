@@ -1,5 +1,5 @@
 // Shadow maps of every content and projection: wide shadow and thickness against the oracle and without
-// bounds and skipping, what the forms have in common, and what is refused.
+// bounds and skipping, common properties of all forms, and errors.
 #include "shader_ready.h"
 #include "shadow_forms.h"
 
@@ -12,7 +12,7 @@ const Vec3 lamp{24, 10, 70}, down{0, 0, -1}, slanted{0.5, 0.2, 0.9};
 // A face in the middle of the picture, an edge, a corner of three faces.
 const Vec3 aims[] = {{0, 0, 1}, {1, 0, 1}, {-1, 1, 1}};
 
-// Bumps on open ground, in cells of texels: nothing that a mistaken texel would leave as it is.
+// Bumps on open ground, in cells of texels, so that a wrong texel always changes the result.
 double bumps(Vec3 d, int texel) {
     const double ground = d.z < -1e-3 ? (lamp.z + 8) / -d.z : 500;
     const int cell = texel / 7 * 31;
@@ -30,7 +30,7 @@ struct Compared : Worst {
     uint64_t filtered = 0, read = 0;  // pixels, and those whose filters bounds of blocks did not decide
 };
 
-// Against the oracle; filters that bounds decide, and what is skipped, give what texels would, to the bit.
+// Against the oracle. Filters decided by bounds, and skipped work, give the same bits as reading the texels.
 // The latter is another program, without which rotated disks and frames narrower than a vector do.
 template <class From>
 Compared expectOracle(const std::string& what, Frame f, const From& from, const Check& check = {}) {
@@ -292,7 +292,7 @@ TEST(ShadowFilter, AStraightEdgeHasTheTablesProfile) {
     }
 }
 
-// The bounds of a map are of what its texels say, in whatever format.
+// The bounds of a map follow from its decoded texels, in any format.
 TEST(ShadowFilter, AMapOfIntegersIsTheMapOfItsFloats) {
     MapLight from = mapLight(7, false, false, slanted, {26, 12, 5}, 70, 200);
     std::vector<uint16_t> integers;
@@ -405,8 +405,8 @@ TEST(ShadowForms, CubesHoldAllContents) {
             }
             EXPECT_LE(wide, tolerance::contentInCube) << "mean; content " << content << ", radial " << radial;
             if (!moments) continue;
-            // Where distance varies within texels light comes through: as much in both kinds, where its
-            // inverse along the face's axis deviates as much.
+            // Where distance varies within texels, some light leaks: equally much in both kinds, if the
+            // inverse distance along the face's axis has the same deviation.
             constexpr double deviation = 0.02;
             for (size_t i = 0; i < cube.map.depth.size(); ++i) {
                 const int size = cube.map.size, at = int(i) % (size * size);
@@ -467,7 +467,7 @@ TEST(ShadowForms, TexelsOfOneSizeHaveTheirOwnFormat) {
     EXPECT_EQ(with(pairs, PEL_FORMAT_RG32F), dense);
 }
 
-// Places of NaN, far away or at the light are their own pixel's affair.
+// Positions that are NaN, far away or at the light only affect their own pixel.
 TEST(ShadowForms, BadPlaces) {
     const Light lights[] = {mapLight(3, true, false, slanted, {24, 10, 5}, 70, 61).light,
                             cascadeLight({24, 70}).light,

@@ -99,8 +99,8 @@ TEST(SharpShadow, APlaneThrowsNoneOnItselfAtAnyAngleInAnyUnit) {
             }
 }
 
-// The pass is its definition, on a map of discs and noise, where shadows, edges and texels at the tolerance
-// are all there.
+// The pass agrees with its definition, on a map of discs and noise that has shadows, edges and texels at the
+// tolerance.
 TEST(SharpShadow, IsItsDefinition) {
     for (bool perspective : {false, true})
         for (bool reversed : {false, true}) {

@@ -214,7 +214,7 @@ TEST(SoftShadow, NothingIsBeyondAMap) {
     for (size_t i = 0; i < alone.size(); ++i) ASSERT_NEAR(alone[i], padded[i], tolerance::shadeTerm) << i;
 }
 
-// Where the horizon hides the light's centre, the map does not show what is before the rest.
+// If the horizon hides the light's centre, the map does not show the occluders of the rest.
 TEST(SoftShadow, OfAPointThatSeesTheRimAlone) {
     for (const bool cube : {false, true}) {
         Frame f = edgeFrame({PEL_LIGHT_SPHERE, 100, 60, cube});

@@ -60,7 +60,7 @@ uint64_t cellLaunches(const Seen& cells, const Seen& taps) {
     return cells.stats.launches - taps.stats.launches - 1;
 }
 
-// Against a disk of very many taps, on a map that taps do not get right.
+// Against a disk of very many taps, on a map for which few taps are inaccurate.
 template <class From>
 void expectNearer(const Frame& f, const From& from, uint64_t launches, const std::string& what) {
     const Errors errors = errorsOf(f, truthOf(from));
@@ -86,7 +86,7 @@ TEST(TapCells, EachDiskHasItsOwn) {
     f.materials[2].thicknessTaps = 8;
     const MapLight from = bumps(3, false);
     expectNearer(f, from, 8, "two disks");
-    // More disks than have cells: the rest takes taps of its own.
+    // More disks than cells are made for: the other disks use taps per pixel.
     for (uint32_t id = 3; id < 9; ++id) {
         f.materials[id] = f.materials[1];
         f.materials[id].thicknessFilterRadius *= 1 + 0.1f * float(id);

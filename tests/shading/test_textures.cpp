@@ -1,4 +1,4 @@
-// Images of the host's textures: the same bits as of buffers, read and written at each execution.
+// The host's textures as images: the same bits as with buffers, read and written at each execution.
 #include <CL/cl.h>
 
 #include "cl/cl_spy.h"

@@ -51,7 +51,7 @@ def main() -> int:
         return fail(3, e)
     except BatchError as e:
         error = e
-        if not hasattr(e, "summary"):  # it came to nothing
+        if not hasattr(e, "summary"):  # no result at all
             return fail(4 if isinstance(e, NoWorker) else 3, e)
         summary = e.summary
     except KeyboardInterrupt:

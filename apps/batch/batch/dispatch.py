@@ -1,8 +1,8 @@
 """Shares the entries of a manifest out among the workers of a Dask cluster.
 
 Dask gives pieces of the list to workers, and the pieces of a worker that dies, or that the scheduler has not
-heard of for its `worker-ttl`, to others. Added here: an entry counts once its file has been read back, and
-entries that were not done are submitted again, in halves, to workers other than the one that failed. Doing an
+heard of for its `worker-ttl`, to others. In addition, an entry counts only once its file has been read back,
+and unfinished entries are submitted again, in halves, to workers other than the one that failed. Doing an
 entry twice changes nothing, because files are named by content and appear whole.
 """
 from __future__ import annotations
@@ -26,16 +26,16 @@ from .manifest import Manifest
 from .report import BatchError, NoWorker, Summary
 from .store import Store, StoreError
 
-PIECES = 256  # at least, for workers that come later
-PIECES_PER_WORKER = 8  # that is there, so that all end together
+PIECES = 256  # at least, so that later workers get work
+PIECES_PER_WORKER = 8  # per present worker, so that all end at about the same time
 LARGEST_PIECE = 1024  # entries
-ATTEMPTS = 3  # of an entry by itself, before it is to blame for the workers that it costs
-LOOK_SECONDS = 0.5  # between two looks at who is there
+ATTEMPTS = 3  # of a single entry, after which it is blamed for lost workers
+LOOK_SECONDS = 0.5  # between two checks of the present workers
 LATEST_SECONDS = 10.0  # until a dismissed process has ended; Dask kills it after four
 
 
 def on_worker(*arguments: Any) -> tuple[str, str, Any]:
-    """Runs there: who answers, what kind of answer it is, and the answer."""
+    """Runs on a worker. Returns the worker's address, the kind of the answer, and the answer."""
     import importlib
 
     import distributed
@@ -53,7 +53,7 @@ def on_worker(*arguments: Any) -> tuple[str, str, Any]:
         return address, "garbage", f"{type(e).__name__}: {e}"
 
 
-# It travels as code, so that the scheduler needs no package and a worker without it can say what it lacks.
+# Sent as code, so that the scheduler needs no package and a worker without the package can report that.
 on_worker.__module__ = "__main__"
 
 
@@ -65,13 +65,13 @@ class Dispatcher:
         self._client, self._manifest, self._store = client, manifest, store
         self._spoken, self._bar_of_all = progress, progress_bar() if progress else None
         self._timeout, self._jobs, self._patience = timeout, jobs, patience
-        self._open = set(range(len(manifest)))  # entries that nobody has finished
+        self._open = set(range(len(manifest)))  # unfinished entries
         self._there = [False] * len(manifest)
         self._attempts: dict[int, int] = {}
         self._present: set[str] = set()
         self._barred: set[str] = set()
-        self._garbled: set[str] = set()  # workers that gave garbage, whose processes may still write
-        # By future: entries, and the workers that were asked; none where all were.
+        self._garbled: set[str] = set()  # workers with invalid answers, whose processes may still write
+        # By future: its entries, and the workers it was restricted to; empty: any worker.
         self._pieces: dict[Any, tuple[list[int], set[str]]] = {}
         self._alone = time.monotonic()
         self._last_trouble = ""
@@ -123,18 +123,18 @@ class Dispatcher:
                 done = [future for future in self._pieces if future.done()]
                 for future, answer in zip(done, readers.map(self._receive, done)):
                     piece = self._pieces.pop(future, None)
-                    if piece:  # not submitted anew meanwhile
+                    if piece:  # has not been resubmitted
                         self._handle(piece[0], answer)
                 if self._bar_of_all:
                     self._bar_of_all(1 - len(self._open) / len(self._manifest), "tables")
                 if not done:
                     time.sleep(0.02)
         with contextlib.suppress(NoWorker):
-            self._look()  # who was lost last
+            self._look()  # for the last lost workers
 
     def _written_late(self, readers: ThreadPoolExecutor) -> bool:
-        """Whether entries are open again, because a worker that was dismissed has gone on until its process
-        ended, and written over files that had been checked."""
+        """Whether entries are open again because a dismissed worker kept running until its process ended, and
+        overwrote files that had been checked."""
         if not self._garbled:
             return False
         end = time.monotonic() + LATEST_SECONDS
@@ -158,10 +158,10 @@ class Dispatcher:
         return bool(damaged)
 
     def _write_index(self) -> None:
-        """Also of a batch that did not come to its end, unless the output failed or no table is there."""
+        """Also for an unfinished batch, unless the output failed or there is no table."""
         if not any(self._there):
             return
-        other = sys.exc_info()[1]  # what is on its way to the caller
+        other = sys.exc_info()[1]  # the exception in flight
         try:
             self._store.write(self._manifest.index_name, self._manifest.index(self._there))
         except StoreError as e:
@@ -169,7 +169,7 @@ class Dispatcher:
                 raise BatchError(str(e)) from e
 
     def _look(self) -> None:
-        """Who is there, who is lost, and whether anybody can work."""
+        """Finds present and lost workers, and whether any of them can work."""
         try:
             present = set(self._client.nthreads())
         except (OSError, TimeoutError, asyncio.TimeoutError) as e:
@@ -182,7 +182,7 @@ class Dispatcher:
             self._trouble(f"worker {address} is gone")
         self._present = present
         self._barred &= present
-        # Dask asks others only while there are any: what was left when all had gone waits for ever.
+        # Dask reassigns work only while there are workers: work left by the last one would wait for ever.
         for future in [f for f, (_, asked) in self._pieces.items()
                        if asked and not asked & present and not f.done()]:
             self._client.cancel([future], force=True)
@@ -226,7 +226,7 @@ class Dispatcher:
         self._pieces[future] = indices, set(usable or ())
 
     def _again(self, indices: list[int]) -> None:
-        """Hands entries out once more, in halves: one of them may be what costs the workers."""
+        """Submits entries again, in halves: one of them may crash the workers."""
         indices = [i for i in indices if i in self._open]
         if not indices:
             return
@@ -259,7 +259,7 @@ class Dispatcher:
             return e
 
     def _is_true(self, indices: list[int], index: int, what: str, text: str) -> bool:
-        """Whether an entry's file is there, whole, and what the worker says."""
+        """Whether an entry's file exists, is complete, and matches the worker's report."""
         if index not in indices or what not in work.KINDS or not isinstance(text, str):
             raise ValueError(what)
         if what not in work.FILE_THERE:
@@ -271,14 +271,14 @@ class Dispatcher:
     def _handle(self, indices: list[int], answer: Any) -> None:
         if isinstance(answer, StoreError):
             raise BatchError(str(answer)) from answer
-        # The scheduler is gone, or was for a moment, or the worker that held the answer is.
+        # The scheduler is or was unreachable, or the worker that held the answer is gone.
         if isinstance(answer, (CancelledError, asyncio.CancelledError, asyncio.TimeoutError, OSError)):
             self._look()
             self._submit(indices)
         elif isinstance(answer, BaseException):  # KilledWorker, an answer that cannot be read, ...
             self._trouble(f"work was lost: {type(answer).__name__}: {answer}")
             self._again(indices)
-        elif answer[1] == "unfit":  # no entry is to blame, and a restart is no help
+        elif answer[1] == "unfit":  # not the entries' fault, and a restart does not help
             self._bar(answer[0], f"gets no work: {answer[2]}", restart=False)
             self._submit(indices)
         elif answer[1] == "garbage":
@@ -311,7 +311,7 @@ class Dispatcher:
 
     def _close(self, address: str, index: int, what: str) -> None:
         self._open.discard(index)
-        if self._there[index]:  # counted before it was written over
+        if self._there[index]:  # counted before it was overwritten
             return
         self._there[index] = True
         if what == work.KEPT:

@@ -16,7 +16,7 @@ class NoWorker(BatchError):
 
 @dataclass
 class Summary:
-    """Counts of a batch; `failed` are entries that make no sense, or that no worker could make."""
+    """Counts of a batch; `failed` are invalid entries, and entries that no worker could make."""
 
     entries: int = 0
     made: int = 0
@@ -24,7 +24,7 @@ class Summary:
     redone: int = 0  # of `made`: in place of a file that was damaged
     duplicates: int = 0
     failed: int = 0
-    retried: int = 0  # pieces of work that a worker lost, garbled or sat on, given to another
+    retried: int = 0  # pieces that a worker lost, garbled or did not finish, given to another
     workers_lost: int = 0
     workers_dismissed: int = 0  # hung, or gave garbage
     total_ms: float = 0.0

@@ -1,4 +1,4 @@
-"""A batch on a cluster that is there, or on one of this machine's processes, one per device."""
+"""A batch on an existing cluster, or on a cluster of local processes, one per device."""
 from __future__ import annotations
 
 import contextlib
@@ -33,7 +33,7 @@ def _local_client(count: Optional[int], selectors: Sequence[str], timeout: float
             raise NoWorker(str(e)) from None
     if not selectors and os.environ.get("PELLUCID_DEVICE"):
         chosen = [os.environ["PELLUCID_DEVICE"]]
-    here = {"host": "127.0.0.1"}  # whoever reaches a port of Dask can execute anything
+    here = {"host": "127.0.0.1"}  # anyone who can connect to a Dask port can execute code
     worker = {**here, "nthreads": 1, "memory_limit": 0, "silence_logs": logging.CRITICAL,
               "preload": ["pellucid.batch.interrupt"]}
     workers = {i: {"cls": distributed.Nanny,

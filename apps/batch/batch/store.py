@@ -9,7 +9,7 @@ from .. import _native
 
 
 class StoreError(Exception):
-    """The output is full, gone or not allowed: no entry will fare better."""
+    """The output is full, gone or not writable: no other entry can succeed either."""
 
 
 class Store:

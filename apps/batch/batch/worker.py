@@ -1,4 +1,4 @@
-"""What runs on a worker: some entries of a manifest, from integration to the file."""
+"""The code of a worker: makes some entries of a manifest, from integration to the file."""
 from __future__ import annotations
 
 import functools
@@ -28,7 +28,7 @@ KINDS = (*FILE_THERE, BAD, NO_ROOM, DEVICE_FAILED, NO_STORE)
 
 
 class UnfitWorker(Exception):
-    """This process can make no entry at all, and a fresh one in its place could not either."""
+    """This process can make no entry at all, and a new process could not either."""
 
 
 @functools.cache

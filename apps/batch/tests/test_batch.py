@@ -1,5 +1,5 @@
-"""Batches on a cluster of real processes, some of which are killed, stopped or lie. How a file becomes
-complete is the command's code and tested with it."""
+"""Batches on a cluster of real processes, some of which are killed, stopped, or return wrong answers. Writing
+files atomically is code of the command and tested there."""
 import contextlib
 import hashlib
 import itertools
@@ -47,7 +47,7 @@ def processes(count, kinds=(), timeout=120):
 
 @pytest.fixture(scope="module")
 def client():
-    """Two processes that none of the tests does harm to."""
+    """Two processes that no test kills or stops."""
     with processes(2) as (client, _):
         yield client
 
@@ -59,7 +59,7 @@ def manifest(tmp_path):
 
 
 def files_of(folder):
-    """Without the index, and what workers that died left under temporary names."""
+    """Without the index and the temporary files of workers that died."""
     return {p.name: p.read_bytes() for p in folder.glob("[!.]*.exr")}
 
 
@@ -142,7 +142,7 @@ def test_killed_workers_lose_nothing(check):
 
 
 def test_all_workers_gone_at_once(check):
-    """Work that was meant for one goes to whoever comes."""
+    """Work submitted for one worker goes to any worker that appears later."""
     with processes(2, ["nonsense", "dies"]) as (client, _):
         assert check(client, jobs=1).workers_dismissed == 1
 

@@ -58,7 +58,7 @@ TEST_F(BatchCommand, MakesKeepsAndRepairs) {
     const auto all = files();
     ASSERT_EQ(all.size(), 10u);
     EXPECT_EQ(made(text)["kept"], 10);
-    // Each file is damaged in a way of its own, and made again with the bytes that it had.
+    // Each file is damaged in a different way, and made again with its original bytes.
     const size_t attribute = read(all[4].string()).find("root", read(all[4].string()).find("pellucid:axis"));
     ASSERT_NE(attribute, std::string::npos);
     std::vector<std::string> before;
@@ -261,7 +261,7 @@ TEST_F(BatchCommand, SaysWhatIsWrong) {
     EXPECT_FALSE(fs::exists(path("new/m.index.json")));
 }
 
-// Kills when a number of files that a seed chooses is there; what had its name then is whole and is kept.
+// Kills the command at a random number of files; files with their final name are complete and are kept.
 TEST_F(BatchCommand, KilledAtAnyMomentLosesWhatWasInFlight) {
     const std::string text = "[[grid]]\nsize = [24, 40]\n" + radii(300, 0.01);
     write("m.toml", text);
@@ -287,7 +287,7 @@ TEST_F(BatchCommand, KilledAtAnyMomentLosesWhatWasInFlight) {
     EXPECT_EQ(result["kept"], whole);
     EXPECT_EQ(result["redone"], 0) << "a file that had its name was broken";
     EXPECT_EQ(result["made"], 600 - whole);
-    // The last one killed may still have been waiting for its disk.
+    // The last killed process may still have been waiting for its disk.
     for (int i = 0; i < 50 && !files(true).empty(); ++i) {
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
         EXPECT_EQ(made(text)["kept"], 600);

@@ -1,4 +1,4 @@
-"""What is printed: what the user can put right, and nothing that Blender prints while it renders."""
+"""Output: errors that the user can correct, without Blender's own output while it renders."""
 
 import contextlib
 import os
@@ -17,7 +17,7 @@ def warn(text):
 
 @contextlib.contextmanager
 def quiet():
-    """Standard output goes nowhere meanwhile, also that of C code; errors still come out."""
+    """Discards standard output in this scope, also that of C code; errors are still printed."""
     if VERBOSE:
         yield
         return

@@ -1,4 +1,4 @@
-"""Meshes: loading a file, making real what Blender would render, curvature at each vertex."""
+"""Meshes: loads files, converts all that Blender renders to plain meshes, measures curvature."""
 
 import array
 import math
@@ -76,8 +76,8 @@ def run(command, pellucid):
 
 
 def load_ply(path, pellucid, up):
-    """By way of `pellucid curvature`, which reads every one of these formats and writes one PLY: fields of 4
-    bytes, a colour, triangles."""
+    """Loads a mesh by `pellucid curvature`, which reads all of these formats and writes a PLY file with
+    4-byte fields, a colour, and triangles."""
     with tempfile.TemporaryDirectory() as folder:
         copy = os.path.join(folder, "mesh.ply")
         run(["curvature", path, "-o", copy], pellucid)

@@ -1,4 +1,4 @@
-"""Lights as the scene file has them, their shadow maps, and light from the world around."""
+"""The lights of the scene file, their shadow maps, and the light of the world."""
 
 import math
 import os
@@ -11,9 +11,9 @@ from .passes import look, render_exr
 
 
 class Lamp:
-    """A light, and what its shadow map says. Blender's watts spread over 4 pi: a point light of P watts
-    gives irradiance P / (4 pi d^2), so that irradiance / pi at distance 1 is P / (4 pi^2). An area light's
-    radiance is P / (pi A), which gives P / pi^2. A sun's strength is irradiance itself."""
+    """A light, and the description of its shadow map. Blender's watts spread over 4 pi: a point light of P
+    watts gives irradiance P / (4 pi d^2), so that irradiance / pi at distance 1 is P / (4 pi^2). An area
+    light's radiance is P / (pi A), which gives P / pi^2. A sun's strength is irradiance itself."""
 
     def __init__(self, name, data, matrix):
         self.name, self.kind = name, data.type
@@ -69,7 +69,7 @@ def add(scene, lamps, name, data, matrix):
 
 
 def file_name(name, taken):
-    """Of a light's shadow map: instances of a light share its name, and names may differ in signs alone."""
+    """A unique file name for a shadow map: instances share a name, and names may differ only in signs."""
     stem = "shadow_" + "".join(c if c.isalnum() else "_" for c in name)
     number, file = 1, stem + ".exr"
     while file.lower() in taken:  # some disks know no letter case
@@ -80,8 +80,8 @@ def file_name(name, taken):
 
 
 def render_shadow_map(scene, lamp, bounds, options, taken):
-    """Depths seen from a sun, a spot or the centre of an area, 0 near to 1 far and where nothing is.
-    `taken`: other lights' files."""
+    """Depths seen from a sun, a spot or the centre of an area, 0 near to 1 far; 1 where nothing is. `taken`:
+    other lights' files."""
     if lamp.kind == "POINT":
         warn(f"light '{lamp.name}' is a point light: no shadow map is rendered for it")
         return

@@ -55,7 +55,7 @@ def add_camera(source, scene, bounds, size):
 
 
 def warn_if_out_of_view(scene, camera, things):
-    """An empty picture is seldom wanted, and does not show its reason."""
+    """Warns of an empty picture, which is seldom wanted and does not show its reason."""
     for thing in things:
         corners = [world_to_camera_view(scene, camera, thing.matrix_world @ Vector(c))
                    for c in thing.bound_box]

@@ -1,4 +1,4 @@
-"""What a material's shader says: how it scatters and how it shines, as keys of [[material]] and a profile."""
+"""Reads scattering and gloss from a material's shader, as keys of [[material]] and a profile."""
 
 import math
 import re
@@ -11,7 +11,7 @@ AUTO, PLAIN, SKIN, EYE = FIXED = ("auto", "plain", "skin", "eye")
 
 
 def custom_keys(material, prefix):
-    """The custom properties of a Blender material that begin so, without that."""
+    """The custom properties of a Blender material with this prefix, without the prefix."""
     owns = {name[len(prefix):]: material[name] for name in material.keys() if name.startswith(prefix)}
     return {key: own if isinstance(own, (int, float, str)) else tuple(own) for key, own in owns.items()}
 
@@ -25,7 +25,7 @@ class Scattering:
 
 
 class Surface:
-    """Read before the G-buffer's own shader takes the place of the material's."""
+    """Read before the shader of the G-buffer replaces the material's."""
 
     def __init__(self, material, shader):
         self.preset = material.get(PRESET, "") or AUTO

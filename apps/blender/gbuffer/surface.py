@@ -48,7 +48,7 @@ def prepare(things):
 
 
 def first_shader(socket):
-    """The first shader behind a surface that has a colour: a mix is entered, first side first."""
+    """The first shader of a surface that has a colour; of a mix, the first side is searched first."""
     for link in socket.links:
         node = link.from_node
         if node.type in COLOURS:
@@ -62,12 +62,12 @@ def first_shader(socket):
 
 
 def source(socket):
-    """What feeds a socket, or None."""
+    """The socket that feeds this socket, or None."""
     return socket.links[0].from_socket if socket and socket.is_linked else None
 
 
 def add_passes(material):
-    """The shader of the G-buffer in place of the material's; returns what that was."""
+    """Replaces the material's shader by the shader of the G-buffer; returns the original as a Surface."""
     flat = tuple(material.diffuse_color)
     if not material.use_nodes:
         material.use_nodes = True

@@ -21,7 +21,7 @@ class Failure(Exception):
 
 
 def steps(scene, folder):
-    """(what is done, command) one after another. The copy of the file is in the folder."""
+    """The steps in order, as (description, command). The copy of the file is in the folder."""
     settings, render = scene.pellucid, scene.render
     factor, share = int(settings.samples), render.resolution_percentage / 100
     size = [max(1, int(n * share)) * factor for n in (render.resolution_x, render.resolution_y)]
@@ -41,7 +41,7 @@ def steps(scene, folder):
 
 
 def failure_reason(log):
-    """The last words of a failed step that tell why."""
+    """The last lines of a failed step's output, which tell why."""
     lines = [line for line in log.splitlines() if line.strip()]
     reasons = [line for line in lines if line.startswith(("render_gbuffer.py:", "pellucid:"))
             and "warning" not in line]

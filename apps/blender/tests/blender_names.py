@@ -1,5 +1,5 @@
-"""Makes the scene of BlenderScript.OddThings and saves it under PELLUCID_SCENE: names that are no file names
-and no TOML, lights that differ by little, a text, a camera that looks away."""
+"""Makes the scene of BlenderScript.OddThings and saves it under PELLUCID_SCENE: names that are not valid in
+file names and TOML, lights with similar names, a text, a camera that looks away."""
 
 import os
 

@@ -1,6 +1,6 @@
 // G-buffers as Blender's Cycles writes them, through `pellucid shade` (docs/guide/blender.md): with
-// scattering off the picture is Blender's Lambert picture; with it on it is nearer to the path-traced one.
-// Pictures: PELLUCID_GBUFFER_DIR.
+// scattering off the picture is Blender's Lambert picture; with scattering on, it is closer to the
+// path-traced picture. Pictures: PELLUCID_GBUFFER_DIR.
 #include "cli/cli_run.h"
 #include "io/image/image_compare.h"
 #include "io/image/image_file.h"
@@ -108,7 +108,7 @@ TEST_F(BlenderReference, ScatteringComesCloserToThePathTracedSphere) {
         const io::ImageDifference ours = io::compareImages(out, truth, *within),
                                   plain = io::compareImages(lambert, truth, *within);
         for (size_t c = 0; c < 3; ++c) EXPECT_LT(ours.rmse[c], plain.rmse[c]) << file << ", channel " << c;
-        // Where it matters most: red light near the terminator.
+        // Scattering matters most for red light near the terminator.
         if (file == std::string("BURLEY") && within == &band) {
             EXPECT_LT(ours.rmse[0], tolerance::blenderTerminator * plain.rmse[0]);
         }

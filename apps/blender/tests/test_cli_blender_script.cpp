@@ -80,7 +80,7 @@ TEST_F(BlenderScript, ABlendFileGivesBlendersLambertPicture) {
             EXPECT_NEAR(scene.ambient.sh[i][0], i < 4 ? expected[i] : 0, tolerance::blenderSky) << i;
             EXPECT_EQ(scene.ambient.sh[i][1], 0);
         }
-        // Blender's picture has no light from the world in it.
+        // Blender's picture contains no light from the world.
         scene.ambient = pelAmbientDefaults();
         // Nor soft shadows.
         EXPECT_EQ(scene.lights[0].light.shadowFilterTexels, 48u);
@@ -117,7 +117,7 @@ TEST_F(BlenderScript, ABlendFileGivesBlendersLambertPicture) {
             const double radius = std::hypot(p[3 * i], p[3 * i + 1], p[3 * i + 2]);
             if (std::abs(radius - 1) < 0.01) ball.push_back(curvature[i]);
             const bool arrives = blender[3 * i] > 1e-4f, faces = out[3 * i] > 0.05f;
-            // Cycles darkens bumped surfaces at grazing light beyond the cosine: the ring says only what its
+            // At grazing light Cycles darkens bumped surfaces more than the cosine: the ring only shows its
             // albedo is.
             if (arrives && id[i] == 7) {
                 ++lit;
@@ -141,7 +141,7 @@ TEST_F(BlenderScript, ABlendFileGivesBlendersLambertPicture) {
             }
             if (!faces) continue;
             const Depths z = look(lamp, map, &p[3 * i]);
-            // In shadow the map must hold something nearer; in the light the point itself.
+            // In shadow the map must hold a nearer surface; in the light the point itself.
             if (!arrives) ++shadowed;
             wrong += arrives ? z.point > z.map + 0.03 : z.point < z.map + 1e-3;
         }
@@ -245,7 +245,7 @@ TEST_F(BlenderScript, AMeshFileScatters) {
         EXPECT_NE(std::find(features.begin(), features.end(), feature), features.end()) << feature;
     EXPECT_EQ(stats.at("pixels_invalid"), 0);
     const std::vector<float> out = rgb(io::readImage(path("out/p.exr")), "R", "G", "B");
-    // Past the terminator, to the right in the back, red light is left and blue is not.
+    // Past the terminator, to the right in the back, there is red light but no blue light.
     float red = 0;
     for (size_t i = 0; i < id.size(); ++i)
         if (out[3 * i + 2] < 0.2f * out[3 * i]) red = std::max(red, out[3 * i]);

@@ -1,4 +1,4 @@
-// The demo's heads: what is made of the meshes that come with the project, and how hair is drawn.
+// The demo's heads, made from the meshes that come with the project, and the drawing of hair.
 #include "demo/demo_hair.h"
 #include "demo/dress_gbuffer.h"
 #include "kept_sums.h"
@@ -19,7 +19,7 @@ class DemoHeads : public testing::TestWithParam<const char*> {
     const sample::Scene scene{sample::MeshView{
         head.mesh.positions, head.mesh.normals, {}, {}, head.mesh.triangles, head.materials}};
 
-    // What one sees at `at`, looking along -back: its id, 0 for nothing, and its place.
+    // The surface visible at `at` in the direction -back: its id (0 for nothing) and position.
     std::pair<uint32_t, Vec3> seen(Vec3 at, Vec3 back) const {
         const sample::Ray ray{at + back * 300, -back};
         const sample::Hit hit = scene.intersect(ray);
@@ -66,7 +66,7 @@ double lightOn(const demo::StrandLight& light) {
 
 }  // namespace
 
-// From no side in front can one look between the lips at teeth, tongue or the inside of the cheeks.
+// From no direction in front are teeth, tongue or the inside of the cheeks visible between the lips.
 TEST_P(DemoHeads, LipsAreClosed) {
     const Vec3 left = head.eyes[0].centre, right = head.eyes[1].centre;
     const double e = length(left - right);
@@ -91,7 +91,7 @@ TEST_P(DemoHeads, LipsAreRedderGlossierAndSmootherThanCheeks) {
         return lips.weight(seen({x, y, 200}, {0, 0, 1}).second);
     };
     const Vec3 left = head.eyes[0].centre, right = head.eyes[1].centre;
-    // Where the lips meet, what faces down ends and what faces up begins.
+    // Where the lips meet, the surface changes from facing down to facing up.
     const auto upwards = [&](double y) {
         Vec3 normal;
         scene.firstHit({{0.1, y, 500}, {0, 0, -1}}, INFINITY, normal);
@@ -197,7 +197,7 @@ TEST_P(DemoHeads, PixelsAreTheKeptOnes) {
     }
 }
 
-// But for the caruncles, which lie where the eyes' corners are.
+// Except for the caruncles, which are at the corners of the eyes.
 TEST_P(DemoHeads, ZonesAreTheSameOnBothSides) {
     for (size_t i = 0; i + 2 < head.zones.size(); ++i) {
         const sample::SkinZone& a = head.zones[i];
@@ -232,7 +232,7 @@ TEST_P(DemoHeads, EachEyeHasACaruncle) {
     }
 }
 
-// What fills the outer corners of the eyes lies behind the lids, and shows between them.
+// The filling of the eyes' outer corners lies behind the lids, and is visible between them.
 TEST_P(DemoHeads, WhitesReachTheCornersOfTheLids) {
     for (const sample::EyeLook& eye : head.eyes)
         for (const double azimuth : {-25.0, 0.0, 25.0}) {
@@ -249,7 +249,7 @@ TEST_P(DemoHeads, WhitesReachTheCornersOfTheLids) {
         }
 }
 
-// From below one looks into them; from above, nothing of the nose is dark.
+// From below one looks into the nostrils; from above, no part of the nose is dark.
 TEST_P(DemoHeads, NostrilsAreDarkInside) {
     int nostrils = 0;
     for (const sample::SkinZone& zone : head.zones) {
@@ -289,7 +289,7 @@ TEST_P(DemoHeads, HairGrowsOutOfTheSkin) {
         ++(brow ? brows : lashes)[onLeft];
         EXPECT_LT(scene.nearest(root).distance, 0.3) << "mm from the skin";
         EXPECT_GT(length(tip - root), 1);
-        // Nothing is before the tip, seen from the front.
+        // Seen from the front, nothing hides the tip.
         EXPECT_FALSE(scene.occluded({tip + Vec3{0, 0, 0.3}, {0, 0, 1}}, INFINITY)) << root.x << " " << root.y;
         if (brow) {
             EXPECT_LT(scene.nearest(tip).distance, 1.5);

@@ -213,7 +213,7 @@ TEST_F(Import, RefusesWhatIsWrong) {
     refused("import @b.gltf -o @out", 3, "none.bin");
 }
 
-// What assimp's tests keep: good files become pictures, bad ones a message; nothing crashes.
+// The files of assimp's tests: good files become pictures, bad ones give a message; nothing crashes.
 TEST_F(Import, SamplesOfOtherPeople) {
     if (!fs::exists(samples)) GTEST_SKIP() << "Debian's assimp-testmodels is not installed";
     const std::map<std::string, std::vector<std::string>> bad = {

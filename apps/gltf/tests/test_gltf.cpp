@@ -12,7 +12,7 @@ using nlohmann::json;
 
 namespace {
 
-// JSON pointers and what stands there; null: nothing.
+// JSON pointers and the values to set there; null: removes the value.
 using Edits = std::vector<std::pair<const char*, json>>;
 
 json edited(const Edits& edits) {
@@ -116,8 +116,8 @@ TEST(Gltf, NodesMoveTurnScaleAndMirror) {
     EXPECT_EQ(position(s, 5), (std::vector<float>{9, 0, 5}));
 }
 
-// However a node is turned, its triangles face the way of its normals, mirrored or not, whether the normals
-// are the file's or made from the triangles.
+// Whatever the rotation of a node, its triangles face in the direction of its normals, mirrored or not, whether
+// the normals are in the file or made from the triangles.
 TEST(Gltf, TurnedAndMirroredFacesKeepTheirFront) {
     std::string buffer = squareBuffer();
     for (int v = 0; v < 4; ++v) buffer += gltf::bytesOf<float>({0, 0, 1});
@@ -271,7 +271,7 @@ TEST(Gltf, WrongFilesSayWhatAndWhere) {
     } rows[] = {
         {"/asset/version", "1.0", {"asset", "1.0"}},
         {"/buffers/0/byteLength", 93, {"buffers[0]", "93"}},
-        // Bytes behind what the buffer says it has are nobody's.
+        // Bytes beyond the declared length of the buffer cannot be used.
         {"/buffers/0/byteLength", 91, {"bufferViews[2]", "ends at byte 92", "91"}},
         {"/bufferViews/2/byteOffset", 81, {"bufferViews[2]", "ends at byte 93", "92"}},
         {"/bufferViews/2/byteOffset", 9007199254740992, {"bufferViews[2]"}},
@@ -384,7 +384,7 @@ TEST(Gltf, DecodedAccessorsCountTowardsTheLimitOfInput) {
     scene["meshes"][0]["primitives"] =
         json::array_t(100, R"({"attributes": {"POSITION": 0}, "mode": 5})"_json);
     expectError(gltf::glb(scene.dump(), squareBuffer()), {"makes the scene too large"});
-    // So does a mesh that is decoded once, each time that it is placed.
+    // A mesh that is decoded once also counts each time that it is placed.
     scene["meshes"][0]["primitives"] = json::array({scene["meshes"][0]["primitives"][0]});
     scene["nodes"] = json::array_t(3, json{{"mesh", 0}});
     scene["scenes"][0]["nodes"] = {0, 1, 2};

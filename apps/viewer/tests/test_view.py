@@ -79,7 +79,7 @@ def test_the_shadow_map_agrees_with_the_positions(session):
     assert q.min() > 0 and q.max() < 1
     behind = (q[:, 2] - map.depth[(q[:, 1] * 1024).astype(int),
                                   (q[:, 0] * 1024).astype(int)]) * map.light.shadow_depth_range
-    # Nothing stands before the first surface but by a texel's slope, and where a texel looks past an edge;
+    # Nothing is in front of the first surface, except by a texel's slope and where a texel misses an edge;
     # most of a lit face is that surface.
     assert np.percentile(behind, 5) > -1.0 and np.percentile(np.abs(behind), 30) < 0.3  # mm
 
@@ -204,7 +204,7 @@ def test_moving_pictures_look_like_those_at_rest(session):
     off, without = (np.abs(p - there).max(2) for p in (turned, bare))
     assert (off > 20).mean() < 0.01 and ((turned.max(2) > 0) != (ids > 0)).mean() < 0.003
     assert off[ids == EYES].mean() < 0.6 * without[ids == EYES].mean()
-    # Other light: none of the details, and every picture is shaded; what did not move is not drawn again.
+    # With other light there are no details, and every picture is shaded; only moved surfaces are drawn again.
     whole.prepare(*size)
     calls.clear()
     for expected in ["map"], ["map", "map"]:
@@ -242,7 +242,7 @@ def test_edges_become_smooth(session):
     rough = session.frame(160, 90).pixels
     smooth = session.smooth(160, 90)
     background = session.gbuffer(160, 90).material == 0
-    # Pixels of the outline are between head and background now, and elsewhere hardly anything changes.
+    # Pixels of the outline are now between head and background; elsewhere hardly anything changes.
     between = background & (smooth.max(2) > 8)
     assert background.any() and not rough[background].any() and 50 < between.sum() < 1500
     inside = np.abs(smooth.astype(int) - rough).max(2)[~background]
@@ -343,7 +343,7 @@ def test_the_mouse_takes_the_object_along():
     state.apply({"kind": "light", "dx": 0.1, "dy": -0.1})
     turned = look.lamps[0].azimuth - azimuth, look.lamps[0].elevation - elevation
     assert turned == pytest.approx((12, 12))
-    # The last of many motions is what comes back.
+    # Redo restores the state after the last of many motions.
     state.apply({"kind": "light", "dx": 0.1, "dy": 0.0})
     assert state.undo() and state.redo()
     assert shown.look.lamps[0].azimuth == pytest.approx(azimuth + 24)

@@ -1,4 +1,4 @@
-"""The viewer's guard: who gets in, whatever cookies other programs have set."""
+"""The viewer's guard: which requests are admitted, whatever cookies other programs have set."""
 import asyncio
 import socket
 
@@ -51,7 +51,7 @@ def let_in(guard):
     return headers[b"set-cookie"].decode().split(";")[0]
 
 
-# What other programs on 127.0.0.1 set: JSON, slashes, open quotes, no value, no name, other letters.
+# Cookies that other programs on 127.0.0.1 set: JSON, slashes, open quotes, no value, no name, other letters.
 OTHERS = ['prefs={"a":1}', "a/b=1", 'x="open', "alone", "=", ";;;", "name=\x01\xff", "pellucid_view_8350",
           "a=b=c"]
 

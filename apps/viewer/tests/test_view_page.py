@@ -258,7 +258,7 @@ def test_a_slider_changes_the_picture_and_builds_nothing(page):
     kernels = page.execute_script("return window.pelKernels")
     for share in (0.15, 0.85):
         assert differ(*act_and_compare(page, lambda to=share: click_slider(page, "slider-roughness", to)))
-    # Those built at rest may be counted now; test_view.py sees that sliders build none after that.
+    # Kernels built at rest may be counted now; test_view.py checks that sliders build none after that.
     assert page.execute_script("return window.pelKernels") <= kernels + 4
 
 

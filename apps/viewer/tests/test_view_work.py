@@ -1,4 +1,4 @@
-"""What goes on beside the viewer's pictures: the reference's thread, units of meshes, closed pages."""
+"""Background work of the viewer: the reference's thread, units of meshes, closed pages."""
 import asyncio
 import threading
 import time

@@ -24,7 +24,7 @@ class History:
         return copy.deepcopy({name: getattr(session, name) for name in KEPT if hasattr(session, name)})
 
     def note(self, session: Any, now: Optional[float] = None) -> None:
-        """After a change; changes in quick succession, as of a slider that is dragged, are one step."""
+        """Call after a change. Quickly following changes, such as those of a dragged slider, are one step."""
         now = time.monotonic() if now is None else now
         state = self._state(session)
         if state == self._now:

@@ -1,4 +1,4 @@
-"""The light of a look by NumPy alone: for the reference, and for pictures before any kernel is built."""
+"""The lighting of a look with NumPy only: for the reference, and for pictures before any kernel is built."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any

@@ -1,4 +1,4 @@
-"""What can be tuned in the viewer: one set of values, to be shown, kept as a preset and exported."""
+"""The settings of the viewer: one set of values, to be shown, stored as a preset and exported."""
 from __future__ import annotations
 
 import copy
@@ -150,7 +150,7 @@ PIGMENTS = "melanin", "eumelanin", "blood", "oxygenation", "epidermis"
 SKINS = (("Skin, pale", 0.009, 0.008), ("Skin, light", 0.026, 0.006), ("Skin, medium", 0.055, 0.013),
          ("Skin, brown", 0.082, 0.013), ("Skin, dark", 0.098, 0.026), ("Skin, very dark", 0.134, 0.037))
 
-# What a preset leaves as it is: lights and view.
+# Settings that a preset does not change: lights and view.
 KEPT_BY_PRESETS = ("lamps", "ambient", "surroundings", "surroundings_light", "surroundings_turn",
                    "shadow_size", "exposure", "curve", "shoulder", "mode", "white",
                    "target_error")

@@ -1,4 +1,4 @@
-"""What the viewer keeps between two runs: presets of one's own, and what was open last."""
+"""Data that the viewer keeps between two runs: the user's presets, and the last session."""
 from __future__ import annotations
 
 import json
@@ -63,8 +63,8 @@ def remember(memory: Memory, session: Any, **opened: Any) -> None:
 
 
 def recall(memory: Memory, session: Any) -> str:
-    """Shows what was remembered. Returns the mesh's file; "" where there is nothing, or no such file any
-    more, or it cannot be shown."""
+    """Shows the last session. Returns the mesh's file, or "" if there is none, it no longer exists, or it
+    cannot be shown."""
     last = memory.part("last")
     try:
         if not Path(last["mesh"]).is_file():
@@ -75,7 +75,7 @@ def recall(memory: Memory, session: Any) -> str:
         session.load(last["mesh"], last.get("subdivide"), last.get("up", "auto"))
     except (KeyError, TypeError, ValueError, OSError, PellucidError):
         return ""
-    for name in ("iris_texture", "surroundings"):  # files that a page was given went with that run
+    for name in ("iris_texture", "surroundings"):  # files dropped on the page were deleted with that run
         if getattr(look, name) not in ("", STUDIO) and not Path(getattr(look, name)).is_file():
             setattr(look, name, "")
     session.look, session.orbit = look, orbit

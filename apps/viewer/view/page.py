@@ -1,4 +1,4 @@
-"""The page: the picture, and panels of what can be tuned."""
+"""The page: the picture, and the panels of settings."""
 from __future__ import annotations
 
 import functools
@@ -99,7 +99,7 @@ class MeshPanel(Panel):
         return True
 
     def question(self) -> None:
-        """Where the object is too small or too large for its unit to be right: which one it is."""
+        """If the object is too small or too large for its unit to be right, asks for the unit."""
         session = self.viewer.session
         better = session.better_unit()
         if better is None:
@@ -264,14 +264,14 @@ class Page:
 
     @property
     def opened(self) -> dict[str, Any]:
-        """Whether a panel is open, by its name; those that nobody folded are not in it."""
+        """Whether a panel is open, by its name; contains only panels that the user has opened or closed."""
         return self.viewer.memory.part("open")
 
     def fold(self, name: str, open: bool) -> None:
         self.opened[name] = open
 
     def follow(self) -> None:
-        """Has the widgets show values that another one has set."""
+        """Updates the widgets to values that another widget has set."""
         for value, element in self.shown:
             element.set_value(value())
 

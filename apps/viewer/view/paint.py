@@ -20,7 +20,7 @@ LARGEST = 4096  # texels a side
 
 @dataclasses.dataclass
 class Paint:
-    """What the renderer draws on a mesh by its texture coordinates. Row 0 of a picture is at v = 0."""
+    """Pictures drawn on a mesh by its texture coordinates. Row 0 of a picture is at v = 0."""
 
     albedo: list[NDArray[np.uint8]] = dataclasses.field(default_factory=list)  # (n, m, 3), sRGB
     layers: Optional[NDArray[np.int32]] = None  # per vertex: which picture of albedo; -1: none
@@ -43,8 +43,8 @@ def read(source: Any) -> NDArray[np.uint8]:
 
 
 def painted(paint: Paint, mesh: Mesh, kind: str, picture: NDArray[np.uint8]) -> tuple[Mesh, Paint]:
-    """With another picture on skin: `kind` is "albedo", in place of the mesh's own, or "normal". Raises
-    ValueError without texture coordinates."""
+    """A copy with another picture on skin: `kind` is "albedo", which replaces the mesh's own, or "normal".
+    Raises ValueError without texture coordinates."""
     if mesh.uvs is None:
         raise ValueError("this mesh has no texture coordinates; OBJ, PLY and glTF files can have some")
     made = dataclasses.replace(paint)
@@ -61,7 +61,7 @@ def painted(paint: Paint, mesh: Mesh, kind: str, picture: NDArray[np.uint8]) -> 
 
 
 def load(path: Any, subdivide: Optional[int], up: str) -> tuple[Mesh, Paint, str]:
-    """A mesh, its pictures, and what to say of its materials. Raises what load_mesh and load_gltf raise."""
+    """A mesh, its pictures, and a text about its materials. Raises as load_mesh and load_gltf do."""
     if Path(path).suffix.lower() not in (".glb", ".gltf"):
         return load_mesh(path, subdivide, up), Paint(), ""
     scene = load_gltf(path)

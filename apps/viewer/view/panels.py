@@ -1,4 +1,4 @@
-"""The parts of the page that set what is shown."""
+"""The panels of the page."""
 from __future__ import annotations
 
 from dataclasses import fields
@@ -65,7 +65,7 @@ class PicturePanel(Panel):
         self.rebuild()
 
     def of_preset(self, name: str) -> Optional[Look]:
-        """The preset's material with the light and the view of now; None where it is damaged."""
+        """The preset's material with the current light and view; None if the preset is damaged."""
         try:
             new = Look.from_dict(PRESETS.get(name) or self.viewer.memory.part("presets").get(name, {}))
         except (TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""A shader and its last settings: what did not change is not set again, and compiles nothing again."""
+"""A shader and its last settings: unchanged settings are not set again, and cause no compilation."""
 from __future__ import annotations
 
 import contextlib
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 OUTPUTS = {"diffuse": "out_diffuse", "specular": "out_specular", "deep_scatter": "out_deep_scatter",
            "thickness": "out_thickness"}
 
-PATIENCE = 0.3  # seconds that a first picture waits for kernels before it does without
+PATIENCE = 0.3  # seconds that a first picture waits for kernels
 
 
 def _yield_to_pictures() -> None:
@@ -99,7 +99,7 @@ class Pass:
                     self.shader.set_eye(id, eyes.get(id))
                 if id in eyes:
                     self.shader.set_iris_texture(id, iris)
-            self._set.pop("texture", None)  # which went with its material
+            self._set.pop("texture", None)  # removed with its material
 
         state = {k: (m._data.tobytes(), id(m._profile)) for k, m in materials.items()}
         self._update("materials",
@@ -132,7 +132,7 @@ class Pass:
                          len(lights), [m.specular > 0 for m in materials.values()],
                          any(look.deep_scatter), look.transmission > 0)
             if structure != self._structure and not session.background:
-                # Only then may kernels have to be compiled: with progress.
+                # Kernels can only be missing in this case: warm up with progress.
                 warm_up_programs(self.device, shaders=[self.shader])
                 self._structure = structure
             if session.background and session.sketched:
@@ -152,7 +152,7 @@ class Pass:
 
     def _sketch(self, session: Session, g: GBuffer, look: Look, outputs: tuple[str, ...], small: bool,
                 albedo: bool) -> Pass:
-        """Lambert's light without Pellucid, into memory of its own: the shader may be in use."""
+        """Lambert shading without Pellucid, into separate memory because the shader may be in use."""
         seen = g.material > 0
         shown = np.zeros((*seen.shape, 3), np.float32)
         shown[seen] = irradiance_at(session, look, g.position[seen], g.normal_shading[seen], small)
@@ -179,7 +179,7 @@ class Pass:
         tints = albedo and tuple(look.albedo) != (1.0, 1.0, 1.0)
         if tints:  # host work: only where a tint is set
             if self.outputs.get("albedo") is None or self.outputs["albedo"].shape != g.albedo.shape:
-                # As far apart as the renderer's own: kernels belong to a layout.
+                # With the same strides as the renderer's image, because kernels depend on the layout.
                 self.outputs["albedo"] = np.zeros(
                     (height, width, g.albedo.strides[1] // 4), np.float32)[..., :3]
                 self._set.pop("albedo", None)

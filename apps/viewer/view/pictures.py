@@ -1,4 +1,4 @@
-"""What each mode of the viewer shows."""
+"""The picture of each mode of the viewer."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
@@ -68,7 +68,7 @@ def chosen_method(p: Pass, look: Look) -> str:
 
 
 def _spread(mask: NDArray[Any]) -> NDArray[Any]:
-    """To whole tiles."""
+    """Padded to whole tiles."""
     height, width = mask.shape
     rows, columns = -(-height // _TILE), -(-width // _TILE)
     whole = np.zeros((rows * _TILE, columns * _TILE), bool)
@@ -105,7 +105,7 @@ def tiles(session: Session, look: Look, width: int, height: int,
     shown[_spread(material > 0)] = 0.08
     shown[_spread(material == SKIN)] = 0.25 * color
     shown[tapped] = color
-    shade = np.clip(q.outputs["radiance"].mean(2, keepdims=True), 0, 1)  # so that one sees where one is
+    shade = np.clip(q.outputs["radiance"].mean(2, keepdims=True), 0, 1)  # for orientation
     shown *= 0.6 + 0.4 * shade
     shown[::_TILE] *= 0.6
     shown[:, ::_TILE] *= 0.6

@@ -1,4 +1,4 @@
-"""What the pixel below the mouse is made of."""
+"""The properties of the pixel below the mouse."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Optional

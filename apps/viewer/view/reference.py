@@ -1,8 +1,7 @@
 """The picture that every diffusion method approximates, for what the viewer shows.
 
-Irradiance is made at the vertices, with the shadow maps there; the surface integral then
-spreads it. Edges of shadows are therefore as sharp as the mesh is fine: `pellucid reference` traces them
-exactly.
+Irradiance is computed at the vertices, with shadows from the shadow maps; the surface integral then spreads
+it. So shadow edges are only as sharp as the mesh is fine; `pellucid reference` traces them exactly.
 """
 from __future__ import annotations
 
@@ -102,8 +101,8 @@ def reference(session: Session, name: str, look: Look, width: int, height: int,
               small: bool = False) -> NDArray[np.float32]:
     """Diffuse radiance of the skin that is seen, (height, width, 3); 0 elsewhere.
 
-    Kept by `name` until light, camera or profile change. Where the session has somebody to report to, this
-    is what is known so far.
+    Kept by `name` until light, camera or profile change. If the session has a `report` callback, this is the
+    result so far.
     """
     g = session.gbuffer(width, height, small)
     lights = [(lamp.azimuth, lamp.elevation, lamp.color, lamp.intensity, lamp.shadow, lamp.on)

@@ -51,14 +51,14 @@ def _pixel(view_projection: NDArray[np.float64], height: int) -> float:
 
 
 def _flipped(view_projection: ArrayLike, right: float = 0.0, down: float = 0.0) -> bytes:
-    """For OpenGL, with the first row on top, moved by so many parts of the half picture."""
+    """For OpenGL, with the first row on top, shifted by fractions of half the picture."""
     turned = np.diag([1.0, -1.0, 1.0, 1.0])
     turned[:2, 3] = right, down
     return (turned @ np.asarray(view_projection, np.float64)).T.astype("f4").tobytes()
 
 
 def _box(seen: NDArray[np.bool_], size: tuple[int, int]) -> tuple[int, ...]:
-    """Left, top, width and height of what is `seen` in a small picture, in one of `size`; with a margin."""
+    """Left, top, width, height in a picture of `size` of the part `seen` in a small one, with a margin."""
     box = [0, 0, 0, 0]
     for i, n in enumerate(size):
         places, margin = np.flatnonzero(seen.any(i)) * n // seen.shape[1 - i], n // 20
@@ -157,7 +157,7 @@ class Renderer:
         self._bumps_up = 0.0 if paint.normal is None else 1.0 if paint.v_up else -1.0
 
     def _upload(self, buffer: Any, triangles: NDArray[np.uint32]) -> list[Any]:
-        """What draws a G-buffer, a shadow map, and a picture without and with details; and its memory."""
+        """Vertex arrays for a G-buffer, a shadow map, a picture without and with details; their indices."""
         indices = self.context.buffer(triangles.tobytes())
         draw = self.context.vertex_array(self._gbuffer_program,
             [(buffer, "3f 3f 3f 2f 3f", "in_position", "in_normal", "in_albedo", "in_material", "in_uv")],
@@ -255,8 +255,8 @@ class Renderer:
                 program["rest"].write(_flipped(rest))
             self._use(program, ("shaded", "depths", "details", "rest_depths"),
                       own + (self._details if rest is not None else []))
-            # First what faces the eye, which hides the rest; y is turned round. A coarse mesh has a few
-            # triangles that are turned over; their holes are closed where the picture serves longer.
+            # First the front sides, which hide the rest (y is flipped). A coarse mesh has a few flipped
+            # triangles; their holes are closed if the picture is used for longer.
             self.context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
             for self.context.cull_face in ("front", "back") if inside or again else ("front",):
                 self._levels[level][2 if rest is None else 3].render()
@@ -273,7 +273,7 @@ class Renderer:
 
     def keep_details(self, pixels: NDArray[np.uint8], g: GBuffer, view_projection: NDArray[np.float64],
                      rough: NDArray[np.uint8], eyes: list[int]) -> None:
-        """Takes what a picture at rest shows beyond a rough one of this view; of the ids `eyes` all of it."""
+        """Keeps the details of a picture at rest beyond a rough one of this view; all of the ids `eyes`."""
         whole = np.isin(g.material, eyes)[..., None]
         more = np.clip(pixels.astype(np.int16) - rough, -32, 32)  # more is a hole in the rough picture
         more = 128 + np.where(whole, pixels, more) // 2

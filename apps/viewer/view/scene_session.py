@@ -100,7 +100,7 @@ class SceneSession:
                      bool(made.stats.stands_in))
 
     def prepare(self, width: int, height: int) -> None:
-        """Nothing: a scene's sliders need no other kernels."""
+        """Does nothing: a scene's sliders need no other kernels."""
 
     def save(self, path: Any) -> None:
         """Writes the scene as it is shown."""

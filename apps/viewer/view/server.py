@@ -24,22 +24,22 @@ from .session import Frame
 
 T = TypeVar("T")
 SETTLED = 0.2  # seconds without a motion, after which the picture is drawn in full
-# Seconds between pictures that are too many, while a view or a light moves; MUCH of them are too few. For a
-# light's sake sides become no smaller than LEAST_LIGHT.
+# The picture becomes smaller above this many seconds per picture, while a view or a light moves, and larger
+# below MUCH of them. While a light moves, its sides are scaled by no less than LEAST_LIGHT.
 SLOW, SLOW_LIGHT, MUCH, LEAST_LIGHT = 1 / 20, 1 / 26, 0.7, 0.8
 
 
 class Pace:
-    """How many pixels are shaded and shown while something moves: so few that pictures come in time."""
+    """Chooses how many pixels are shaded and shown during motion, so that pictures come in time."""
 
-    # Scale of the sides, and of how many pixels of a row or column one is shaded.
+    # Scale of the sides, and n: one of n pixels of a row or column is shaded.
     STEPS = ((1.0, 1), (1.0, 2), (1.0, 3), (1.0, 4), (0.8, 4), (0.65, 4), (0.5, 4))
 
     def __init__(self) -> None:
         self._step = 2
         self._last: Optional[float] = None
         self._periods: list[float] = []
-        self._rest = 0  # pictures for which larger ones are not tried: they were too slow
+        self._rest = 0  # number of pictures before larger ones, which were too slow, are tried again
 
     @property
     def step(self) -> tuple[float, int]:
@@ -65,7 +65,7 @@ class Pace:
         elif self._step > 0 and not self._rest:
             (larger, fewer), (scale, every) = self.STEPS[self._step - 1], self.step
             pixels = (larger * every / (scale * fewer))**2
-            if period * (0.5 + 0.5 * pixels) < MUCH * slow:  # about half of the time goes into pixels
+            if period * (0.5 + 0.5 * pixels) < MUCH * slow:  # about half of the time is spent on pixels
                 self._step -= 1
 
 
@@ -77,7 +77,7 @@ class Viewer:
         self._open = open_device
         self.memory = Memory(standard_file()) if memory is None else memory
         self.changes = 0
-        self._preparing: Optional[int] = None  # kernels, after that many changes: the next one ends it
+        self._preparing: Optional[int] = None  # kernels, at this change count: the next change ends it
         self._thread = ThreadPoolExecutor(1, "pellucid-view")  # OpenGL contexts belong to a thread
         self._opening = self._thread.submit(lambda: make(self._device()))
         self._folder, self._kept = tempfile.TemporaryDirectory(), 0
@@ -100,7 +100,7 @@ class Viewer:
         self.session: Any = self._opening.result()  # a Session or a SceneSession
         self.session.report = self._advanced
         self._history = History(self.session)
-        # So that programs and memory are there when a page asks for the first picture.
+        # Prepares programs and memory before a page requests the first picture.
         self._thread.submit(lambda: self.session.frame(960, 540))
         return self
 
@@ -125,7 +125,7 @@ class Viewer:
         return await asyncio.get_running_loop().run_in_executor(self._thread, work)
 
     def changed(self, moving: bool = False) -> None:
-        """Tells every page to draw again. `moving`: soon once more, so that a rougher picture serves now."""
+        """Tells every page to draw again. `moving`: more changes follow, so a rougher picture suffices."""
         now = time.monotonic()
         self._moved = now if moving else 0.0
         self.changes += 1
@@ -150,7 +150,7 @@ class Viewer:
         return time.monotonic() - self._moved < SETTLED
 
     def undo(self) -> bool:
-        """Takes the last change back; whether there was one."""
+        """Undoes the last change. Returns whether there was one."""
         self._history.note(self.session)
         return self._history.undo(self.session)
 
@@ -252,8 +252,8 @@ class Viewer:
         return None
 
     async def _prepare(self, width: int, height: int) -> None:
-        """Builds kernels while nobody wants a picture; the one that is being built is waited for, the rest
-        comes at the next rest."""
+        """Builds kernels while no page requests a picture. A request waits only for the kernel that is being
+        built; the others are built at the next rest."""
         self._preparing = self.changes
         try:
             await self.on_thread(lambda: self.session.prepare(width, height))
@@ -263,8 +263,8 @@ class Viewer:
             self._preparing, self.busy = None, ""
 
     async def stream(self, socket: Any) -> None:
-        """Sends pictures to one page until it goes; at most one that the page has not taken yet, so that
-        both work at the same time."""
+        """Sends pictures to one page until it is closed; at most one picture is in flight, so that both sides
+        work at the same time."""
         event, size, news = asyncio.Event(), [960, 540], asyncio.Event()
         sent = taken = 0
         self._loop = asyncio.get_running_loop()
@@ -335,7 +335,7 @@ class Viewer:
                     except asyncio.TimeoutError:
                         taken = sent
                 if made is not None and made[0].stands_in:
-                    sample = 0  # until the kernels are there, one picture is as good as eight
+                    sample = 0  # until the kernels are ready, one picture is as good as eight
                 elif made is not None and not small and sample >= self.session.samples and not event.is_set():
                     await self._prepare(width, height)
                 if made is not None and made[0].stands_in and not event.is_set():

@@ -1,4 +1,4 @@
-"""Mesh, look and camera in, picture out: what the page shows, and what a program can use without it."""
+"""Mesh, look and camera in, picture out: for the page, and for programs without a page."""
 from __future__ import annotations
 
 import contextlib
@@ -57,21 +57,21 @@ class Shaded:
     depth: NDArray[np.float32]
     matrix: NDArray[np.float64]  # of the camera
     inside: bool  # whether back sides are seen
-    left: int = 2  # so many more views
+    left: int = 2  # number of further views
 
 
 # (specular, roughness) of what is not skin, as in the demo.
 # Eyes: that of their film of tears.
 _GLOSS = {EYES: (0.0, 1.0), RIGHT_EYE: (0.0, 1.0), TEETH: (0.05, 0.2), TONGUE: (0.05, 0.2), CUT: (0.0, 1.0)}
-COSTLY = "reference", "error", "tiles"  # modes whose pictures take long
+COSTLY = "reference", "error", "tiles"  # modes with slow pictures
 SAMPLES = 8  # pictures that are averaged for smooth edges
 UNITS = {1.0: "millimetres", 10.0: "centimetres", 25.4: "inches", 1000.0: "metres"}
 PLAUSIBLE = 30.0, 3000.0  # mm: size of an object on which scattering in skin shows
 
 
 def eyes_of(mesh: files.Mesh, look: Optional[Look] = None, mm: float = 1.0) -> dict[int, Eye]:
-    """The eyes of a head of the package by material id: an adult's, as large as its balls, with what the
-    look says of them. `mm`: millimetres per unit."""
+    """The eyes of a head of the package by material id: an adult's eyes, scaled to its balls, with the
+    settings of the look. `mm`: millimetres per unit."""
     look = Look() if look is None else look
     found = {}
     for id, ball in zip((EYES, RIGHT_EYE), mesh.eyes):
@@ -113,7 +113,7 @@ _HALTON = list(zip((1 / 2, 1 / 4, 3 / 4, 1 / 8, 5 / 8, 3 / 8, 7 / 8),
 
 
 def _kept(cache: dict[Any, T], key: Any, most: int, make: Callable[[], T]) -> T:
-    """What belongs to the key, made once; the oldest go."""
+    """The value of a key, made once; the oldest values are dropped."""
     if key not in cache:
         made = make()
         while len(cache) >= most:
@@ -136,7 +136,7 @@ class Session:
         self.told = ""  # of the materials of a file
         self.orbit = Orbit()
         self.look = Look()
-        self.other: Optional[Look] = None  # on the right of the wipe
+        self.other: Optional[Look] = None  # the look on the right of the dividing line
         self.against = ""  # a method: the right side is the left one with it, in place of `other`
         self.wipe = 0.5
         self.beside = False  # two whole pictures, in place of the wipe
@@ -196,7 +196,7 @@ class Session:
         topology = MeshTopology(self.device, mesh.triangles, len(mesh.positions), weld="exact",
                                 positions=mesh.positions)
         curvature = BESIDE.submit(topology.curvature, mesh.positions, mesh.normals, smoothing_passes=2)
-        # A first picture does without, if kernels have to be built for it.
+        # The first picture does without curvature if kernels have to be built for it.
         known = not self.sketched or wait([curvature], PATIENCE).done
         self.renderer.set_mesh(mesh, curvature.result() if known else 0.0, self.mm, paint=paint)
         self._curvature = None if known else curvature
@@ -207,7 +207,7 @@ class Session:
             self.cancel_reference(name)
 
     def _forget(self) -> None:
-        """What was made of the mesh before."""
+        """Drops everything that was derived from the previous mesh."""
         for made in (self._maps, self._gbuffers, self._textures):
             made.clear()
         self._rest = self._detailed = self._shaded = None
@@ -265,7 +265,7 @@ class Session:
 
     @property
     def work(self) -> str:
-        """What goes on beside the pictures, for the page."""
+        """The state of background work, for the page."""
         running = [made.fraction for made in self.references.values() if made.fraction < 1]
         return f"reference: {100 * min(running):.0f} % (another picture cancels it)" if running else ""
 
@@ -343,14 +343,14 @@ class Session:
         return made[1]
 
     def drawn_state(self, width: int, height: int, small: bool = False) -> tuple[Any, ...]:
-        """What a G-buffer depends on."""
+        """The settings that a G-buffer depends on."""
         _, matrix = self.camera(width / height)
         # The reference has the mesh's own normals.
         pores = 0.0 if self.look.mode in ("error", "reference") else self.look.pores
         return (matrix.tobytes(), width, height, pores, self._level(small), self._shift)
 
     def materials(self, look: Look) -> dict[int, Material]:
-        """What the ids of the mesh are made of."""
+        """The materials of the mesh by id."""
         skin = Material(scattering=look.method, specular_model="ggx" if look.ggx else "ksk")
         for value in fields(MaterialValues):
             setattr(skin, value.name, getattr(look, value.name))
@@ -399,8 +399,8 @@ class Session:
 
     @staticmethod
     def ambient(look: Look) -> float:
-        """Irradiance / pi from everywhere; at 0 so little that nobody sees it: a frame without any needs
-        other kernels."""
+        """Irradiance / pi from everywhere. For 0 it is a value too small to see, because a frame without
+        ambient light needs other kernels."""
         return max(look.ambient, 1e-6)
 
     def surroundings(self, look: Look) -> Optional[tuple[NDArray[np.float32], NDArray[np.float32]]]:
@@ -483,7 +483,7 @@ class Session:
     def _shade_views(self, looks: list[Look], width: int, height: int,
                      small: int) -> tuple[list[NDArray[np.uint8]], Pass, float]:
         """Pictures of the looks, the pass of the first, and the seconds that Pellucid took. While only the
-        camera moves, shaded pictures serve three times."""
+        camera moves, each shaded picture is used three times."""
         key = (width, height, small, [look.copy() for look in looks])
         kept, (eye, matrix) = self._shaded, self._view
         # The last row is the direction of view.
@@ -507,8 +507,8 @@ class Session:
         return [pixels for pixels, _ in made], made[0][1], seconds
 
     def prepare(self, width: int, height: int) -> None:
-        """Builds the kernels that a slider of material will want when it leaves 0 or comes to it, so that
-        none has to wait for them. Keeps what moving pictures take from the one at rest."""
+        """Builds the kernels that a material slider needs when it leaves or reaches 0, so that no slider
+        waits for them. Keeps the details that moving pictures take from the picture at rest."""
         if self.look.mode in COSTLY:
             return
         g, last = self.shown, self.last_pass
@@ -534,7 +534,7 @@ class Session:
         self._prepared = structure
 
     def right(self) -> Optional[Look]:
-        """What is shown on the right, if anything."""
+        """The look shown on the right, if any."""
         if not self.against:
             return self.other
         look = self.look.copy()
@@ -564,7 +564,7 @@ class Session:
         return both
 
     def _mean(self, pixels: NDArray[np.uint8], sample: int) -> NDArray[np.uint8]:
-        """Of this picture and those since sample 0, in light, not in bytes."""
+        """The mean of this picture and those since sample 0, of radiance, not of bytes."""
         if sample == 0 or self._sum is None or self._sum[1].shape != pixels.shape:
             self._sum = (1, LINEAR[pixels])
             return pixels

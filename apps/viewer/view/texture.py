@@ -1,4 +1,4 @@
-"""Scattering in texture space: light that falls on the skin, drawn into its texture and scattered there."""
+"""Scattering in texture space: irradiance of the skin, drawn into its texture and scattered there."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Texture:
-    """The scattered light of a mesh, made again for new light or profile. ValueError: it has no UVs."""
+    """The scattered light of a mesh, updated for a new light or profile. ValueError: the mesh has no UVs."""
 
     def __init__(self, session: Session, size: int) -> None:
         mesh = session.mesh

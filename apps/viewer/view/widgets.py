@@ -72,8 +72,8 @@ class Panel:
         self.viewer.changed()
 
     async def keep_file(self, e: events.UploadEventArguments, read: Callable[[Any], Any]) -> str:
-        """Keeps a file that was given to the page, and returns its path; if `read` raises, says why and
-        returns ""."""
+        """Stores a file that was dropped on the page, and returns its path; if `read` raises, shows the
+        reason and returns ""."""
         path = self.viewer.keep(e.file.name, await e.file.read())
         try:
             await self.viewer.on_thread(lambda: read(path))

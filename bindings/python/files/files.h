@@ -1,4 +1,4 @@
-// What the files of this module share: numbers go to Python as arrays, structures as their bytes.
+// Shared by the files of this module: numbers go to Python as arrays, structures as their bytes.
 #pragma once
 #include <pybind11/numpy.h>
 

@@ -27,7 +27,7 @@ class Gltf {
         made_ = io::importGltf(path, {profiles, unitMm, lights});
     }
 
-    // Of each material: name, what it was taken for, structure, profile or None, picture or None.
+    // For each material: name, class, structure, profile or None, picture or None.
     py::dict parts() const {
         const io::MeshData& mesh = made_.gltf.mesh;
         const auto vertices = py::ssize_t(mesh.vertexCount());

@@ -155,8 +155,8 @@ Bytes toneMapped(const Pixels& rgb, float exposure, float shoulder, const std::s
     return array(bytes, {rgb.shape(), rgb.shape() + rgb.ndim()});
 }
 
-// Where each module has a C++ library of its own, as in wheels, pybind11's translator knows the exceptions
-// of the first loaded module alone: this one needs its own. Those registered later are asked first.
+// If each module has its own C++ library, as in wheels, pybind11's translator only recognises exceptions of
+// the first loaded module, so this module needs its own. Translators registered later are tried first.
 void translateExceptions(std::exception_ptr pending) {
     try {
         if (pending) std::rethrow_exception(pending);

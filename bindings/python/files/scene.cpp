@@ -1,4 +1,4 @@
-// Scenes for Python: what `pellucid shade` reads and shades, as an object whose structures Python changes.
+// Scenes for Python: the scenes of `pellucid shade`, as an object whose structures Python can change.
 
 #include <pybind11/stl.h>
 
@@ -153,7 +153,7 @@ class Scene {
     }
 
   private:
-    // Materials that the file does not have have no files of their own.
+    // Materials that are not in the file have no profile or texture files.
     io::SceneFile changed(const State& state) const {
         const auto& [materials, lights, ambient, camera, options] = state;
         io::SceneFile scene = scene_;
@@ -181,7 +181,7 @@ class Scene {
         onDevice_.reset();
         gbuffer_ = std::move(image);
     }
-    // Kept from call to call, so that only what changed is set again.
+    // Kept from call to call, so that only changed settings are set again.
     io::SceneFrame& frameFor(PelDevice device, const io::SceneFile& scene,
                              const std::vector<PelImageSlot>& outputs) {
         if (!onDevice_ || onDevice_->device.get() != device) onDevice_.emplace(device);

@@ -13,7 +13,7 @@ namespace pel::python {
 namespace {
 using pellucid::io::BatchManifest;
 
-// By `make()`; what is wrong with it is a ValueError.
+// Made by `make()`; its errors become ValueError.
 template <class Make>
 BatchManifest manifest(Make&& make) {
     try {

@@ -14,10 +14,10 @@ constexpr auto signalPeriod = std::chrono::milliseconds(50);
 
 pid_t opener = 0;  // the process that first used OpenCL
 
-// The one that ends the interpreter, which releases objects meanwhile.
+// The thread that ends the interpreter, which releases objects while it does so.
 std::atomic<std::thread::id> endingThread{};
 
-// What a progress callback raised, kept until the cancelled call has returned on the same thread.
+// The exception of a progress callback, kept until the cancelled call has returned on the same thread.
 thread_local std::unique_ptr<py::error_already_set> raised;
 
 thread_local std::shared_ptr<Cancel> watched;
@@ -30,9 +30,9 @@ bool interpreterGoes() {
 #endif
 }
 
-// Until version 3.14 CPython ends other threads that ask for the GIL while the interpreter goes, by
-// pthread_exit, which unwinds C++ and stops the whole process at the first function that may not be left so.
-// Nobody waits for such threads: they stay here, for the end of the process.
+// Before version 3.14, CPython ends other threads that request the GIL during interpreter shutdown with
+// pthread_exit, which unwinds C++ frames and aborts the process at the first noexcept function. No thread
+// joins them, so they block here until the process ends.
 [[noreturn]] void stayHere() {
     for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
 }
@@ -43,13 +43,13 @@ auto takeGil(Take&& take) {
     if (gone && std::this_thread::get_id() != endingThread.load()) stayHere();
     try {
         return take();
-        // nothing else comes out of CPython; leaving this block without throwing on stops the process, too
+        // only pthread_exit gets here; leaving this block without rethrowing would abort the process, too
     } catch (...) {
         stayHere();
     }
 }
 
-// Also where long work notices Ctrl-C. 0 cancels.
+// Long work also checks for Ctrl-C here. 0 cancels.
 int onProgress(void* user, double fraction, const char* what) {
     if (watched && watched->asked()) return 0;
     WithGil gil;
@@ -88,7 +88,7 @@ void refuseForked() {
                         "multiprocessing.get_context(\"spawn\"), or open no device before"};
 }
 
-// Raises what a progress callback on this thread raised (or Ctrl-C seen there), if anything. Needs the GIL.
+// Raises the pending exception of a progress callback on this thread (or its Ctrl-C), if any. Needs the GIL.
 static void raiseProgressException() {
     if (!raised) return;
     const std::unique_ptr<py::error_already_set> error = std::move(raised);
@@ -122,7 +122,7 @@ void waitInterruptibly(const pellucid::Event& event) {
             PelError error;
             while ((error = pelEventIsDone(event.get(), &done)) == PEL_SUCCESS && !done &&
                    Clock::now() < look) {
-                // Sleeping a sixteenth of the time waited so far finds the end at most that much late.
+                // Sleeping a sixteenth of the time waited so far delays the result by at most that much.
                 const auto nap = (Clock::now() - start) / 16;
                 std::this_thread::sleep_for(std::clamp<Clock::duration>(nap, std::chrono::microseconds(5),
                                                                         std::chrono::milliseconds(2)));

@@ -49,7 +49,7 @@ void bindDevice(py::module_& module) {
         logCallback = callback;
         pelSetLogCallback(callback.is_none() ? nullptr : onLog, nullptr);
     });
-    // The interpreter's end must find no Python object in static storage.
+    // No Python object may be left in static storage when the interpreter ends.
     py::module_::import("atexit").attr("register")(py::cpp_function([] {
         pelSetErrorCallback(nullptr, nullptr);
         pelSetLogCallback(nullptr, nullptr);

@@ -1,6 +1,6 @@
-// What the files of the native module share: errors as Python exceptions, the GIL let go during calls,
-// waiting that Ctrl-C can end, and structures passed as their bytes. Arguments are Python's: whoever calls
-// keeps them alive. Everything a user sees is in the Python files beside this.
+// Shared by the files of the native module: errors as Python exceptions, release of the GIL during calls,
+// waits that Ctrl-C can end, and structures passed as their bytes. The caller keeps the Python arguments
+// alive. The public interface is in the Python files next to this folder.
 #pragma once
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -24,7 +24,7 @@ struct CallError {
     std::string message;
 };
 
-// Lets go of the GIL, and takes it again at the end.
+// Releases the GIL in this scope.
 class WithoutGil {
   public:
     WithoutGil() : state_(PyEval_SaveThread()) {}
@@ -36,7 +36,7 @@ class WithoutGil {
     PyThreadState* state_;
 };
 
-// Holds the GIL, on a thread that Python may not know, as in callbacks.
+// Holds the GIL in this scope, also on threads that Python did not create, as in callbacks.
 class WithGil {
   public:
     WithGil();
@@ -48,26 +48,26 @@ class WithGil {
     PyGILState_STATE state_;
 };
 
-// To be called before OpenCL is first used: its threads do not come along into a process that is forked
-// later, so that calls there would wait for ever; they throw instead.
+// Call this before OpenCL is first used. A process that is forked later does not inherit OpenCL's threads:
+// calls there would wait for ever, so they throw instead.
 void opensDevices();
 void refuseForked();
 
-// Runs `body` without the GIL and throws its error. An exception that a progress callback raised comes
-// first, KeyboardInterrupt among them: the library tells its progress where work is long.
+// Runs `body` without the GIL and throws its error. An exception of a progress callback, such as
+// KeyboardInterrupt, takes precedence: long work in the library reports its progress.
 void call(const std::function<PelError()>& body);
 
-// Waits without the GIL, looking for Ctrl-C meanwhile; the work itself goes on when that comes.
+// Waits without the GIL and checks for Ctrl-C, which ends the wait but not the work.
 void waitInterruptibly(const pellucid::Event& event);
 
-// Whether a signal handler raised something, such as KeyboardInterrupt: the body of a `call` that takes long
-// asks, ends early, and py::error_already_set is thrown after it.
+// Whether a signal handler raised an exception, such as KeyboardInterrupt. The body of a long `call` checks
+// this and returns early; py::error_already_set is then thrown.
 bool signalled();
 
-// Done when everything is that was given to the device before.
+// An event that is done when all work submitted to the device before is done.
 pellucid::Event markerOf(const pellucid::Device& device);
 
-// On the thread that ends the process: others that ask for the GIL from here on wait for ever.
+// Called by the thread that ends the process: other threads that request the GIL from now on wait for ever.
 void interpreterEnds();
 
 // The bytes of a C structure that a Python object holds; throws unless they are one T.
@@ -93,8 +93,8 @@ inline uintptr_t address(void* p) {
     return reinterpret_cast<uintptr_t>(p);
 }
 
-// Owner of what a Python object holds of the library. The last reference to a device waits for its queue,
-// where a host's callbacks and events may need the GIL: nothing is let go with the GIL held.
+// Owns a library object for a Python object, and releases it without the GIL: the last reference to a device
+// waits for its queue, whose callbacks and events may need the GIL.
 template <class T>
 struct DeletedWithoutGil {
     void operator()(T* object) const {
@@ -119,7 +119,7 @@ struct Device {
     PelDevice get() const { return handle.get(); }
 };
 
-// Ends the call of the thread that watches it, where that call next reports its progress.
+// Cancels the call of the thread that watches it, at the call's next progress report.
 class Cancel : public std::enable_shared_from_this<Cancel> {
   public:
     void watch();
@@ -141,8 +141,8 @@ using ImageView =
     std::tuple<pellucid::Buffer, uint32_t, uint32_t, uint32_t, uint64_t, uint64_t, uint64_t, uint64_t>;
 PelImageDesc imageDesc(const ImageView& v);
 
-// Argument<C>: a parameter of type C of the C interface, made of the Python value that stands for it. Numbers
-// and enumerations are integers or floats.
+// Argument<C>: converts a Python value to a parameter of type C of the C interface. Numbers and enumerations
+// are integers or floats.
 template <class C>
 struct Argument {
     using Python = std::conditional_t<std::is_enum_v<C>, uint32_t, C>;
@@ -150,7 +150,7 @@ struct Argument {
     C get() { return value; }
     C value;
 };
-// Numbers in memory, and elements of arrays, are addresses; single structures are their objects, or None.
+// Pointers to numbers and arrays are passed as addresses; single structures as their objects, or None.
 template <class T>
 struct Argument<T*> {
     static constexpr bool address =
@@ -242,7 +242,7 @@ auto function(PelError (*f)(A...)) {
     };
 }
 
-// The same for an `f` whose last parameter is where its result goes: `result(value)` is returned.
+// The same for an `f` whose last parameter is an output: returns `result(value)`.
 template <class Result, class... A, size_t... I>
 auto functionWithout(PelError (*f)(A...), Result result, std::index_sequence<I...>) {
     using All = std::tuple<A...>;
@@ -301,7 +301,7 @@ auto maker(PelError (*f)(A...)) {
     return functionOf(f, HandleResult<Wrapper, H>());
 }
 
-// An object whose making needs more than arguments passed on: `create(&handle)`.
+// An object whose creation needs more than forwarded arguments: `create(&handle)`.
 template <class Wrapper, class Create>
 Wrapper wrapped(Create&& create) {
     decltype(std::declval<const Wrapper&>().get()) handle = nullptr;

@@ -6,7 +6,7 @@
 
 namespace pel::python {
 
-// A shader, and a lock by which calls wait for those of other threads, or one that Ctrl-C left behind.
+// A shader, and a lock that serialises its calls, including a call that goes on after Ctrl-C.
 struct Shader {
     std::unique_ptr<std::recursive_mutex> busy = std::make_unique<std::recursive_mutex>();
     pellucid::Shader handle;
@@ -42,7 +42,7 @@ auto structures(PelError (*get)(PelShader, T*, uint32_t*)) {
     };
 }
 
-// Fills a structure from a matrix; false where the matrix makes none.
+// Fills a structure from a matrix; false if the matrix is not suitable.
 template <auto set>
 auto ofMatrix() {
     return []<class T>(PelError (*)(const float*, PelConvention, T*)) {
@@ -108,7 +108,7 @@ void bindShader(py::module_& module) {
         uint32_t built = 0;
         call([&] {
             std::vector<PelShader> handles;
-            // In one order for all threads, whatever that of their lists: none waits for another for ever.
+            // Locks in one global order, whatever the order of the list, to avoid deadlocks.
             std::map<std::recursive_mutex*, std::unique_lock<std::recursive_mutex>, std::less<>> locks;
             for (const Shader* s : shaders) {
                 handles.push_back(s->get());

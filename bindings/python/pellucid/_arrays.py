@@ -22,7 +22,7 @@ _FORMATS = {
     ("int16", 2): Format.OCT16X2_SNORM,
 }
 _ID_FORMATS = {"uint8": Format.R8_UINT, "uint16": Format.R16_UINT, "uint32": Format.R32_UINT}
-# What an explicitly named format is stored as: type and components.
+# Storage of each named format: type and number of components.
 _STORAGE = {f: key for key, f in _FORMATS.items()} | {f: (t, 1) for t, f in _ID_FORMATS.items()} | {
     Format.RGBA8_SRGB: ("uint8", 4), Format.A2B10G10R10_UNORM: ("uint32", 1),
     Format.PLANAR_RGB32F: ("float32", 3)}
@@ -105,7 +105,7 @@ def submit(device: Device, views: list[View], waits: list[_native.Event], enqueu
     work is done.
     """
     spans = {id(v.span): v.span for v in views if isinstance(v.span, Span)}.values()
-    # What is under way when something goes wrong, or Ctrl-C comes, still reads and writes the arrays.
+    # Work in flight still reads and writes the arrays after an error or Ctrl-C.
     with _in_flight.kept(device._handle, views, used):
         for span in spans:
             span.upload(waits)
@@ -161,7 +161,7 @@ def vertex_view(device: Device, value: Any, components: int, what: str, output: 
     if components > 1 and strides[1] != 4:
         raise ValueError(f"{what} has components {strides[1]} bytes apart; they must follow each other "
                          "(numpy.ascontiguousarray makes a copy where they do)")
-    # One vertex or none has no stride to speak of, whatever NumPy says.
+    # Arrays of one vertex or none have no meaningful stride, whatever NumPy says.
     stride = strides[0] if shape[0] > 1 else 4 * components
     if stride % 4:
         raise ValueError(f"{what} has vertices {stride} bytes apart; a multiple of 4 is needed")
@@ -263,7 +263,7 @@ class Image:
 
 
 def to_image(device: Device, value: Any, what: str, output: bool = False, ids: bool = False) -> Any:
-    """An Image of what may be one already, or None."""
+    """`data` as an Image, unless it is one already; None for None."""
     if value is None or isinstance(value, Image):
         return value
     return Image(device, value, _slot=what, _output=output, _ids=ids)

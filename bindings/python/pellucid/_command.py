@@ -9,7 +9,7 @@ _OWN = ("view", "gallery")
 
 
 def program() -> Path:
-    """The compiled program that came with the package; it may be missing."""
+    """The compiled program of the package; it may be missing."""
     return Path(__file__).parent / "bin" / "pellucid"
 
 

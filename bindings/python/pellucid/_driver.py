@@ -9,8 +9,8 @@ import sys
 def offer() -> None:
     """Names that driver as the last library to try, unless PELLUCID_OPENCL names some already.
 
-    No loader finds it by itself: the file that would register it, intel-cpu.icd, is in no folder that
-    loaders look into, and has a placeholder in the place of the driver's path.
+    Loaders do not find it: its registration file, intel-cpu.icd, is outside the folders that loaders search,
+    and has a placeholder instead of the driver's path.
     """
     if not sys.platform.startswith("linux") or os.environ.get("PELLUCID_OPENCL"):
         return

@@ -1,8 +1,7 @@
-"""What is still used after Ctrl-C, or while submitted work is under way: Python's memory must outlive it,
-whoever lets go of it.
+"""Keeps Python's memory alive while submitted work, or a call that Ctrl-C has interrupted, still uses it.
 
-Ctrl-C is noticed where a call tells its progress and where an event is waited for. What does neither runs
-`interruptible`.
+Ctrl-C is noticed where a call reports its progress and while an event is waited for. All other long calls run
+by `interruptible`.
 """
 from __future__ import annotations
 
@@ -16,8 +15,8 @@ from typing import Any, Callable, Optional, Union
 
 from . import _native
 
-# By the order of submission. No lock: finalizers and signal handlers submit work, too, and may come in the
-# middle of any line here; each operation on the dictionary is one step.
+# In the order of submission. Without a lock, because finalizers and signal handlers submit work, too, and may
+# run in the middle of any line here; each operation on the dictionary is atomic.
 _flying: dict[int, tuple[Union[_native.Event, _Call], tuple[Any, ...]]] = {}
 _numbers = itertools.count()
 
@@ -42,7 +41,7 @@ class _Call:
             self._done.set()
 
     def cancel(self) -> None:
-        """Where it next tells its progress, if it does."""
+        """Cancels the call at its next progress report, if there is one."""
         self._cancel.ask()
 
     def is_done(self) -> bool:
@@ -53,9 +52,9 @@ class _Call:
 
 
 def interruptible(call: Callable[[], Any], *used: Any) -> Any:
-    """Returns call(), which Ctrl-C can leave behind: it then goes on, and `used` lives until it is done.
+    """Returns call(). Ctrl-C ends the wait: the call then goes on, and `used` lives until it is done.
 
-    For calls of the library that may take long without telling their progress. No signal reaches other
+    For calls of the library that may take long without reporting their progress. No signal reaches other
     threads than Python's main one.
     """
     if threading.current_thread() is not threading.main_thread():
@@ -75,7 +74,7 @@ def interruptible(call: Callable[[], Any], *used: Any) -> Any:
 
 @contextlib.contextmanager
 def kept(device: _native.Device, *used: Any) -> Iterator[None]:
-    """Keeps `used` alive where something goes wrong after a part of the work was submitted."""
+    """Keeps `used` alive if an error occurs after a part of the work was submitted."""
     try:
         yield
     except BaseException:
@@ -90,14 +89,14 @@ def hold(event: Union[_native.Event, _Call], *used: Any) -> None:
 
 
 def sweep() -> None:
-    """Lets go of what finished work used."""
+    """Releases the memory of finished work."""
     for number, entry in _flying.copy().items():
         if _finished(entry[0]):
             _flying.pop(number, None)
 
 
 def in_flight() -> int:
-    """How many submissions have not finished, as far as the last look."""
+    """The number of unfinished submissions at the last check."""
     sweep()
     return len(_flying)
 

@@ -16,7 +16,7 @@ def srgb(linear: ArrayLike) -> NDArray[np.uint8]:
 
 
 def linear(encoded: ArrayLike) -> NDArray[np.float32]:
-    """The inverse, of values from 0 to 1."""
+    """The inverse, for values from 0 to 1."""
     x = np.asarray(encoded, np.float64)
     return np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4).astype(np.float32)
 

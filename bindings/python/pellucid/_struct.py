@@ -60,7 +60,7 @@ def to_enum(kind: type[E], value: Any, what: str) -> E:
 
 
 class OfThisProcess:
-    """What a device holds cannot be pickled; `_instead` says what another process does."""
+    """Objects of a device cannot be pickled; `_instead` tells what to do in another process."""
 
     _instead: ClassVar[str]
 
@@ -131,7 +131,7 @@ class Struct(metaclass=_PublicNames):
 
     @classmethod
     def _with(cls: type[S], given: S | None, fields: dict[str, Any]) -> S:
-        """A copy of `given`, None: of the defaults, with other values of some fields."""
+        """A copy of `given` (None: of the defaults) with some fields changed."""
         made = cls()
         if given is not None:
             made._data[...] = cls._bytes_of(given)

@@ -1,4 +1,4 @@
-"""Matrices of renderers: from what OpenGL, Vulkan and Direct3D hand to a shader, to what Pellucid takes.
+"""Converts the matrices of OpenGL, Vulkan and Direct3D renderers to Pellucid's structures.
 
 Matrices are row-major and multiply column vectors. `depth` says what clip space has between near and far
 plane: "-1..1" (OpenGL), "0..1" (Vulkan, Direct3D, OpenGL with glClipControl) or "1..0" (reversed; the far

@@ -72,7 +72,7 @@ class Device(OfThisProcess):
 
     def _open(self, handle: _native.Device) -> None:
         self._handle = handle
-        # Elsewhere the memory of a NumPy array is not the device's, and moves with each submission.
+        # Other devices do not share memory with NumPy arrays: the bytes move with each submission.
         self._in_place = self.info.type == DeviceType.CPU
 
     @classmethod
@@ -95,7 +95,7 @@ class Device(OfThisProcess):
 
     @property
     def info(self) -> DeviceInfo:
-        """Name, units, memory and what else matters."""
+        """Name, units, memory and other properties."""
         return _filled(DeviceInfo, self._handle.info())
 
     def stats(self) -> DeviceStats:
@@ -118,7 +118,7 @@ class Device(OfThisProcess):
         self._handle.set_name(name)
 
     def set_progress(self, callback: Progress | bool | None) -> None:
-        """Reports how far long work is.
+        """Reports the progress of long work.
 
         Parameters
         ----------
@@ -188,7 +188,7 @@ class Event(OfThisProcess):
         _in_flight.sweep()
 
     def __await__(self) -> Generator[Any, None, None]:
-        """`await event` waits on a thread of the event loop's, which runs on meanwhile."""
+        """`await event` waits on a thread of the event loop, which is not blocked."""
         import asyncio  # which takes longer to load than most of this package
 
         return asyncio.get_running_loop().run_in_executor(None, self.wait).__await__()
@@ -252,8 +252,8 @@ class Buffer(OfThisProcess):
     def from_cl(cls, device: Device, mem: Any) -> Buffer:
         """A pyopencl.Buffer, a 2D pyopencl.Image or a cl_mem handle of the device's context.
 
-        Of an image the buffer is a copy, which a Shader brings up to date when it executes; textures that it
-        writes are copied back.
+        For an image, the buffer is a copy, which a Shader updates when it executes; written textures are
+        copied back.
         """
         self = cls.__new__(cls)
         self._setup(device, _native.Buffer.from_cl(device._handle, _cl_address(mem, "mem")), mem)

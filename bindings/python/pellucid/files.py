@@ -31,7 +31,7 @@ FileError = _files.FileError
 
 @dataclass
 class Mesh:
-    """Triangles, and what is known of their vertices. Lengths are those of the file."""
+    """Triangles, and the attributes of their vertices. Lengths are those of the file."""
 
     positions: NDArray[np.float32]                     # (n, 3)
     normals: NDArray[np.float32]                       # (n, 3), unit
@@ -59,7 +59,7 @@ def standard_head(which: str = "female") -> Path:
 def load_mesh(path: Any, subdivide: Optional[int] = None, up: str = "auto") -> Mesh:
     """Reads an OFF, OBJ, PLY or STL file.
 
-    Where texture coordinates of an OBJ file have a seam, its vertices are there once for each side. A mesh
+    At a seam of the texture coordinates of an OBJ file, vertices are duplicated, once for each side. A mesh
     that Loop's scheme subdivides has no texture coordinates then; the heads of the package keep theirs.
 
     Parameters
@@ -118,7 +118,7 @@ def reference(mesh: Any, scene: Any, gbuffer: Any, *, walk: bool = False, sample
               reflectance: Optional[Sequence[float]] = None, boundary: str = "index-matched",
               profile: Any = None,
               subdivide: int = 0, parts: Sequence[str] = ()) -> dict[str, NDArray[np.float32]]:
-    """What a picture should be, by `pellucid reference` (docs/guide/reference.md). Ctrl-C cancels it.
+    """The ground truth of a picture, by `pellucid reference` (docs/guide/reference.md). Ctrl-C cancels it.
 
     Parameters
     ----------

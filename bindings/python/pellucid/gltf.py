@@ -46,8 +46,8 @@ class Gltf:
     def save(self, folder: Any) -> None:
         """Writes scene.toml, mesh.obj and the profiles as `pellucid import` does, without a G-buffer.
 
-        The folder is made if need be. Changes of the structures here are not in the files: change the scene
-        that `load_scene` reads from there.
+        The folder is created if needed. Changes of the structures here are not written: change the scene that
+        `load_scene` reads from there.
 
         Raises
         ------
@@ -77,7 +77,7 @@ def load_gltf(path: Any, *, profiles: Union[str, Mapping[str, Any], None] = None
     Raises
     ------
     files.FileError
-        A file that is missing or damaged; the message names the place in it. A profile that there is not.
+        A file that is missing or damaged; the message names the place in it. An unknown profile.
     ValueError
         A material in `profiles` that the file does not have.
     """

@@ -33,8 +33,8 @@ class Lut(OfThisProcess):
     ----------
     device : Device
     ready : Event or None
-        When a submitted table is integrated; reading and shading on the same device wait by themselves. None:
-        it is.
+        Done when a submitted table is integrated; reading and shading on the same device wait for it. None:
+        it is integrated already.
     """
 
     _instead = "pass its info and texels, Lut.read, to Lut.from_texels there"
@@ -69,7 +69,7 @@ class Lut(OfThisProcess):
         profile : Profile or name of one of the library, optional
             Skin without it.
         preset : "material" or "faceworks", optional
-            What a table without `desc` begins with: as a material makes it of its profile, or as FaceWorks
+            The defaults of a table without `desc`: as a material makes it from its profile, or as FaceWorks
             does.
         wait : bool
             False: return once it is submitted; `ready` says when it is done.
@@ -143,7 +143,7 @@ class Lut(OfThisProcess):
 
     @property
     def info(self) -> LutInfo:
-        """What the table holds."""
+        """The table's description."""
         info = _filled(LutInfo, self._handle.info())
         # The library's copy points to the table's profile, which this structure would outlive.
         for part in ("curvature", "shadow", "eye"):

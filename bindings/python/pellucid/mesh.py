@@ -67,7 +67,7 @@ class MeshTopology(OfThisProcess):
 
     @classmethod
     def load(cls, device: Device, data: bytes | bytearray | memoryview) -> MeshTopology:
-        """A topology from what `save` gave, without analysing again.
+        """A topology from the bytes of `save`, without a new analysis.
 
         Raises
         ------
@@ -130,7 +130,7 @@ class MeshTopology(OfThisProcess):
         estimator, quantity, smoothing_passes, smoothing_radius, smoothing_weights, scale
             Fields of it by themselves.
         report : bool
-            Also count in `self.report` what these positions and normals made it skip.
+            Also count in `self.report` the elements that were skipped because of these positions and normals.
         """
         settings = _settings(params, estimator=estimator, quantity=quantity,
                              smoothing_passes=smoothing_passes,
@@ -205,11 +205,11 @@ def orient_mesh(indices: ArrayLike, num_vertices: Optional[int] = None, *,
                 positions: Optional[NDArray[np.float32]] = None,
                 normals: Optional[NDArray[np.float32]] = None, weld: Weld | str = Weld.NONE,
                 weld_tolerance: float = 0.0) -> tuple[NDArray[np.uint32], MeshOrientation]:
-    """Triangles turned so that the two of every edge run along it opposite ways.
+    """Flips triangles so that the two triangles of every edge traverse it in opposite directions.
 
-    Parts whose triangles agree already stay as they are. Of the others the outward side is the one that
-    `normals` look to; where they do not tell, and the part is closed and there are positions, the side away
-    from its inside; else that of most of its triangles. Nothing else in this package turns triangles.
+    Consistent parts do not change. For other parts the outward side is the side that `normals` point to. If
+    normals do not decide, it is the outside of a closed part with positions, and otherwise that of the
+    majority of triangles. Nothing else in this package flips triangles.
 
     Parameters
     ----------
@@ -228,7 +228,7 @@ def orient_mesh(indices: ArrayLike, num_vertices: Optional[int] = None, *,
     oriented : uint32, of the shape of indices
         A new array; the second and third index of some triangles have changed places.
     found : MeshOrientation
-        What was turned, and what is left.
+        Counts of flipped triangles and of edges that are still inconsistent.
     """
     packed, held, stride, count = _triangles(indices, num_vertices, positions)
     oriented = packed.copy()
@@ -306,7 +306,7 @@ class LiveMesh(OfThisProcess):
 
     def update(self, positions: Any, normals: Any, out: Any,
                changed: Optional[Iterable[tuple[int, int]]] = None) -> None:
-        """Writes to `out` what the change asks for, and waits; the same bits as measuring everything anew.
+        """Writes the changed results to `out`, and waits; the same bits as measuring everything anew.
 
         Parameters
         ----------
@@ -316,10 +316,10 @@ class LiveMesh(OfThisProcess):
             Likewise; None: they are made from the positions.
         out : (n,) float32
             1/length; (n, 2) for the quantity "principal", (n, 8) for "frame". Rows that the change does not
-            reach are left alone, so pass the same one each time.
+            affect are not written, so pass the same array each time.
         changed : iterable of (first, count), optional
-            Ranges of vertices that moved or turned since the update before; empty: none did, and nothing is
-            done; None: all.
+            Ranges of vertices whose position or normal has changed since the last update; empty: none, and
+            nothing is done; None: all.
 
         Raises
         ------
@@ -343,7 +343,7 @@ class LiveMesh(OfThisProcess):
                             ranges))
 
     def _target(self, out: Any) -> View:
-        """The view of `out`, the same buffer again for the same array: another one would be written whole."""
+        """The view of `out`, with the same buffer for the same array: another would be written in full."""
         key = (out.ctypes.data, out.shape, out.strides, out.dtype) if isinstance(out, np.ndarray) else None
         if key is not None and self._out is not None and self._out[0] == key:
             return self._out[1]
@@ -353,7 +353,7 @@ class LiveMesh(OfThisProcess):
         return view
 
     def stats(self) -> LiveMeshStats:
-        """What the last update did."""
+        """Statistics of the last update."""
         return _filled(LiveMeshStats, self._handle.stats())
 
 

@@ -70,12 +70,12 @@ class Profile(OfThisProcess):
 
     @classmethod
     def burley_distance(cls, distance: ArrayLike, name: str = "") -> Profile:
-        """The same from its own length d (> 0), by which other programs know it."""
+        """The same from the profile's own length d (> 0), which other programs use."""
         return cls._named(name, _native.Profile.burley_distance, _triple(distance, "distance"))
 
     @classmethod
     def skin_layers(cls, skin: Optional[Skin] = None, name: str = "", **fields: Any) -> Profile:
-        """Skin computed from what it is made of, in mm: Skin(melanin=0.05, blood=0.02, ...)."""
+        """Skin computed from its pigments, in mm: Skin(melanin=0.05, blood=0.02, ...)."""
         return cls._named(name, _native.Profile.skin_layers, Skin._with(skin, fields)._data.data)
 
     @classmethod
@@ -116,7 +116,7 @@ class Profile(OfThisProcess):
         return _filled(ProfileInfo, self._handle.info())
 
     def transmission(self, distances: ArrayLike) -> NDArray[np.float64]:
-        """What comes through a slab lit evenly on its far side, (n, 3), at n thicknesses >= 0."""
+        """The light that a slab lit evenly on its far side lets through, (n, 3), at n thicknesses >= 0."""
         d = np.ascontiguousarray(distances, np.float64).ravel()
         through = np.empty((len(d), 3))
         self._handle.transmission(d.ctypes.data, len(d), through.ctypes.data)

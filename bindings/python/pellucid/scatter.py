@@ -42,13 +42,13 @@ class Scatter(OfThisProcess):
         self._handle.set_material(id, None if known is None else known._handle, scale)
 
     def set_controls(self, id: int, controls: Optional[ScatterControls] = None, **fields: Any) -> None:
-        """How pixels of `id`, whose material is set, scatter: `controls` or the defaults, with `fields`."""
+        """How pixels of `id`, whose material is set, scatter: `controls` (or the defaults) with `fields`."""
         self._handle.set_controls(id, ScatterControls._with(controls, fields)._data)
 
     def set_image(self, slot: ImageSlot | str, image: Any) -> None:
-        """An image that executions read beside those they are given: "scatter_weight", "irradiance_back",
-        "albedo", "normal_geometric" or "mean_curvature"; None clears it. It stays the caller's, and is read
-        at each execution. Either of the last two turns on the gain of curved bodies."""
+        """Sets a further image that executions read: "scatter_weight", "irradiance_back", "albedo",
+        "normal_geometric" or "mean_curvature"; None clears it. The image stays the caller's, and is read at
+        each execution. Either of the last two turns on the gain of curved bodies."""
         s = to_enum(ImageSlot, slot, "slot")
         image = to_image(self.device, image, s.name.lower())
         self._handle.set_image(int(s), None if image is None else image._view.native)
@@ -71,7 +71,7 @@ class Scatter(OfThisProcess):
         depth : (height, width), optional
             Instead of positions, with params.inverse_view_projection.
         ids : (height, width) unsigned integers, optional
-            Of materials; nothing flows from one to another; 0 is background. None: everything is 1.
+            Of materials; no light flows from one to another; 0 is background. None: all pixels are 1.
         out : (height, width, 3) float32, optional
             A new array without it; may be the irradiance.
         params : ScatterParams, optional
@@ -271,7 +271,7 @@ def _pictures(a: Any, b: Any) -> tuple[NDArray[np.float32], NDArray[np.float32]]
 
 
 def compare(a: Any, b: Any, mask: Any = None) -> dict[str, Any]:
-    """How far two pictures of linear RGB are apart.
+    """The difference of two pictures of linear RGB.
 
     Parameters
     ----------

@@ -46,12 +46,12 @@ class Shaded:
 class Scene(OfThisProcess):
     """A scene file and its G-buffer; made by `load_scene`.
 
-    What is changed here counts from the next `shade` on; the files stay as they are.
+    Changes apply from the next `shade` on; the files do not change.
 
     Attributes
     ----------
     materials : dict of int to Material
-        By the number in the G-buffer. A profile that is set here takes the place of the file's.
+        By the number in the G-buffer. A profile that is set here replaces the file's.
     profiles : dict of int to str
         Names or files of profiles as the scene has them, "" for none.
     lights : list of Light
@@ -94,12 +94,12 @@ class Scene(OfThisProcess):
         return self
 
     def save(self, path: Any) -> None:
-        """Writes the scene as it is now, complete or not at all; files that it names are named from there.
+        """Writes the current scene, complete or not at all; files are named relative to the new scene file.
 
         Raises
         ------
         ValueError
-            A material has a profile of its own, which a file cannot hold: name it in `profiles` in its place.
+            A material has a profile object, which a file cannot hold: name a profile in `profiles` instead.
         files.FileError
             The file cannot be written.
         """
@@ -157,7 +157,7 @@ def shade(scene: Scene, device: Optional[Device] = None, outputs: Iterable[str] 
     device : Device, optional
         The one of the last call, or the best of this machine.
     outputs : strings
-        Parts that are wanted beside radiance: "diffuse", "deep_scatter", "specular", "thickness".
+        Further outputs besides radiance: "diffuse", "deep_scatter", "specular", "thickness".
     count : bool
         Whether every counter of `Shaded.stats` is filled, at some cost.
     wait : bool
@@ -166,11 +166,11 @@ def shade(scene: Scene, device: Optional[Device] = None, outputs: Iterable[str] 
     Raises
     ------
     ValueError
-        No G-buffer, or an output that there is not.
+        No G-buffer, or an unknown output.
     files.FileError
-        A channel or a file that the scene names and that there is not.
+        A channel or file of the scene does not exist.
     PellucidError
-        What does not fit together.
+        The inputs do not fit together.
     """
     wanted = list(outputs)
     for name in wanted:

@@ -127,8 +127,8 @@ class Shader(OfThisProcess):
         return self
 
     def set_scattered_texture(self, id: int, texture: Any) -> Shader:
-        """Sets the light that was scattered in the texture of material `id` (TextureScatter.execute), which
-        materials of scattering "texture" take in the place of their irradiance.
+        """Sets the light that was scattered in the texture of material `id` (TextureScatter.execute).
+        Materials with scattering "texture" use it instead of their irradiance.
 
         Parameters
         ----------
@@ -164,7 +164,7 @@ class Shader(OfThisProcess):
         id : int
             A material that is an eye.
         texture : array, Image or None
-            (n, n, 3 or 4), whose inscribed circle is the iris' rim, row 0 at Eye.up, as one sees it who
+            (n, n, 3 or 4), whose inscribed circle is the iris' rim, row 0 at Eye.up, as seen by a viewer who
             faces the eye. Read by the first execution after a commit; None removes it: fibres are drawn by
             Eye.iris_seed.
         """
@@ -209,7 +209,7 @@ class Shader(OfThisProcess):
                           self._handle.set_reflection_cube)
 
     def set_environment(self, image: Any, axes: Any = None) -> Shader:
-        """Sets the surroundings as light: ambient light, specular light, and what eyes reflect.
+        """Sets the surroundings as light: ambient light, specular light, and reflections in eyes.
 
         Parameters
         ----------
@@ -240,12 +240,12 @@ class Shader(OfThisProcess):
         return self
 
     def commit(self) -> Shader:
-        """Checks that everything fits together, derives the features and builds what they need.
+        """Checks that everything fits together, derives the features and builds their programs.
 
         Raises
         ------
         PellucidError
-            What is missing or does not fit.
+            Something is missing or does not fit.
         """
         _in_flight.interruptible(self._handle.commit)  # compilers take seconds, on some devices minutes
         return self
@@ -277,14 +277,14 @@ class Shader(OfThisProcess):
                             self, images))
 
     def material(self, id: int) -> Material:
-        """Material `id` as it is shaded: what was left to defaults has its value, after a commit also AUTO.
+        """Material `id` as it is shaded: with the values of all defaults, and after a commit also of AUTO.
         Its profile is left out."""
         material = _filled(Material, self._handle.material(id))
         material._data["profile"] = 0  # the shader's own, which the structure would outlive
         return material
 
     def warnings(self) -> list[str]:
-        """What the last commit found that was set without effect, or unlikely."""
+        """Warnings of the last commit about settings without effect or with unlikely values."""
         return self._handle.warnings().splitlines()
 
     def stats(self) -> ShaderStats:
@@ -297,8 +297,8 @@ class Shader(OfThisProcess):
         return [_filled(PassStats, data) for data in self._handle.passes()]
 
     def memory(self) -> list[PassMemory]:
-        """Which passes hold device memory beside the arrays, and what each will hold once the state that is
-        set is committed. Nothing is committed, and no image allocated.
+        """The device memory that each pass holds besides the arrays, and the memory that it will hold once
+        the current settings are committed. Nothing is committed, and no image is allocated.
 
         Raises
         ------
@@ -312,8 +312,8 @@ def warm_up_programs(device: Device, groups: ProgramGroup | int = 0, shaders: Se
                      threads: int = 0) -> int:
     """Builds OpenCL programs before they are needed, so that no commit or execution waits for a compiler.
 
-    The driver's own cache on disk, where it has one, keeps the result. A progress callback of the device
-    (Device.set_progress) is called on the way; where it cancels, what was built so far stays.
+    The driver's own cache on disk, if it has one, keeps the result. A progress callback of the device
+    (Device.set_progress) is called on the way; if it cancels, the programs built so far are kept.
 
     Parameters
     ----------
@@ -335,7 +335,7 @@ def warm_up_programs(device: Device, groups: ProgramGroup | int = 0, shaders: Se
     Raises
     ------
     PellucidError
-        What a shader's commit would raise; CANCELLED.
+        The errors of a shader's commit; CANCELLED.
     """
     handles = [s._handle for s in shaders]
     return int(_in_flight.interruptible(

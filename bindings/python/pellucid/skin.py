@@ -1,4 +1,4 @@
-"""Skin by what it is made of: colour, spectrum, and maps of melanin and blood."""
+"""Skin from its pigments: colour, spectrum, and maps of melanin and blood."""
 from __future__ import annotations
 
 from typing import Any, Optional
@@ -18,7 +18,7 @@ def skin_info(skin: Optional[Skin] = None, **fields: Any) -> SkinInfo:
 
 def skin_reflectance(nanometres: ArrayLike, skin: Optional[Skin] = None,
                      **fields: Any) -> NDArray[np.float32]:
-    """Share of diffuse light that skin sends back at wavelengths from 380 to 720 nm."""
+    """Share of diffuse light that skin reflects at wavelengths from 380 to 720 nm."""
     at = np.ascontiguousarray(nanometres, np.float32)
     out = np.empty_like(at)
     _native.skin_reflectance(Skin._with(skin, fields)._data, at.ctypes.data, at.size, out.ctypes.data)
