@@ -24,6 +24,21 @@ TEST_F(Shade, PlainLightIsAlbedoTimesCosine) {
     }
 }
 
+// Roughness is one of the albedo's channels, and a channel of its own.
+TEST_F(Shade, AChannelMayBeInSeveralImages) {
+    addChannels(gbuffer_, positionNames, [](int x, int y, size_t c) { return c ? c == 1 ? -y : 0 : x; });
+    addChannels(gbuffer_, {"Rough.V"}, [](int, int, size_t) { return 0.25; });
+    scene_.channels[PEL_SLOT_POSITION] = positionNames;
+    scene_.camera.position[2] = 100;
+    scene_.materials[0].material.specular = 1;
+    const std::vector<float> plain = shaded();
+    scene_.channels[PEL_SLOT_ROUGHNESS] = {"Rough.V"};
+    const std::vector<float> apart = shaded();
+    EXPECT_NE(apart, plain);
+    scene_.channels[PEL_SLOT_ROUGHNESS] = {albedoNames[1]};
+    EXPECT_EQ(shaded(), apart);
+}
+
 TEST_F(Shade, PicturesToLookAt) {
     const std::vector<float> radiance =
         shaded("--picture @sheet.png --show final,diffuse,specular --tonemap filmic");

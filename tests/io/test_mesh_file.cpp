@@ -113,6 +113,11 @@ TEST_F(MeshFile, OffKeepsVerticesAndFacesInOrder) {
     EXPECT_EQ(quads.triangles, (Indices{0, 1, 2, 0, 2, 3, 0, 1, 4}));
     const MeshData normals = load("n.off", "NOFF\n3 1 0\n0 0 0 0 0 2\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n");
     EXPECT_EQ(normals.normals, (Floats{0, 0, 1, 0, 0, 1, 0, 0, 1}));  // and of unit length
+    const std::string textured =
+        "STCOFF\n3 1 0\n0 0 0 9 9 9 0 0.5\n1 0 0 9 9 9 1 0.5\n0 1 0 9 9 9 0 1\n3 0 1 2\n";
+    EXPECT_EQ(load("st.off", textured).uvs, (Floats{0, 0.5f, 1, 0.5f, 0, 1}));
+    EXPECT_TRUE(
+        contains(loadError("st.off", "STOFF\n3 1 0\n0 0 0 0\n"), "st.off:3: the texture coordinates"));
 }
 
 TEST_F(MeshFile, ObjWithNegativeIndicesAndSeams) {

@@ -90,6 +90,25 @@ TEST(LutProfiles, AGaussianWithoutWeightDoesNotWidenAProfile) {
     EXPECT_FLOAT_EQ(info.radius, 3);
 }
 
+// Each fit is a scale of the mean free path.
+TEST(LutProfiles, BurleysFitsDifferByTheirScale) {
+    using reference::BurleyFit;
+    const float path[3] = {2, 1, 0.5f}, albedo[3] = {0.9f, 0.4f, 0.1f};
+    const std::pair<PelBurleyFit, BurleyFit> fits[] = {
+        {PEL_BURLEY_SEARCHLIGHT, BurleyFit::searchlight},
+        {PEL_BURLEY_DIFFUSE_TRANSMISSION, BurleyFit::diffuseTransmission},
+        {PEL_BURLEY_DIFFUSE_MEAN_FREE_PATH, BurleyFit::diffuseMeanFreePath}};
+    for (const auto& [fit, of] : fits) {
+        float distance[3];
+        for (int c = 0; c < 3; ++c) distance[c] = float(path[c] / reference::burleyScale(of, albedo[c]));
+        const std::vector<double> at{0.1, 1, 3};
+        const auto made = Profile::burley(path, albedo, fit).radial(at),
+                   wanted = Profile::burleyDistance(distance).radial(at);
+        for (size_t i = 0; i < made.size(); ++i)
+            EXPECT_NEAR(made[i], wanted[i], tolerance::profileEvaluation * wanted[i]) << fit << ", " << i;
+    }
+}
+
 TEST(LutProfiles, RefusesWhatMakesNoSense) {
     const float nan3[3] = {NAN, 1, 1}, ones[3] = {1, 1, 1}, negative[3] = {1, -1, 1},
                 half[3] = {0.5f, 0.5f, 0.5f}, most = std::numeric_limits<float>::max();

@@ -116,8 +116,17 @@ TEST(Gltf, NodesMoveTurnScaleAndMirror) {
     EXPECT_EQ(position(s, 5), (std::vector<float>{9, 0, 5}));
 }
 
-// Whatever the rotation of a node, its triangles face in the direction of its normals, mirrored or not, whether
-// the normals are in the file or made from the triangles.
+TEST(Gltf, WithoutASceneAllRootsAreShown) {
+    const GltfScene s = decoded(square({{"/nodes", R"([{"mesh": 0, "translation": [1, 0, 0]},
+        {"children": [0], "translation": [10, 0, 0]}, {"mesh": 0}])"_json},
+                                        {"/scenes", nullptr}}));
+    ASSERT_EQ(s.mesh.vertexCount(), 8u) << "a child is shown by its parent alone";
+    EXPECT_EQ(position(s, 0), (std::vector<float>{11, 0, 0}));
+    EXPECT_EQ(position(s, 4), (std::vector<float>{0, 0, 0}));
+}
+
+// Whatever the rotation of a node, its triangles face in the direction of its normals, mirrored or not, and
+// whether the normals are in the file or made from the triangles.
 TEST(Gltf, TurnedAndMirroredFacesKeepTheirFront) {
     std::string buffer = squareBuffer();
     for (int v = 0; v < 4; ++v) buffer += gltf::bytesOf<float>({0, 0, 1});

@@ -30,6 +30,18 @@ def test_execute_submit_and_in_place(device):
     assert np.array_equal(irradiance, result)
 
 
+def test_warm_up_builds_what_execute_needs():
+    irradiance, positions, ids = ball()
+    own = pel.Device()  # whose programs no other test has built
+    scatter = pel.Scatter(own)
+    scatter.set_material(1, pel.Profile.skin())
+    built = own.stats().programs_built
+    assert scatter.warm_up(irradiance, positions, ids=ids) == own.stats().programs_built - built > 0
+    built = own.stats().programs_built
+    scatter.execute(irradiance, positions, ids=ids)
+    assert own.stats().programs_built == built
+
+
 def test_materials_controls_and_images(device):
     irradiance, positions, ids = ball()
     scatter = pel.Scatter(device)
