@@ -261,6 +261,8 @@ void runShade(ShadeArguments a) {
     const auto files = outputFiles(a, scene);
     std::vector<PelImageSlot> outputs;
     const auto place = [](const std::string& file) { return std::filesystem::weakly_canonical(file); };
+    if (place(a.output) == place(a.gbuffer))
+        throw UsageError("-o " + a.output + " is the G-buffer, which would be lost; name another file");
     std::set<std::filesystem::path> distinct{place(a.output), place(a.picture)};
     for (const auto& [slot, file] : files) {
         if (outputs.empty() || outputs.back() != slot) outputs.push_back(slot);

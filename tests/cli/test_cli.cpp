@@ -75,6 +75,7 @@ const Refusal refusals[] = {
     {"profile fit skin --gaussians 13", 2, "'13' is not a whole number from 1 to 12"},
     {"shade @g.exr -o @o.exr", 2, "--scene"},
     {"shade @g.exr --scene @s.toml -o @no/o.exr", 2, "no folder"},
+    {"shade @g.exr --scene @s.toml -o @./g.exr", 2, "is the G-buffer, which would be lost"},
     {"shade @g.exr --scene @s.toml -o @o.exr --show diffuse", 2, "--picture"},
     {"shade @g.exr --scene @s.toml -o @o.exr --picture @p.exr", 2, ".png"},
     {"shade @g.exr --scene @s.toml -o @o.exr --picture @p.png --show final,nothing", 2, "show"},
