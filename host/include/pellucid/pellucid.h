@@ -378,8 +378,7 @@ typedef enum PelCurvatureEstimator {
 } PelCurvatureEstimator;
 
 /* The quantity that is written for a vertex. Curvatures are positive where the surface curves away from its
- * normal (a sphere with outward normals has two positive ones); k1 >= k2. Edge has the first quantity only.
- * */
+ * normal (a sphere with outward normals has two positive ones); k1 >= k2. Edge has only the first. */
 typedef enum PelCurvatureQuantity {
     /* |k1 + k2| / 2, 1/radius of the best sphere; edge: its own estimate. For LUTs */
     PEL_QUANTITY_ABSOLUTE = 0,
@@ -747,8 +746,7 @@ typedef struct PelSpecularLutDesc {
  * more than a few seconds are refused. Fields of PelEye: see there. */
 typedef struct PelEyeLutDesc {
     uint32_t structSize;
-    /* texels across the iris in the direction of the light, from the far rim to the near one; 2 to 1024; 64
-     * */
+    /* texels across the iris along the light, from the far rim to the near one; 2 to 1024; 64 */
     uint32_t width;
     /* texels from the line through the light's direction to the rim: the other half is its mirror image; 2 to
      * 1024; 64 */
@@ -1290,8 +1288,7 @@ typedef struct PelShaderOptions {
      * PelMaterial.diffusionRadius; needs positions or depth */
     uint32_t blurNormals;
     /* 1: the disk of thickness taps is rotated by an angle that depends only on the pixel's column and row,
-     * so that the error of few taps is noise instead of bands (docs/guide/shading.md, "Rotated disk of taps")
-     * */
+     * so that few taps give noise, not bands (docs/guide/shading.md, "Rotated disk of taps") */
     uint32_t rotateTaps;
     /* limit in bytes for images that the passes make (blurred normals, wide shadows): larger frames are
      * shaded in bands of rows, with the same bits as a result. 0: no limit, and bands only when memory runs
