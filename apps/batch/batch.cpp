@@ -271,7 +271,7 @@ void addBatch(CLI::App& app) {
     auto [batch, a] = subcommand<BatchArguments>(
         app, "batch", "Make the look-up tables of a manifest that are not there yet", runBatch);
     option(batch, "manifest", a.manifest, "TOML: [[lut]] and [[grid]] (docs/guide/batch.md)", required);
-    option(batch, "-o,--output", a.folder, "folder for the files; made if need be", required);
+    option(batch, "-o,--output", a.folder, "folder for the files; created if missing", required);
     option(batch, "--device", a.devices, "device; several share the work", Word{deviceWord}, oneEach);
     option(batch, "-j,--jobs", a.jobs, "tables in flight (default: four per core and device)",
            inRange(1, 256));

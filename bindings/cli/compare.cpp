@@ -261,7 +261,7 @@ void addCompare(CLI::App& app) {
     option(command, "--gbuffer", a.gbuffer,
            "multi-layer EXR: only pixels of a material count; errors are given for each sub-set of them");
     option(command, "--scene", a.scene, "its scene file (TOML)");
-    option(command, "--light", a.light, "number of the light that sub-sets go by", shown);
+    option(command, "--light", a.light, "number of the light that defines the sub-sets", shown);
     option(command, "--unit-mm", a.unit, "millimetres per unit of positions (default: the scene's unit_mm)",
            isPositive());
     option(command, "--picture", a.picture, "PNG to write: both pictures, and their difference in colours");

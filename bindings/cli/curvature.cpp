@@ -98,22 +98,22 @@ void addCurvature(CLI::App& app) {
     option(command, "-o,--output", a.output,
            "file to write: .npy (one float32 per vertex) or .ply (with colours)", required);
     option(command, "--estimator", a.estimator, "how curvature is estimated", isOneOf(io::estimators), shown);
-    option(command, "--quantity", a.quantity, "what is made of the principal curvatures",
-           isOneOf(io::quantities), shown);
-    option(command, "--weld", a.weld, "vertices at one place are one: none, exact, or within a length",
+    option(command, "--quantity", a.quantity, "which curvature is written", isOneOf(io::quantities), shown);
+    option(command, "--weld", a.weld, "merges vertices at the same position: none, exact, or within a length",
            Word{"none|exact|LENGTH"}, shown);
-    option(command, "--orient", a.orient, "turns triangles that face another way than their neighbours");
+    option(command, "--orient", a.orient, "flips triangles whose orientation differs from their neighbours'");
     option(command, "--smooth-radius", a.params.smoothingRadius,
            "smooths to a radius in the mesh's unit of length, whatever its density", isNotNegative());
     option(command, "--smooth-crease", a.creaseDegrees,
            "with --smooth-radius: degrees between normals that stop it", inRange(0.0, 180.0));
     option(command, "--smooth-weights", a.smoothingWeights,
-           "with --smooth-radius: how neighbours are weighed", isOneOf(io::smoothingWeights), shown);
+           "with --smooth-radius: how neighbours are weighted", isOneOf(io::smoothingWeights), shown);
     option(command, "--picture", a.picture,
            "PNG to write as well: the mesh coloured by the values, with a colour bar");
     option(command, "--range", a.range,
-           "LOW HIGH: what the colours of --picture and of a .ply stand for, so that several compare; "
-           "default: from the values, the sharpest places left out",
+           "LOW HIGH: the values at the ends of the colour scale of --picture and of a .ply, the same for "
+           "several "
+           "meshes to compare; default: from the values, without the highest",
            Count{2});
     option(command, "--up", a.up,
            "of the picture: the mesh's up axis, z (it looks to -y) or y (it looks to +z)",

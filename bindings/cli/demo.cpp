@@ -272,7 +272,7 @@ void addDemo(CLI::App& app) {
            "OFF, OBJ, PLY or STL file (default: a head that comes with pellucid, or $PELLUCID_DEMO_MESH)");
     option(command, "-o,--output", a.output, "folder for the pictures", shown);
     option(command, "--orient", a.orient,
-           "of a mesh: turns triangles that face another way than their neighbours");
+           "of a mesh: flips triangles whose orientation differs from their neighbours'");
     option(command, "--size", a.size, "pixels, WxH", Word{"SIZE"}, shown);
     option(command, "--height", a.height, "mm that the mesh is scaled to, along its up axis", isPositive(),
            shown);

@@ -82,7 +82,7 @@ void addWalkOptions(CLI::App& command, WalkArguments& walk) {
     CLI::Option* samples = option(command, "--samples", walk.samples, "walks per pixel, channel and half",
                                   inRange(1, int(sample::maxWalkSamples)), shown, Needs{enabled});
     option(command, "--noise", walk.noise,
-           "instead of --samples: the standard error that a pixel shall have, such as 2e-3", isPositive())
+           "instead of --samples: the standard error to reach in each pixel, such as 2e-3", isPositive())
         ->excludes(samples)
         ->needs(enabled);
     option(command, "--seed", walk.seed, "of the random numbers; the same seed gives the same result", shown,
@@ -604,7 +604,7 @@ void addReference(CLI::App& app) {
            "channel's width)",
            isNotNegative());
     option(command, "--coarsest", a.coarsest,
-           "length above which they are split anywhere (default: the widest channel's width)",
+           "length above which triangles are split everywhere (default: the widest channel's width)",
            isNotNegative());
     option(command, "--tolerance", a.tolerance, "bound of the error of far light, part of the brightest",
            inRange(1e-7, 1.0), shown);

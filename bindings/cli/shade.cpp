@@ -70,12 +70,13 @@ void writeShadePicture(const std::string& path, const io::Image& gbuffer, const 
 }
 
 void addToneOptions(CLI::App& command, io::ToneMap& tone) {
-    option(command, "--exposure", tone.exposure, "of pictures: multiplies radiance", isPositive(), shown);
+    option(command, "--exposure", tone.exposure, "multiplies radiance in pictures", isPositive(), shown);
     command
         .add_option_function<std::string>(
             "--tonemap",
             [&tone](const std::string& curve) { tone.curve = chosen<io::ToneCurve>(io::toneCurves, curve); },
-            "of pictures: soft (true to radiance up to 0.8, then a shoulder), none (cut at 1), "
+            "of pictures: soft (true to radiance up to 0.8, then a soft highlight roll-off), none (cut at "
+            "1), "
             "filmic or agx-like "
             "(default: soft)")
         ->check(isOneOf(io::toneCurves));
