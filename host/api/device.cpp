@@ -52,7 +52,7 @@ PelError pelDeviceEnumerate(uint32_t index, PelDeviceInfo* info) {
     return entry([&] {
         const auto devices = cl::allDevices();
         if (index >= devices.size())
-            invalidArgument("device ", index, " of ", devices.size(), " was asked for");
+            invalidArgument("there is no device ", index, "; this machine has ", devices.size());
         writeStruct(info, cl::describe(devices[index], index), "PelDeviceInfo");
     });
 }

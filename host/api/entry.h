@@ -23,7 +23,7 @@ PelError entry(Body&& body) noexcept {
     } catch (const std::exception& e) {
         return report(PEL_ERROR_UNKNOWN, e.what());
     } catch (...) {
-        return report(PEL_ERROR_UNKNOWN, "a fault of unknown kind in the library");
+        return report(PEL_ERROR_UNKNOWN, "an unknown error in the library");
     }
 }
 
@@ -39,7 +39,7 @@ PelError entry(Body&& body) noexcept {
 // Throws if an output parameter is NULL.
 template <class T>
 T& output(T* pointer, const char* name) {
-    if (!pointer) invalidArgument(name, " is where the result goes: it must not be NULL");
+    if (!pointer) invalidArgument(name, " receives the result: it must not be NULL");
     return *pointer;
 }
 

@@ -25,7 +25,7 @@ class BuildHelpers {
 
   private:
     void throwIfCancelled() const {
-        if (cancelled_) fail(PEL_ERROR_CANCELLED, "programs are built no longer");
+        if (cancelled_) fail(PEL_ERROR_CANCELLED, "the building of programs was cancelled");
     }
 
     std::mutex mutex_;  // of the rest

@@ -19,7 +19,7 @@ namespace {
 #ifdef _WIN32
 constexpr char separator = ';';
 constexpr const char* usual = "OpenCL.dll";
-constexpr const char* advice = "install the driver of your GPU's or CPU's vendor, which brings it";
+constexpr const char* advice = "install the driver of your GPU's or CPU's vendor, which includes it";
 #elif defined(__APPLE__)
 constexpr char separator = ':';
 constexpr const char* usual =
@@ -32,7 +32,7 @@ constexpr const char* usual = "libOpenCL.so.1:libOpenCL.so";
 constexpr const char* advice =
     "install it (Debian and Ubuntu: apt-get install ocl-icd-libopencl1, Fedora: dnf install ocl-icd) and a "
     "driver, for example PoCL for the CPU (pocl-opencl-icd, pocl); in Python, pip install 'pellucid[cpu]' "
-    "brings both";
+    "installs both";
 #endif
 
 using GetPlatforms = cl_int(CL_API_CALL*)(cl_uint, cl_platform_id*, cl_uint*);
@@ -73,7 +73,7 @@ Library find() {
         const GetPlatforms entry = library ? entryOf(library) : nullptr;
         if (!entry) {
             found.why +=
-                (found.why.empty() ? "" : "; ") + (library ? name + " is no library of OpenCL" : why);
+                (found.why.empty() ? "" : "; ") + (library ? name + " is not an OpenCL library" : why);
             continue;
         }
         cl_uint count = 0;
@@ -87,8 +87,8 @@ Library find() {
     if (found.getPlatforms)
         found.why.clear();
     else
-        found.why = "OpenCL's library cannot be loaded (" + found.why + "): " + advice +
-                    (named && *named ? "; PELLUCID_OPENCL names the libraries to try" : "");
+        found.why = "the OpenCL library cannot be loaded (" + found.why + "): " + advice +
+                    (named && *named ? "; PELLUCID_OPENCL lists the libraries to try" : "");
     return found;
 }
 

@@ -28,8 +28,8 @@ std::string poclFolderTrouble() {
     fs::create_directories(folder, error);
     const std::string why = error ? error.message() : whyNotWritable(folder);
     if (why.empty()) return {};
-    return text("; PoCL, where it is installed, says so too when POCL_CACHE_DIR, ", folder,
-                ", cannot be written to (", why, "): name another folder, or none");
+    return text("; PoCL also reports no device if it cannot write to POCL_CACHE_DIR, ", folder, " (", why,
+                "): set it to another folder, or unset it");
 }
 
 template <class T>
@@ -68,7 +68,7 @@ std::optional<uint32_t> requestedMathWidth() {
     if (!text || !*text) return {};
     for (const uint32_t width : {1u, 8u, 16u})
         if (text == std::to_string(width)) return width;
-    invalidArgument("PELLUCID_MATH_WIDTH is \"", text, "\"; it can be 1, 8 or 16");
+    invalidArgument("PELLUCID_MATH_WIDTH is \"", text, "\"; it must be 1, 8 or 16");
 }
 
 }  // namespace

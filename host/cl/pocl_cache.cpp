@@ -22,10 +22,10 @@ bool setByUs = false;
 
 // "" if PoCL may use it.
 std::string whyNot(const fs::path& folder) {
-    if (!makePrivateFolder(folder)) return text(folder.string(), " cannot be made");
+    if (!makePrivateFolder(folder)) return text(folder.string(), " cannot be created");
     if (const std::string why = whyNotPrivate(folder); !why.empty()) return why;
     if (roomIn(folder) < leastRoom)
-        return text(folder.string(), " has less than ", leastRoom >> 20, " MiB to write to");
+        return text(folder.string(), " has less than ", leastRoom >> 20, " MiB free");
     return {};
 }
 
@@ -36,7 +36,7 @@ fs::path temporaryFolder(std::string& why) {
         if (!parent.is_absolute()) continue;
         const std::string name = system::makeTemporaryFolder(parent.string(), "pellucid-pocl-");
         if (name.empty()) {
-            why += text("; ", parent.string(), " takes no new folder");
+            why += text("; no folder can be created in ", parent.string());
             continue;
         }
         if (const std::string reason = whyNot(name); !reason.empty()) {
@@ -78,7 +78,8 @@ void choosePoclCache() {
         else
             removeDamagedPrograms(folder);
         if (folder.empty())
-            fail(PEL_ERROR_DEVICE, "PoCL needs a folder for compiled kernels, and there is none: ", why,
+            fail(PEL_ERROR_DEVICE,
+                 "PoCL needs a writable folder for compiled kernels, and none was found: ", why,
                  ". Set POCL_CACHE_DIR to one");
         folderInUse() = folder;
         system::setVariable("POCL_CACHE_DIR", folder.string().c_str());
@@ -98,8 +99,9 @@ void checkPoclCache() {
     const uint64_t room = roomIn(folder);
     if (room < leastRoom)
         fail(PEL_ERROR_DEVICE, "PoCL keeps compiled kernels in ", folder.string(), ", which has ", room >> 20,
-             " MiB to write to; ", leastRoom >> 20,
-             " are needed, for it ends the process when it cannot write. Make room, or set POCL_CACHE_DIR");
+             " MiB free; ", leastRoom >> 20,
+             " are needed, because PoCL ends the process when it cannot write. Free some space, or set "
+             "POCL_CACHE_DIR");
 }
 
 }  // namespace pel::cl

@@ -113,7 +113,7 @@ Use wanted(cl_device_id device) {
         return {!keepsPrograms(device) || isPocl(device), !keepsPrograms(device)};
     if (value == "on" || value == "1") return {true, true};
     if (value == "off" || value == "0") return {false, false};
-    invalidArgument("PELLUCID_CACHE is \"", value, "\"; it can be on, off or auto");
+    invalidArgument("PELLUCID_CACHE is \"", value, "\"; it must be on, off or auto");
 }
 
 uint64_t limitBytes() {
@@ -122,7 +122,7 @@ uint64_t limitBytes() {
     char* end = nullptr;
     const unsigned long long value = std::strtoull(text, &end, 10);
     if (*end || *text < '0' || *text > '9' || value > (1ull << 40))
-        invalidArgument("PELLUCID_CACHE_MB is \"", text, "\"; it can be a number of MiB, such as ",
+        invalidArgument("PELLUCID_CACHE_MB is \"", text, "\"; it must be a number of MiB, such as ",
                         defaultLimit);
     return uint64_t(value) << 20;
 }

@@ -132,7 +132,7 @@ cl::Memory Device::allocate(size_t bytes, const void* initial, bool zeros) {
 
 cl::Memory Device::hostsMemory(size_t bytes) const {
     cl::Memory memory(cl_mem(allocate_(allocateUser_, context_.get(), bytes)));
-    if (!memory) fail(PEL_ERROR_OUT_OF_MEMORY, "PelDeviceDesc.allocate has no ", bytes, " bytes");
+    if (!memory) fail(PEL_ERROR_OUT_OF_MEMORY, "PelDeviceDesc.allocate could not provide ", bytes, " bytes");
     if (const size_t size = cl::info<size_t>(memory.get(), CL_MEM_SIZE); size < bytes)
         invalidArgument("PelDeviceDesc.allocate gave a buffer of ", size, " bytes; ", bytes, " are needed");
     return memory;

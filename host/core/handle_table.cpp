@@ -85,7 +85,8 @@ Ref<Object> lookUpHandle(const void* handle, Kind kind) {
 void nameHandle(const void* handle, const char* name) {
     std::lock_guard lock(handles().mutex);
     const auto entry = handles().entries.find(reinterpret_cast<uintptr_t>(handle));
-    if (entry == handles().entries.end()) invalidArgument("this is no object that could be named: ", handle);
+    if (entry == handles().entries.end())
+        invalidArgument("this is not a handle of the library, so it cannot be named: ", handle);
     entry->second.name = name ? name : "";
 }
 

@@ -75,7 +75,7 @@ ImageView makeImageView(const PelImageDesc* given, Device& device, const char* w
                         format->pixelBytes, " bytes of a pixel of ", format->name);
     if (view.rowStride > UINT32_MAX || view.planeStride > uint64_t(1) << 40)
         invalidArgument("the ", what, " image's rowStride is ", view.rowStride, " and planeStride ",
-                        view.planeStride, ": below 4 GiB and 1 TiB they must be");
+                        view.planeStride, "; they must be below 4 GiB and 1 TiB");
     if (view.height > 1 && view.rowStride < (view.width - 1) * view.pixelStride + format->pixelBytes)
         invalidArgument("the ", what, " image's rowStride is ", view.rowStride, ", less than the ",
                         (view.width - 1) * view.pixelStride + format->pixelBytes, " bytes of its row");

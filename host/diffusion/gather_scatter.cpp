@@ -103,8 +103,8 @@ void GatherScatter::prepare(const std::map<uint32_t, Material>& materials, const
     const GatherImages::History& history = images.history;
     if (history.weight > 0 && frame_.view == PEL_VIEW_UNKNOWN)
         invalidArgument("PelShaderOptions.historyWeight is ", history.weight,
-                        ": PelCamera.inverseViewProjection is needed, and the one that is set shows from no "
-                        "place and along no direction");
+                        ": a valid PelCamera.inverseViewProjection is needed, but the one that is set has "
+                        "neither an eye point nor a view direction");
     frame_.frameIndex = frameIndex;
     frame_.everywhere = view.everywhere;
     frame_.inPlace = samePixels(of.irradiance, of.out);

@@ -91,8 +91,8 @@ PelLightMap describe(const ShaderLight& light, uint32_t number, Matrix m, const 
     if (!invert(m, inverse))
         invalidArgument(
             "the shadow matrix of light ", number,
-            " is singular: PelLight.worldToShadow has to tell all points apart, for light that scatters "
-            "is summed over its map");
+            " is singular: PelLight.worldToShadow must be invertible, because scattered light is summed over "
+            "its shadow map");
     std::copy(m.begin(), m.end(), to.toMap);
     std::copy(inverse.begin(), inverse.end(), to.toWorld);
     to.type = l.type;

@@ -89,8 +89,8 @@ void Scatter::setImage(PelImageSlot slot, const ImageView& view) {
     if (std::ranges::find(keptSlots, slot) == std::end(keptSlots))
         invalidArgument(
             "image slot ", int(slot),
-            " is none that a PelScatter keeps: scatter weight, back irradiance, albedo, geometric "
-            "normals or mean curvature would be");
+            " is not a slot of a PelScatter; these are scatter weight, back irradiance, albedo, geometric "
+            "normals and mean curvature");
     if (view) checkImage(slot, view);
     images_[slot] = view;
 }
@@ -128,10 +128,10 @@ Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImage
             plan.screen[id] = curving;
         if (c.thinThickness > 0 && !back)
             invalidArgument("material ", id, " has a thinThickness of ", c.thinThickness,
-                            ", and there is no back irradiance image, whose light would come through");
+                            ", but there is no back irradiance image for the light that comes through");
         if (c.albedoBefore > 0 && !albedo)
             invalidArgument("material ", id, " has an albedoBefore of ", c.albedoBefore,
-                            ", and there is no albedo image");
+                            ", but there is no albedo image");
         PelBlendMaterial blend{};
         blend.before = c.albedoBefore;
         blend.after = albedo ? 1 - c.albedoBefore : 0.0f;
@@ -157,8 +157,8 @@ Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImage
     }
     if (params.accumulate && sharesBytes(images.out, images.irradiance))
         invalidArgument(
-            "PelScatterParams.accumulate is set and the output is the irradiance: what would be added to "
-            "is read");
+            "PelScatterParams.accumulate is set, so the output must not be the irradiance image, "
+            "which is read while the result is added");
     return plan;
 }
 

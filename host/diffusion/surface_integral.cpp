@@ -22,7 +22,8 @@ size_t irradiances(const PelSurfaceIntegralDesc& desc) {
         case PEL_IRRADIANCE_CORNER:
             return desc.numIndices;
     }
-    invalidArgument("PelSurfaceIntegralDesc.irradianceAt is ", int(desc.irradianceAt), "; 0 to 2 are known");
+    invalidArgument("PelSurfaceIntegralDesc.irradianceAt is ", int(desc.irradianceAt),
+                    "; it must be 0, 1 or 2");
 }
 
 void checkFinite(const char* what, float value, bool zero) {

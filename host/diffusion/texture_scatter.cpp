@@ -47,7 +47,7 @@ void checkParams(const PelTextureScatterParams& params, const Profile& profile, 
                         "; 2 to 12 would be right");
     if ((params.albedoBefore > 0 || params.albedoAfter) && !albedo)
         invalidArgument("PelTextureScatterParams.", params.albedoAfter ? "albedoAfter" : "albedoBefore",
-                        " is set, and there is no albedo");
+                        " is set, but there is no albedo image");
 }
 
 }  // namespace
@@ -164,7 +164,7 @@ void TextureScatter::execute(const PelTextureScatterParams& params, const Ref<Pr
     checkImage(PEL_SLOT_RADIANCE, out);
     checkSize(out, "output");
     if (overlapsElsewhere(out, irradiance))
-        invalidArgument("the output overlaps the irradiance image, and not texel on texel");
+        invalidArgument("the output overlaps the irradiance image, but not at the same texels");
     if (albedo) {
         checkImage(PEL_SLOT_ALBEDO, albedo);
         checkSize(albedo, "albedo");

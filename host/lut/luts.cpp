@@ -257,12 +257,12 @@ namespace {
 
 void checkAlike(std::span<const PelLutInfo> tables) {
     const auto different = [&](size_t i, const char* field) {
-        invalidArgument("table ", i, " of the stack has another ", field,
-                        " than the first; a stack for each of them is needed");
+        invalidArgument("table ", i, " of the stack differs from the first in ", field,
+                        "; make a stack for each of them");
     };
     const bool curvature = tables[0].kind == PEL_LUT_CURVATURE;
     if (!curvature && tables[0].kind != PEL_LUT_SHADOW)
-        invalidArgument("a stack is of PEL_LUT_CURVATURE (0) or PEL_LUT_SHADOW (1), not of kind ",
+        invalidArgument("a stack holds tables of PEL_LUT_CURVATURE (0) or PEL_LUT_SHADOW (1), not of kind ",
                         int(tables[0].kind));
     const auto check = [&](size_t i, const auto& first, const auto& other) {
         if (other.width != first.width) different(i, "width");

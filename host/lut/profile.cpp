@@ -91,7 +91,7 @@ Ref<Profile> Profile::gaussians(const PelGaussian* gaussians, uint32_t count) {
         for (int c = 0; c < 3; ++c) {
             if (!std::isfinite(g.weight[c]) || g.weight[c] < 0)
                 invalidArgument("the ", channelNames[c], " weight of Gaussian ", i, " is ", g.weight[c],
-                                "; 0 or more, finite, is needed");
+                                "; a finite value of 0 or more is needed");
             used = used || g.weight[c] > 0;
         }
         if (used) widest = std::max<double>(widest, g.variance);

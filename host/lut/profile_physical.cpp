@@ -145,7 +145,7 @@ double burleyScale(PelBurleyFit fit, double albedo) {
         case PEL_BURLEY_DIFFUSE_MEAN_FREE_PATH:
             return 3.5 + 100 * std::pow(albedo - 0.33, 4);
     }
-    invalidArgument("fit ", int(fit), " of the Burley profile is unknown; 0 to 2 are");
+    invalidArgument("fit ", int(fit), " of the Burley profile is unknown; it must be 0, 1 or 2");
 }
 
 double largest(const Rgb& width) {

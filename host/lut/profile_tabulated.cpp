@@ -94,7 +94,7 @@ Ref<Profile> Profile::table(const float* distances, const float* values, uint32_
         for (int c = 0; c < 3; ++c)
             if (!std::isfinite(values[3 * i + c]) || values[3 * i + c] < 0)
                 invalidArgument("the ", channelNames[c], " value at distance ", distances[i], " is ",
-                                values[3 * i + c], "; 0 or more, finite, is needed");
+                                values[3 * i + c], "; a finite value of 0 or more is needed");
     }
     std::vector<Piece> pieces;
     if (distances[0] > 0) pieces.push_back({0, distances[0], {values[0], values[1], values[2]}, {}});

@@ -216,8 +216,7 @@ std::vector<uint32_t> orientTriangles(const PelMeshTopologyDesc& desc, const flo
         fail(PEL_ERROR_UNSUPPORTED, desc.numIndices / 3,
              " triangles are more than a topology holds (715827882): split the mesh");
     if (normals && !desc.positions)
-        invalidArgument(
-            "normals tell a side only together with PelMeshTopologyDesc.positions, which is NULL");
+        invalidArgument("normals can be used only with PelMeshTopologyDesc.positions, which is NULL");
     Orienter orienter(desc, normals, normalStride);
     std::vector<uint32_t> indices = orienter.run(found);
     found.inconsistentEdges = orienter.left();

@@ -28,7 +28,7 @@ uint32_t checksumOf(const uint32_t* words, size_t count) {
 }
 
 [[noreturn]] void damaged(const char* what) {
-    invalidArgument("these bytes are no analysis of a mesh by this version of the library: ", what,
+    invalidArgument("these bytes are not a mesh analysis by this version of the library: ", what,
                     "; analyse the mesh again");
 }
 
@@ -79,11 +79,11 @@ Ref<MeshTopology> MeshTopology::load(Ref<Device> device, const void* bytes, size
     Header header;
     check(size >= sizeof header, "too short");
     std::memcpy(&header, bytes, sizeof header);
-    check(std::memcmp(header.magic, magic, sizeof magic) == 0, "another beginning");
+    check(std::memcmp(header.magic, magic, sizeof magic) == 0, "a wrong signature");
     check(header.version == version && header.report.structSize == sizeof(PelMeshReport), "another version");
     uint64_t total = 0;
     for (uint32_t words : header.words) total += words;
-    check(size == sizeof header + total * sizeof(uint32_t), "another size than their header says");
+    check(size == sizeof header + total * sizeof(uint32_t), "a size other than their header says");
     std::vector<uint32_t> arrays[6];
     const char* at = static_cast<const char*>(bytes) + sizeof header;
     std::vector<uint32_t> all(total);

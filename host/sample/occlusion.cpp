@@ -42,7 +42,7 @@ bool isAlike(const GBuffer& g, int x, int y, Vec3 p, Vec3 n) {
 template <int Planes, class DirectionAt, class AddTo>
 Image meanOverRays(const GBuffer& g, int rays, double offset, float empty, DirectionAt&& directionAt,
                    AddTo&& addTo) {
-    if (rays < 1) throw std::invalid_argument("occlusion: at least one ray a pixel");
+    if (rays < 1) throw std::invalid_argument("occlusion: at least one ray per pixel is needed");
     using Sum = std::array<float, Planes>;
     Image own(g.width, g.height, Planes + 1), mean(g.width, g.height, Planes, empty);  // and how many rays
     const auto isBackground = [&](int x, int y) { return g.coverage.at(0, x, y) == 0; };

@@ -63,7 +63,7 @@ std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene, 
             if (std::isfinite(v[0]) && std::abs(v[0]) > std::abs(furthest)) furthest = v[0];
         });
         if (std::abs(furthest) > 1.001f) {
-            found.push_back("the depth channel reaches " + shown(furthest) + ", and device depth " +
+            found.push_back("the depth channel reaches " + shown(furthest) + ", but device depth " +
                             (furthest > 0 ? "ends at 1" : "is -1 or more") +
                             ": it looks like a distance along the view; name a position channel, or write "
                             "the depth that the projection gives");
@@ -79,11 +79,11 @@ std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene, 
         // An object of skin is not smaller than a fingertip, nor larger than a few people.
         if (size > 2.3f * reach && size < 500 * reach) continue;
         found.push_back(
-            concat("what is seen is ", shown(size),
-                   " mm long with unit_mm = ", shown(scene.options.millimetresPerUnit),
-                   ", and light reaches ", shown(reach), " mm far in the profile of material ", m.id,
-                   ": unit_mm says how many millimetres a unit of the positions is",
-                   (fromDepth ? ", or the depth is not what inverse_view_projection takes, such as a "
+            concat("the visible scene is ", shown(size),
+                   " mm across with unit_mm = ", shown(scene.options.millimetresPerUnit),
+                   ", but light travels ", shown(reach), " mm in the profile of material ", m.id,
+                   ": set unit_mm to the millimetres in a unit of the positions",
+                   (fromDepth ? ", or check that the depth is what inverse_view_projection takes, not a "
                                 "distance along the view"
                               : "")));
     }

@@ -48,7 +48,7 @@ void checkContent(const ImageView& view, Content content, const char* what) {
 
 void checkChoice(std::string_view structure, const char* field, int value, int count, const char* type) {
     if (value < 0 || value >= count)
-        invalidArgument(structure, ".", field, " is ", value, ", which is none of ", type);
+        invalidArgument(structure, ".", field, " is ", value, ", which is not a value of ", type);
 }
 
 bool isUnit(const float (&v)[3]) {
@@ -253,15 +253,15 @@ void checkCube(const ShaderLight& light, const std::string& name) {
             at += double(m[4 * r + c]) * l.position[c],
                 largest = std::max(largest, std::abs(double(l.position[c])));
         if (!(std::abs(at) <= 1e-3 * std::max(1.0, largest)))
-            invalidArgument(name, ".worldToShadow takes the light's position to a place where component ", r,
-                            " is ", at, "; a cube has its light in the origin");
+            invalidArgument(name, ".worldToShadow maps the light's position to a point whose component ", r,
+                            " is ", at, "; the light of a cube map must be at the origin");
         for (int q = 0; q <= r; ++q) {
             double dot = 0;
             for (int c = 0; c < 3; ++c) dot += double(m[4 * r + c]) * m[4 * q + c];
             if (!(std::abs(dot - (q == r)) < 1e-3))
                 invalidArgument(name, ".worldToShadow stretches or shears (rows ", q, " and ", r,
                                 " have the product ", dot,
-                                "); a cube needs a rotation and the light in the origin");
+                                "); a cube map needs a rotation, with the light at the origin");
         }
     }
     if (l.shadowProjection == PEL_SHADOW_CUBE && l.shadowDepthA == 0)
@@ -277,8 +277,7 @@ void checkCascades(const ShaderLight& light, const std::string& name) {
     const PelLight& l = light.params;
     if (l.type != PEL_LIGHT_DIRECTIONAL || l.shadowProjection != PEL_SHADOW_PARALLEL)
         invalidArgument(name, ".shadowCascades is ", l.shadowCascades,
-                        "; cascades are parallel maps of directional lights, and this is another kind of "
-                        "light or projection");
+                        "; only directional lights with parallel maps can have cascades");
     for (uint32_t i = 0; i < l.shadowCascades; ++i) {
         const ShadowCascade c = shadowCascade(light, i);
         const std::string matrix = i ? text("cascadeToShadow[", i - 1, "]") : "worldToShadow";

@@ -50,21 +50,21 @@ std::string chooseMethods(ShaderState& state, uint32_t methods, uint64_t tooMany
             material.params.scatterTaps = border ? diskTapsForBlocks : 0;
             if (border)
                 say("material ", id, " scatters by ", diskTapsForBlocks,
-                    " taps on a disk, for it has a borderColor: without, it would scatter over the whole "
-                    "profile, and with what the lights' shadow maps show beside it");
+                    " taps on a disk, because it has a borderColor; without one it would scatter over the "
+                    "whole profile, and include surfaces that only the shadow maps show");
         } else if (tooMany) {
-            say("material ", id, " scatters by its tables, for PelShaderOptions.scratchBudget is ",
+            say("material ", id, " scatters by its tables, because PelShaderOptions.scratchBudget is ",
                 state.options.scratchBudget,
-                " bytes, and scattering on the screen takes the whole frame at a time, ", tooMany, " bytes");
+                " bytes, and scattering on the screen needs memory for the whole frame, ", tooMany, " bytes");
         } else if (!places) {
             say("material ", id,
-                " scatters by its tables, for there are neither positions nor depth: with them it would "
-                "scatter on the screen, which is nearer to light");
+                " scatters by its tables, because there are neither positions nor depth; with them it would "
+                "scatter on the screen, which is more accurate");
         } else {
             say("material ", id,
-                " scatters by its tables, for the shadow image of a light is wide: with irradiance, a shadow "
-                "map in its place, or PelLight.plainShadow, it would scatter on the screen, which is nearer "
-                "to light");
+                " scatters by its tables, because a light has a wide shadow image; with an irradiance "
+                "image, a shadow map instead, or PelLight.plainShadow, it would scatter on the screen, which "
+                "is more accurate");
         }
     }
     // Materials without a profile and tables use the same irradiance and shadows as those that scatter.
@@ -105,22 +105,22 @@ void checkMaterial(uint32_t id, const ShaderMaterial& material, const ShaderStat
     const PelMaterial& m = material.params;
     if (m.thinThickness > 0 && (!material.profile || !readsIrradiance(material)))
         invalidArgument("material ", id, " has a thinThickness of ", m.thinThickness, " and ",
-                        material.profile ? "takes its light from tables" : "no profile",
-                        "; it needs a profile and another scattering than preintegrated");
+                        material.profile ? "scatters by its tables" : "no profile",
+                        "; it needs a profile and a scattering other than preintegrated");
     if (m.thinThickness > 0 && state.images[PEL_SLOT_IRRADIANCE] && !state.images[PEL_SLOT_IRRADIANCE_BACK])
-        invalidArgument("material ", id, " has a thinThickness of ", m.thinThickness,
-                        ", and there is an irradiance image, and no back irradiance image: the light of the "
-                        "other side is not known");
+        invalidArgument(
+            "material ", id, " has a thinThickness of ", m.thinThickness,
+            ", but there is an irradiance image without a back irradiance image: the light on the "
+            "other side is unknown");
     if (m.scattering == PEL_SCATTERING_TEXTURE && (!material.scatteredTexture || !state.images[PEL_SLOT_UV]))
-        invalidArgument("material ", id, " takes light that was scattered in its texture, and there is no ",
-                        material.scatteredTexture
-                            ? "UV image to sample it by"
-                            : "such texture: pelShaderSetScatteredTexture gives it one");
+        invalidArgument("material ", id, " uses light that was scattered in its texture, but there is no ",
+                        material.scatteredTexture ? "UV image to sample it by"
+                                                  : "such texture: pelShaderSetScatteredTexture sets it");
     if (!readsIrradiance(material) || m.scattering == PEL_SCATTERING_NONE || byTaps(m)) return;
     if (hasBorder(m))
         fail(PEL_ERROR_UNSUPPORTED, "material ", id, " has a borderColor and scatters by \"",
              scatteringName(m.scattering),
-             "\"; separable, and screen with scatterTaps of 8 to 256, let light flow over borders");
+             "\"; only separable, and screen with scatterTaps of 8 to 256, let light cross borders");
 }
 
 }  // namespace

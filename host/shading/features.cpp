@@ -10,7 +10,7 @@ namespace pel {
 namespace {
 
 void need(bool present, const char* what, const char* why) {
-    if (!present) invalidArgument("the ", what, " is needed ", why, ", and not set");
+    if (!present) invalidArgument("the ", what, " is needed ", why, ", but not set");
 }
 
 void checkSizes(const ShaderState& state) {
@@ -21,7 +21,7 @@ void checkSizes(const ShaderState& state) {
             if (isOutput(slot) && slot != itself && state.images[slot] &&
                 overlapsElsewhere(state.images[slot], view))
                 invalidArgument("the ", slotName(slot), " image overlaps the ", what,
-                                " image in memory, and not pixel on pixel");
+                                " image in memory, but not at the same pixels");
     };
     auto check = [&](const ImageView& view, const std::string& what, int itself = -1) {
         if (!view) return;
@@ -31,9 +31,9 @@ void checkSizes(const ShaderState& state) {
                             ", the radiance image ", target.width, " x ", target.height,
                             "; all images of a frame need one size");
         if (overlapsElsewhere(target, view))
-            invalidArgument(
-                "the radiance image overlaps the ", what,
-                " image in memory, and not pixel on pixel: pixels would be overwritten before they are read");
+            invalidArgument("the radiance image overlaps the ", what,
+                            " image in memory, but not at the same pixels: pixels would be overwritten "
+                            "before they are read");
     };
     for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot) check(state.images[slot], slotName(slot), slot);
     const auto checkApart = [&](const ImageView& view, const std::string& what) {
@@ -63,7 +63,7 @@ void checkLightFormats(const ShaderState& state, PelLightSlot slot) {
         if (slot == PEL_LIGHT_WIDE_SHADOW && view.format != PEL_FORMAT_R32F &&
             std::ranges::any_of(state.lights, [&](const ShaderLight& l) { return filtersShadow(state, l); }))
             fail(PEL_ERROR_UNSUPPORTED, "a wide shadow image has format ", view.info().name,
-                 "; beside a light whose wide shadow is made from its shadow map it needs R32F");
+                 "; it must be R32F if the wide shadow of another light is made from its shadow map");
         if (!first) first = &view;
         if (view.format != first->format)
             fail(PEL_ERROR_UNSUPPORTED, "one ", lightSlotName(slot), " image has format ", first->info().name,

@@ -35,7 +35,7 @@ void Shader::setView(ImageView& to, const PelImageDesc* image, const char* name,
 
 void Shader::setImage(PelImageSlot slot, const PelImageDesc* image) {
     if (uint32_t(slot) >= PEL_SLOT_COUNT)
-        invalidArgument("image slot ", int(slot), " is none of PelImageSlot");
+        invalidArgument("image slot ", int(slot), " is not a value of PelImageSlot");
     setView(state_.images[slot], image, slotName(slot), [&](const ImageView& v) { checkImage(slot, v); });
 }
 
@@ -53,7 +53,7 @@ void Shader::setMaterial(uint32_t id, const PelMaterial* material, Lut* curvatur
         if (!lut) return;
         if (&lut->device() != device_.get())
             invalidArgument("the ", what, " LUT belongs to another PelDevice than the shader");
-        if (lut->info().kind != kind) invalidArgument("the LUT given as ", what, " LUT is of the other kind");
+        if (lut->info().kind != kind) invalidArgument("the LUT given as ", what, " LUT is of another kind");
     };
     check(curvatureLut, PEL_LUT_CURVATURE, "curvature");
     check(shadowLut, PEL_LUT_SHADOW, "shadow");
@@ -119,7 +119,8 @@ void Shader::setEye(uint32_t id, const PelEye* eye, Lut* caustics) {
     const auto eyes =
         std::ranges::count_if(state_.materials, [](const auto& m) { return m.second.eye.has_value(); });
     if (!material.eye && eyes >= PEL_EYES)
-        invalidArgument("material ", id, " would be eye ", eyes + 1, "; ", PEL_EYES, " are the most");
+        invalidArgument("material ", id, " would be eye ", eyes + 1, "; at most ", PEL_EYES,
+                        " are supported");
     const Ref<Profile> profile = eye->irisProfile ? fromHandle<Profile>(eye->irisProfile) : Ref<Profile>();
     // An eye that only moves keeps its table.
     const bool keeps = !caustics && set.ownCaustics && set.irisProfile.get() == profile.get() &&
@@ -134,7 +135,7 @@ void Shader::setEye(uint32_t id, const PelEye* eye, Lut* caustics) {
 void Shader::setIrisTexture(uint32_t id, const PelImageDesc* texture) {
     ShaderMaterial& material = materialFor(id, "iris");
     if (!material.eye)
-        invalidArgument("material ", id, " is no eye: pelShaderSetEye comes before its iris texture");
+        invalidArgument("material ", id, " is not an eye: pelShaderSetEye comes before its iris texture");
     setView(material.eye->iris, texture, "iris texture", checkIrisTexture);
     material.eye->textureNumber = nextNumber();
 }
@@ -157,10 +158,10 @@ void Shader::setLights(const PelLight* lights, uint32_t count) {
 
 void Shader::setLightImage(uint32_t light, PelLightSlot slot, const PelImageDesc* image) {
     if (light >= state_.lights.size())
-        invalidArgument("light ", light, " of ", state_.lights.size(),
-                        " was named; pelShaderSetLights comes first");
+        invalidArgument("there is no light ", light, ", only ", state_.lights.size(),
+                        "; pelShaderSetLights comes first");
     if (uint32_t(slot) >= PEL_LIGHT_SLOT_COUNT)
-        invalidArgument("light image slot ", int(slot), " is none of PelLightSlot");
+        invalidArgument("light image slot ", int(slot), " is not a value of PelLightSlot");
     const std::string name = text(lightSlotName(slot), " (light ", light, ")");
     setView(state_.lights[light].images[slot], image, name.c_str(),
             [&](const ImageView& view) { checkLightImage(slot, view, name.c_str()); });

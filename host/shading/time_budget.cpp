@@ -80,7 +80,7 @@ Tuning tuningOf(const PelDeviceInfo& device) {
         if (s.halfRate) method = scatteringName(PEL_SCATTERING_LIGHT);
         const auto* const named = std::ranges::find(known, method, scatteringName);
         if (named == std::end(known))
-            damaged("\"", method, "\" is none of none, preintegrated, auto, light and ", halfRateLight);
+            damaged("\"", method, "\" is not one of none, preintegrated, auto, light and ", halfRateLight);
         s.method = *named;
         for (const double v : {s.targetError, s.perPixel, s.perFrame, s.error})
             if (!(v >= 0 && v <= 1e9)) damaged(v, " is not between 0 and 1e9");
@@ -164,7 +164,7 @@ TakenSetting keepToBudget(ShaderState& state, uint32_t methods, Device& device, 
     TunedSetting taken = *std::ranges::min_element(open, faster);
     if (time(taken) > budget) {
         warnings += text(warnings.empty() ? "" : "\n", "PelShaderOptions.timeBudget is ", budget,
-                         " ms, and the fastest method that is possible takes ", time(taken), " ms");
+                         " ms, but the fastest possible method takes ", time(taken), " ms");
     } else {
         // The fastest of the settings whose error cannot be told from the smallest.
         constexpr double alike = 1.02;

@@ -93,9 +93,9 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
                  scatteringName(m.scattering), "\" (docs/guide/methods.md, \"Controls\")");
         if (m.scattering == PEL_SCATTERING_LIGHT && !lightIsMapped(state))
             warn("material ", id,
-                 " scatters by \"light\", and shadow maps do not hold all light: what lights without a map "
-                 "and ambient light give is summed over the screen, as by screen; a shadow map for every "
-                 "light and no ambient light would be right");
+                 " scatters by \"light\", but not all light comes from shadow maps: ambient light and lights "
+                 "without a map are summed over the screen, as by \"screen\"; give every light a shadow map "
+                 "and remove ambient light to avoid this");
         if (!material.profile) continue;
         const bool byMap = (features & PEL_FEATURE_TRANSMISSION) && !thickness && m.transmission != 0;
         const bool summed = m.scattering == PEL_SCATTERING_SCREEN || m.scattering == PEL_SCATTERING_LIGHT;
@@ -105,16 +105,16 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
             const MapLengths map =
                 lengthsOf(state.lights[i].params, state.lights[i].images[PEL_LIGHT_SHADOW_MAP]);
             if (map.texel > reach && (byMap || summed))
-                warn("a texel of the shadow map of light ", i, " is ", map.texel, " long, and light reaches ",
-                     reach, " far in material ", id,
-                     ": what comes through thin parts is guessed; a finer map is needed, or "
-                     "millimetresPerUnit is not ",
+                warn("a texel of the shadow map of light ", i, " is ", map.texel,
+                     " wide, but light travels only ", reach, " in material ", id,
+                     ": light through thin parts is inaccurate; use a finer map, or check that "
+                     "millimetresPerUnit is ",
                      state.options.millimetresPerUnit);
             if (map.span > 0 && map.span < leastReaches * reach)
-                warn("the shadow map of light ", i, " spans ", map.span, ", and light reaches ", reach,
-                     " far in material ", id,
-                     ": nothing of that size scatters so; PelShaderOptions.millimetresPerUnit (",
-                     state.options.millimetresPerUnit, ") says how many millimetres a unit has");
+                warn("the shadow map of light ", i, " spans ", map.span, ", but light travels ", reach,
+                     " in material ", id,
+                     ", too far for an object of that size: check PelShaderOptions.millimetresPerUnit (",
+                     state.options.millimetresPerUnit, ")");
         }
     }
     return all;

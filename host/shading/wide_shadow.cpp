@@ -235,9 +235,9 @@ class ShadowBounds final : public Pass {
             }
         }
         if (floats > UINT32_MAX)  // kernels count them with 32 bits
-            fail(PEL_ERROR_UNSUPPORTED, "the shadow maps that are filtered are ", plan.filteredLights.size(),
-                 " lights' and too large together: ", floats, " bounds of their depths; ", UINT32_MAX,
-                 " are the most");
+            fail(PEL_ERROR_UNSUPPORTED, "the filtered shadow maps of ", plan.filteredLights.size(),
+                 " lights are too large together: they have ", floats, " bounds of depths, at most ",
+                 UINT32_MAX, " are supported");
         plan.bounds = cl::Memory();
         MapsKey key("shadow_bounds");
         for (const BoundedMap& map : plan.boundedMaps)

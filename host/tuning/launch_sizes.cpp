@@ -32,7 +32,7 @@ std::string readSizes(const std::string& line, const PelDeviceInfo& device, Laun
         if (!(words >> size) || size < 1 || size > 1 << 20) return "four numbers from 1 on are needed";
     std::string made;
     std::getline(words >> std::ws, made);
-    if (made != madeWith(device)) return "measured with " + made + ", and this is " + madeWith(device);
+    if (made != madeWith(device)) return "measured with " + made + ", but this is " + madeWith(device);
     policy = {size_t(sizes[0]), size_t(sizes[1]), size_t(sizes[2]), size_t(sizes[3])};
     return {};
 }
@@ -86,7 +86,7 @@ LaunchRule launchRule(const PelDeviceInfo& device) {
     };
     if (!std::filesystem::is_regular_file(path, error) ||
         std::filesystem::file_size(path, error) > mostTuningBytes || error)
-        return ignored("it is no readable file of at most 1 MiB");
+        return ignored("it is not a readable file of at most 1 MiB");
     std::ifstream file(path, std::ios::binary);
     bool here = false;
     size_t number = 0;
@@ -103,7 +103,7 @@ LaunchRule launchRule(const PelDeviceInfo& device) {
         return rule;
     }
     if (number == 0) return ignored("it is empty or cannot be read");
-    if (own) return ignored("it has none for this device");
+    if (own) return ignored("it has no sizes for this device");
     return rule;  // the record is only for time budgets
 }
 

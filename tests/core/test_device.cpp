@@ -266,7 +266,7 @@ TEST(Errors, TheLogHearsNamesErrorsAndWarnings) {
         warnings += (i > 3 ? "\n" : "") + heard.lines[i].substr(7);
     }
     EXPECT_EQ(warnings, shader.warnings());
-    expectRefused("could be named", [] { return pelSetName(nullptr, "nothing"); });
+    expectRefused("cannot be named", [] { return pelSetName(nullptr, "nothing"); });
 }
 
 TEST(Device, MemoryComesFromTheHost) {
@@ -298,6 +298,6 @@ TEST(Device, MemoryComesFromTheHost) {
     EXPECT_EQ(zeros.readAll<float>(), std::vector<float>(1024));
     EXPECT_EQ(ones.readAll<float>(), std::vector<float>(100, 1));
     host.full = true;
-    expectRefused(PEL_ERROR_OUT_OF_MEMORY, {"PelDeviceDesc.allocate has no 64 bytes"},
+    expectRefused(PEL_ERROR_OUT_OF_MEMORY, {"PelDeviceDesc.allocate could not provide 64 bytes"},
                   [&] { Buffer(device, 64); });
 }

@@ -54,7 +54,7 @@ TEST_F(LaunchSizes, AFileCountsForItsOwnDeviceDriverAndVersion) {
     PelDeviceInfo later = info;
     std::strcpy(later.driver, "1.3");
     EXPECT_EQ(pel::launchRule(later).policy, pel::builtInPolicy(1));
-    EXPECT_TRUE(contains(pel::launchRule(later).warning, "1.2, and this is "))
+    EXPECT_TRUE(contains(pel::launchRule(later).warning, "1.2, but this is "))
         << pel::launchRule(later).warning;
     EXPECT_NE(pel::launchFile(later), own);
 }
@@ -65,7 +65,7 @@ TEST_F(LaunchSizes, DamagedFilesAreIgnoredWithTheReason) {
                       head = good.substr(0, good.find("launch "));
     const std::string made = good.substr(good.find("launch ") + std::string("launch 128 4 2 32").size());
     tuning_.set(path("tuning.txt").c_str());
-    EXPECT_TRUE(contains(pel::launchRule(info).warning, "no readable file"));
+    EXPECT_TRUE(contains(pel::launchRule(info).warning, "not a readable file"));
     for (size_t length = 0; length < good.size() - 1; ++length) {
         write("tuning.txt", good.substr(0, length));
         EXPECT_EQ(pel::launchRule(info).policy, pel::builtInPolicy(1)) << length;
@@ -88,7 +88,7 @@ TEST_F(LaunchSizes, DamagedFilesAreIgnoredWithTheReason) {
     small.maxWorkGroupSize = 100;
     EXPECT_EQ(pel::allowedPolicy({1 << 20, 1, 100, 1 << 20}, small), (LaunchPolicy{64, 16, 64, 64}));
     tuning_.set(path("").c_str());
-    EXPECT_TRUE(contains(pel::launchRule(info).warning, "no readable file")) << "a folder";
+    EXPECT_TRUE(contains(pel::launchRule(info).warning, "not a readable file")) << "a folder";
 }
 
 TEST_F(LaunchSizes, NoSizeChangesABit) {

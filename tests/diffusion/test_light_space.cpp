@@ -520,7 +520,7 @@ TEST(LightSpace, AnIdIsButAName) {
 // counting each face of a cube.
 TEST(LightSpace, WithoutAllMapsTheScreenDoes) {
     const auto said = [](const Shown& lit) {
-        return lit.warnings.find("shadow maps do not hold all light") != std::string::npos;
+        return lit.warnings.find("not all light comes from shadow maps") != std::string::npos;
     };
     Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{1, 0.2, 0.4}), 64)}, 40, byLight, 0.4f);
     f.lamps[0].maps.clear();

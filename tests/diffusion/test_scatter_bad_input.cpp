@@ -251,7 +251,7 @@ TEST(ScatterControls, OfAPelScatterAreChecked) {
         return pellucid::imageDesc(b, PEL_FORMAT_RGB32F, side, side);
     };
     const auto grey = imageOf(device(), std::vector<float>(16), 4, 4);
-    expectRefused("none that a PelScatter keeps", [&] { scatter.set(PEL_SLOT_CURVATURE, grey); });
+    expectRefused("not a slot of a PelScatter", [&] { scatter.set(PEL_SLOT_CURVATURE, grey); });
     expectRefused("albedo", [&] { scatter.set(PEL_SLOT_ALBEDO, grey); });
     scatter.clear(PEL_SLOT_ALBEDO);
     const Buffer light(device(), p.irradiance), places(device(), p.positions);

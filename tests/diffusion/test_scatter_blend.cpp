@@ -231,7 +231,7 @@ TEST(ScatterBlend, BlocksBecomeADiskWhereTheyHaveTo) {
     EXPECT_NE(alone(0, true), alone(0, false));
     EXPECT_EQ(automatic.light, disk.light);
     EXPECT_NE(automatic.light, usual.light);
-    EXPECT_NE(automatic.warnings.find("64 taps on a disk, for it has a borderColor"), std::string::npos)
+    EXPECT_NE(automatic.warnings.find("64 taps on a disk, because it has a borderColor"), std::string::npos)
         << automatic.warnings;
     EXPECT_EQ(disk.warnings, "");
     const PelShaderStats& stats = automatic.stats;

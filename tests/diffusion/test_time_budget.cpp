@@ -156,8 +156,8 @@ TEST_F(TimeBudget, RefusesDamagedRecordsByName) {
                {head + "auto 0.1 1e999 1 0.1\n", "line 3: a method and four numbers"},
                {head + "auto 0.1 -1 1 0.1\n", "line 3: -1 is not between"},
                {head + "auto 2 1 1 0.1\n", "line 3: errors are shares"},
-               {head + "\n\nsmooth 0 1 1 0.1\n", "line 5: \"smooth\" is none of"},
-               {head + "texture 0 1 1 0.1\n", "\"texture\" is none of"},
+               {head + "\n\nsmooth 0 1 1 0.1\n", "line 5: \"smooth\" is not one of"},
+               {head + "texture 0 1 1 0.1\n", "\"texture\" is not one of"},
                {std::string((1 << 20) + 1, '#'), "more than 1048576 bytes"},
                {[&] {
                     std::string many = head;

@@ -102,7 +102,7 @@ TEST_F(AtomicFileTest, FailuresOfTheDiskAreErrors) {
             EXPECT_EQ(filesInFolder(), 1u);
         }
     failFolderSync = EIO;
-    EXPECT_TRUE(contains(refusal("o"), "may not outlive a power cut: Input/output error"));
+    EXPECT_TRUE(contains(refusal("o"), "may be lost in a power cut: Input/output error"));
     EXPECT_EQ(read(path("o")), "new");
     failFolderSync = EINVAL;  // of file systems that cannot
     EXPECT_EQ(refusal("o"), "");

@@ -160,7 +160,7 @@ TEST_F(HostileImage, HeadersThatLie) {
          "more than the limit"},
         {[](Exr& e) { e.more = Exr::attribute("type", "string", "deepscanline"); }, "deep pixels"},
         {[](Exr& e) { e.more = Exr::attribute("compression", "compression", "\x4d"); },
-         "has compression 77, which is not known here"},
+         "has compression 77, which is not supported"},
         {[](Exr& e) { e.more = "x"; }, "is damaged or cut off"},
     };
     for (const auto& row : rows) {

@@ -357,7 +357,7 @@ TEST_F(MeshFile, TrianglesThatFaceAnotherWayThanTheirNeighboursAreToldOrTurned) 
     const MeshLoadOptions orient{.orient = true};
     MeshData mesh = load("turned.off", off("0 3 1"));
     ASSERT_EQ(mesh.warnings.size(), 1u);
-    EXPECT_EQ(mesh.warnings[0].find("1 triangle faces another way"), 0u) << mesh.warnings[0];
+    EXPECT_EQ(mesh.warnings[0].find("1 triangle faces the other way"), 0u) << mesh.warnings[0];
     EXPECT_EQ(second(mesh), (Indices{0, 3, 1}));
     mesh = load("turned.off", off("0 3 1"), orient);
     EXPECT_TRUE(mesh.warnings.empty());

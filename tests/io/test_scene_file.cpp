@@ -247,7 +247,7 @@ TEST_F(SceneFileTest, MistakesNameKeyAndWhatIsRight) {
         {"[camera]", "[scatter]\neverywhere = 2\n[camera]", "'everywhere' in [scatter] is 2; it must be"},
         {"diffusion_radius = 2.7", "scale = 1", "'scale' is for scenes with a [scatter] table"},
         {"curvature_lut = \"skin\"", "curvature_lut = \"wax\"",
-         "asks for the curvature_lut 'wax'; there is only: skin"},
+         "refers to the curvature_lut 'wax'; there is only: skin"},
         {"curvature_lut = \"skin\"", "normal_map = \"n.png\"", "'uv' in [channels] is missing"},
         {"[[curvature_lut]]", "[[material]]\n[[curvature_lut]]", "used twice"},
         {"position = [0, 0, 600]", "position = [0, 0", "s.toml:"},
@@ -259,7 +259,7 @@ TEST_F(SceneFileTest, MistakesNameKeyAndWhatIsRight) {
     EXPECT_TRUE(contains(errorOf("radius_min = 1", "radius_min = -1"), at("radius_min") + "'radius_min'"));
     EXPECT_TRUE(
         contains(errorOf("[camera]", "[[eye]]\nmaterial = 9\ncenter = [0, 0, 0]\ngaze = [0, 0, 1]\n[camera]"),
-                 at("[camera]") + "the eye of material 9 has no such material"));
+                 at("[camera]") + "the eye refers to material 9, which does not exist"));
     EXPECT_TRUE(contains(messageOf<FileError>([&] { readScene(path("none.toml")); }), "No such file"));
 }
 

@@ -204,7 +204,7 @@ TEST(MeshOrient, SaysWhatIsWrong) {
     refused("positionStride is 7", nullptr, 0, out.data());
     desc = topologyDesc(mesh);
     desc.positions = nullptr;
-    refused("together with", mesh.normals.data(), 0, out.data());
+    refused("only with", mesh.normals.data(), 0, out.data());
     desc = topologyDesc(mesh);
     mesh.indices[4] = 99;
     refused("triangle 1", nullptr, 0, out.data());

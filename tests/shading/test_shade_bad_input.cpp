@@ -185,7 +185,7 @@ TEST(ShadeBadInput, Values) {
     const PelMaterial good = fixture::faceworksMaterial();
     expectRefused("material id 0", [&] { r.shader.setMaterial(0, good); });
     expectRefused("material id 256", [&] { r.shader.setMaterial(256, good); });
-    expectRefused({"curvature LUT", "other kind"}, [&] { r.shader.setMaterial(1, good, tables().shadow); });
+    expectRefused({"curvature LUT", "another kind"}, [&] { r.shader.setMaterial(1, good, tables().shadow); });
 
     const auto light = [&](const char* word, auto change) {
         PelLight l = pelLightDefaults();

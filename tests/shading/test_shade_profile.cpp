@@ -324,7 +324,7 @@ TEST(ShadeProfile, AutoKeepsToTheScratchBudget) {
         shading.shader.set(options).commit();
         return std::string(shading.shader.warnings());
     };
-    const std::string all = "takes the whole frame at a time, ";
+    const std::string all = "needs memory for the whole frame, ";
     const std::string small = said(4096);
     const size_t at = small.find(all);
     ASSERT_NE(at, std::string::npos) << small;

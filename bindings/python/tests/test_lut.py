@@ -38,7 +38,7 @@ def test_texels_go_there_and_back(device):
     (lambda d: pel.Lut.read_stack(d, [pel.LutInfo()]), TypeError, "ShadowLutDesc is needed"),
     (lambda d: pel.Lut.read_stack(d, [pel.ShadowLutDesc(), pel.CurvatureLutDesc()]), TypeError, "needed"),
     (lambda d: pel.Lut.read_stack(d, [pel.ShadowLutDesc(width=w) for w in (3, 4)]), pel.PellucidError,
-     "another width"),
+     "in width"),
     (lambda d: pel.Lut(), TypeError, "Lut.curvature")])
 def test_bad_use(device, use, error, message):
     with pytest.raises(error, match=message):

@@ -133,7 +133,7 @@ def test_orient_mesh_turns_what_disagrees(device, sphere):
     assert flat.shape == turned.ravel().shape
     with pytest.raises(ValueError, match="normals has 3 rows"):
         pel.orient_mesh(turned, positions=sphere.positions, normals=sphere.normals[:3])
-    with pytest.raises(pel.PellucidError, match="together with PelMeshTopologyDesc.positions"):
+    with pytest.raises(pel.PellucidError, match="only with PelMeshTopologyDesc.positions"):
         pel.orient_mesh(turned, len(sphere.positions), normals=sphere.normals)
 
 

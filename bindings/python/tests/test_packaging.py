@@ -97,7 +97,7 @@ def test_without_a_library_the_package_loads_and_says_what_to_install():
 
 def test_another_library_is_named_and_the_next_of_the_list_is_taken():
     failed = python("import pellucid; pellucid.Device()", PELLUCID_OPENCL="libm.so.6")
-    assert "libm.so.6 is no library of OpenCL" in failed.stderr
+    assert "libm.so.6 is not an OpenCL library" in failed.stderr
     assert python(COMPUTE, PELLUCID_OPENCL="/nowhere.so:libm.so.6::libOpenCL.so.1").returncode == 0
 
 

@@ -59,7 +59,7 @@ def test_materials_controls_and_images(device):
     scatter.execute(irradiance, positions, ids=ids, out=out, params=pel.ScatterParams(accumulate=1))
     assert np.allclose(out, 1 + half, atol=1e-6)
     for call, message in [
-            (lambda: scatter.set_image("curvature", np.ones(ids.shape, np.float32)), "none that a Pel"),
+            (lambda: scatter.set_image("curvature", np.ones(ids.shape, np.float32)), "not a slot of a Pel"),
             (lambda: scatter.set_material(300, pel.Profile.skin()), "1 to 255"),
             (lambda: scatter.set_controls(1, scatter_taps=3), "scatterTaps is 3")]:
         with pytest.raises(pel.PellucidError, match=message):

@@ -94,7 +94,7 @@ void requireMemory(uint64_t bytes, const char* what) {
     for (const auto& [of, left, rest] : limits)
         if (left != unlimited && bytes > leftOf(left, rest))
             fail(PEL_ERROR_OUT_OF_MEMORY, bytes, " bytes for ", what, " are more than is left of ", of, ": ",
-                 left, ", ", rest, " of which are kept for the driver");
+                 left, " bytes, ", rest, " of which are reserved for the driver");
 }
 
 double uptime() {
@@ -147,12 +147,13 @@ namespace {
 
 std::string whyNotPrivate(const fs::path& part, bool last) {
     struct stat status {};
-    if (::stat(part.c_str(), &status) != 0) return text(part.string(), " cannot be looked at");
+    if (::stat(part.c_str(), &status) != 0) return text(part.string(), " cannot be examined");
     if (!S_ISDIR(status.st_mode)) return text(part.string(), " is not a folder");
     if (status.st_uid != 0 && status.st_uid != ::geteuid())
         return text(part.string(), " belongs to user ", status.st_uid, ", not to user ", ::geteuid());
     const bool ofOthers = status.st_mode & (S_IWGRP | S_IWOTH);
-    if (ofOthers && (last || !(status.st_mode & S_ISVTX))) return text("others may write to ", part.string());
+    if (ofOthers && (last || !(status.st_mode & S_ISVTX)))
+        return text("other users may write to ", part.string());
     return {};
 }
 
@@ -171,7 +172,7 @@ std::string whyNotPrivate(const fs::path& folder) {
     std::error_code error;
     const fs::path named = fs::absolute(folder, error).lexically_normal(),
                    real = fs::canonical(folder, error);
-    if (error) return text(folder.string(), " cannot be looked at");
+    if (error) return text(folder.string(), " cannot be examined");
     // A link may lead elsewhere: who may replace the link matters as much as who may write to its target.
     for (const fs::path& whole : {named, real}) {
         fs::path part;

@@ -16,8 +16,8 @@ void requireMemory(uint64_t bytes, const char* what) {
     const uint64_t left = status.ullAvailPageFile;  // of memory and page file that this process may commit
     if (bytes > (left > rest ? left - rest : 0))
         fail(PEL_ERROR_OUT_OF_MEMORY, bytes, " bytes for ", what,
-             " are more than is left of this machine's memory: ", left, ", ", rest,
-             " of which are kept for the driver");
+             " are more than is left of this machine's memory: ", left, " bytes, ", rest,
+             " of which are reserved for the driver");
 }
 
 void* mapPages(size_t bytes) {
@@ -62,7 +62,7 @@ std::string whyNotPrivate(const fs::path& folder) {
     if (!fs::is_directory(folder, error)) return text(folder.string(), " is not a folder");
     for (const fs::path& profile : system::cacheHomes())
         if (below(folder, profile)) return {};
-    return text(folder.string(), " is not below the user's profile, where others may not write");
+    return text(folder.string(), " is not below the user's profile, where other users may not write");
 }
 
 std::string whyNotWritable(const fs::path&) {

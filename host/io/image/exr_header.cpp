@@ -83,8 +83,8 @@ class Check {
                 if (method >= std::size(rows))
                     throw FileError(path_,
                                     concat("has compression ", method,
-                                           ", which is not known here; None, RLE, ZIP, PIZ, PXR24, B44 or "
-                                           "DWA would be right"));
+                                           ", which is not supported; None, RLE, ZIP, PIZ, PXR24, B44 and "
+                                           "DWA are"));
                 part.rowsPerChunk = rows[method];
             } else if (a->name == "chunkCount") {
                 need("int", 4);

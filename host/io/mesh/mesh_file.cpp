@@ -124,12 +124,12 @@ void checkOrder(MeshData& mesh, bool orient) {
         mesh.triangles = std::move(turned);
         mesh.trianglesTurned = found.trianglesTurned;
     } else if (found.trianglesTurned > 0)
-        mesh.warnings.push_back(triangles +
-                                " another way than the neighbours: normals made from them cancel out");
+        mesh.warnings.push_back(
+            triangles + " the other way than the neighbours, so normals computed from them cancel out");
     if (found.inconsistentEdges > 0)
-        mesh.warnings.push_back("a surface with one side only: at " +
+        mesh.warnings.push_back("the surface cannot be oriented (like a Moebius strip): at " +
                                 counted(found.inconsistentEdges, "edge", "edges") +
-                                " the two triangles face opposite ways whichever is turned");
+                                " the two triangles face opposite ways, whichever is flipped");
 }
 
 }  // namespace

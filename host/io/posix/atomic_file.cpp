@@ -66,8 +66,8 @@ AtomicFile::AtomicFile(std::string target)
     if (folder_ < 0) fail();
     if (const long most = ::fpathconf(folder_, _PC_NAME_MAX); most > 0 && name_.size() > size_t(most)) {
         ::close(folder_);
-        throw FileError(target_,
-                        concat("has a name of ", name_.size(), " bytes; ", most, " are the most there"));
+        throw FileError(
+            target_, concat("has a name of ", name_.size(), " bytes; its file system allows at most ", most));
     }
     temporary_ = temporaryName(name_);
     file_ = ::openat(folder_, temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
@@ -113,7 +113,7 @@ void AtomicFile::commit(bool folderToo) {
     refuseOtherThanFile(target_);
     if (::renameat(folder_, temporary_.c_str(), folder_, name_.c_str()) != 0) fail();
     temporary_.clear();
-    if (folderToo && !flushed(folder_)) fail("is written, but its name may not outlive a power cut: ");
+    if (folderToo && !flushed(folder_)) fail("is written, but may be lost in a power cut: ");
 }
 
 void flushFolder(const std::string& path) {
@@ -122,7 +122,7 @@ void flushFolder(const std::string& path) {
     const int why = errno;
     if (folder >= 0) ::close(folder);
     if (!done)
-        throw FileError(path, std::string("names in it may not outlive a power cut: ") + std::strerror(why));
+        throw FileError(path, std::string("its new files may be lost in a power cut: ") + std::strerror(why));
 }
 
 size_t removeAbandonedFiles(const std::string& path) {

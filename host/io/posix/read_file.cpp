@@ -51,7 +51,7 @@ int opened(const std::string& path, uint64_t& bytes) {
         }
         ::close(fd);
     }
-    throw FileError(path, "is " + (other.empty() ? "another thing by now" : other) + ", not a file");
+    throw FileError(path, "is " + (other.empty() ? "something else by now" : other) + ", not a file");
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
             }
             const std::string table = kind == PEL_LUT_CURVATURE ? "curvature_lut" : "shadow_lut";
             throw FileError(scene.source,
-                            concat("material ", m.id, " asks for the ", table, " '", name, "'; there is ",
+                            concat("material ", m.id, " refers to the ", table, " '", name, "'; there is ",
                                    (list.empty() ? "no [[" + table + "]] table" : "only: " + list)),
                             m.line);
         }
@@ -133,10 +133,11 @@ void checkEyes(const SceneFile& scene, const TomlReader& channels) {
     for (const SceneEye& eye : scene.eyes) {
         const auto isIts = [&](const SceneMaterial& m) { return m.id == eye.material; };
         if (std::none_of(scene.materials.begin(), scene.materials.end(), isIts))
-            throw FileError(scene.source,
-                            concat("the eye of material ", eye.material,
-                                   " has no such material: a [[material]] of that id is its sclera"),
-                            eye.line);
+            throw FileError(
+                scene.source,
+                concat("the eye refers to material ", eye.material,
+                       ", which does not exist; a [[material]] of that id is needed for its sclera"),
+                eye.line);
         if (scene.channels[PEL_SLOT_POSITION].empty() && scene.channels[PEL_SLOT_DEPTH].empty())
             channels.fail("position", "is missing, and so is depth; eyes need one of them");
     }
