@@ -89,7 +89,7 @@ class Batch {
         std::error_code error;
         std::filesystem::create_directories(a.folder, error);
         if (error || !std::filesystem::is_directory(a.folder))
-            throw io::FileError(a.folder, "is not a folder and cannot be made one");
+            throw io::FileError(a.folder, "is not a folder and cannot be created");
         for (const std::string& name : a.devices) devices_.emplace_back(name);
         if (devices_.empty()) devices_.emplace_back("");
         madeBy_ = std::vector<std::atomic<size_t>>(devices_.size());

@@ -85,7 +85,7 @@ Request readRequest(TomlReader& reader, LutPreset preset) {
     r.forms = {std::string(curvatureForms[r.curvature.form])};
     r.axes = {std::string(lutAxes[isShadow ? r.shadow.axis : r.curvature.axis])};
     if (r.kind == PEL_LUT_EYE)
-        reader.fail("kind", "is 'eye', of which a batch makes none; `pellucid lut eye` does");
+        reader.fail("kind", "is 'eye', which batches cannot make; use `pellucid lut eye`");
     reader.text("name", r.name);
     if (r.name.empty() && reader.has("name"))
         reader.fail("name", "is empty; leave it out for a name by content");
@@ -112,7 +112,7 @@ Request readRequest(TomlReader& reader, LutPreset preset) {
                                                  : Size{specular.width, specular.height}};
     reader.integer("stack", r.stack, {1, mostStacked});
     if (r.stack > 1 && r.kind == PEL_LUT_SPECULAR)
-        reader.fail("stack", "is of tables that differ, and specular tables of one size are all the same");
+        reader.fail("stack", "is for tables that differ, but specular tables of one size are all the same");
     if (r.stack > 1 && !r.name.empty())
         reader.fail("name", "cannot stand beside 'stack', whose files are named by their content");
     reader.number("radius_min", r.curvature.radiusMin, range::curvatureLut::radiusMin);
@@ -184,8 +184,8 @@ class Expansion {
                      double(r.axes.size());
         if (asked_ + asked > double(mostEntries))
             reader.fail("size",
-                        concat("asks for ", printed("%.0f", asked), " tables, and a manifest may ask for ",
-                               mostEntries, " in all; split it"));
+                        concat("asks for ", printed("%.0f", asked),
+                               " tables; a manifest may ask for at most ", mostEntries, " in all; split it"));
         asked_ += asked;
     }
 

@@ -54,9 +54,9 @@ def arguments():
     parser = argparse.ArgumentParser(prog="blender -b [FILE.blend] --python render_gbuffer.py --",
                                      description="Renders G-buffer and scene for `pellucid shade`.")
     parser.add_argument("mesh", nargs="?",
-                        help="OBJ, PLY, STL or OFF to add; without FILE.blend the only thing there is")
+                        help="OBJ, PLY, STL or OFF to add; without FILE.blend the only object")
     parser.add_argument("-o", "--output", required=True, metavar="DIR",
-                        help="folder, made if it is not there")
+                        help="folder, created if missing")
     parser.add_argument("--size", type=size, metavar="WxH",
                         help="pixels (default: the .blend file's, else 1024x1024)")
     parser.add_argument("--frame", type=int, help="frame of an animation (default: the current one)")
@@ -83,9 +83,9 @@ def arguments():
     if not options.mesh and not bpy.data.filepath:
         parser.error("there is nothing to render: name a .blend file before --python, or a mesh after --")
     if not 1 <= options.shadow_size <= 16384:
-        parser.error("--shadow-size: 1 to 16384 is possible")
+        parser.error("--shadow-size must be from 1 to 16384")
     if not 0 <= options.smooth <= 1000:
-        parser.error("--smooth: 0 to 1000 is possible")
+        parser.error("--smooth must be from 0 to 1000")
     return options
 
 

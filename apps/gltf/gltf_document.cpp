@@ -14,7 +14,7 @@ bool GltfValue::has(const char* key) const {
 }
 
 GltfValue GltfValue::operator[](const char* key) const {
-    if (!json_->is_object()) fail("is no object");
+    if (!json_->is_object()) fail("is not an object");
     const auto at = json_->find(key);
     if (at == json_->end()) fail(std::string("has no '") + key + "'");
     return GltfValue(*file_, *at, where_.empty() ? key : where_ + "." + key);
@@ -25,7 +25,7 @@ GltfValue GltfValue::operator[](size_t index) const {
 }
 
 size_t GltfValue::size() const {
-    if (!json_->is_array()) fail("is no array");
+    if (!json_->is_array()) fail("is not an array");
     return json_->size();
 }
 
@@ -48,7 +48,7 @@ uint64_t GltfValue::whole(uint64_t most) const {
 }
 
 const std::string& GltfValue::text() const {
-    if (!json_->is_string()) fail("is no text");
+    if (!json_->is_string()) fail("is not a string");
     return json_->get_ref<const std::string&>();
 }
 
@@ -100,9 +100,9 @@ std::pair<std::string, std::string> chunksOf(const std::string& path, const std:
         const uint64_t length = wordAt(bytes, at), end = at + 8 + length;
         const uint32_t kind = wordAt(bytes, at + 4);
         if (end > total)
-            throw FileError(path, concat("has a chunk of ", length, " bytes that leaves the file"));
+            throw FileError(path, concat("has a chunk of ", length, " bytes that ends after the file"));
         if ((kind == jsonChunk) != (chunk == 0))
-            throw FileError(path, "has no JSON in its first chunk alone");
+            throw FileError(path, "must have JSON in its first chunk, and only there");
         if (kind == jsonChunk) json = bytes.substr(at + 8, length);
         if (kind == binaryChunk && !hasBinary) binary = bytes.substr(at + 8, length), hasBinary = true;
         at = size_t(end);
@@ -121,7 +121,7 @@ std::string fromBase64(const GltfValue& value, const std::string& text, size_t a
     int count = 0;
     for (; at < text.size() && text[at] != '='; ++at) {
         const int d = digit[static_cast<unsigned char>(text[at])];
-        if (d < 0) value.fail("holds a letter that is not of base64");
+        if (d < 0) value.fail("holds a character that is not base64");
         bits = bits << 6 | uint32_t(d);
         if (++count % 4 != 1) out += char(bits >> (6 - 2 * ((count - 1) % 4)) & 255);
     }
@@ -220,7 +220,8 @@ GltfDocument::GltfDocument(const std::string& path, const std::string& bytes, co
             data = std::move(binary_);
         else
             buffer.fail("has no 'uri', and is not the first of a .glb");
-        if (data.size() < length) buffer.fail(concat("has ", data.size(), " bytes, and says ", length));
+        if (data.size() < length)
+            buffer.fail(concat("has ", data.size(), " bytes, but its byteLength is ", length));
         total += data.size();
         if (total > inputLimit()) buffer.fail("is too large: " + tooLarge(double(total), inputLimit()));
         data.resize(size_t(length));
@@ -235,7 +236,7 @@ std::string GltfDocument::resource(const GltfValue& value) const {
         try {
             return resource_(name);
         } catch (const FileError& e) {
-            value.fail(std::string("leads to nothing: ") + e.what());
+            value.fail(std::string("cannot be loaded: ") + e.what());
         }
     }
     const size_t comma = uri.find(',');

@@ -23,7 +23,7 @@ GltfMaterial readGltfMaterial(const GltfDocument& document, const GltfValue& mat
     m.name = material.text("name", "");
     const auto texture = [&](const GltfValue& owner, const char* key) {
         if (owner.has(key))
-            warnOnce(warnings, "textures other than the base colour's are left out; factors alone count");
+            warnOnce(warnings, "textures other than the base colour's are left out; only factors are used");
     };
     if (material.has("pbrMetallicRoughness")) {
         const GltfValue pbr = material["pbrMetallicRoughness"];
@@ -38,7 +38,7 @@ GltfMaterial readGltfMaterial(const GltfDocument& document, const GltfValue& mat
             const GltfValue named = top.element("textures", info, "index");
             if (info.whole("texCoord", 0, 255) != 0 || info.hasExtension("KHR_texture_transform"))
                 warnOnce(warnings,
-                         "textures with coordinates of their own are left out: TEXCOORD_0 alone is read");
+                         "textures with their own coordinates are left out: only TEXCOORD_0 is read");
             else if (named.has("source"))
                 m.baseColorImage = int(named.reference("source", "images", top.count("images")));
             else
@@ -270,7 +270,7 @@ class Builder {
         for (size_t i = 0; i < list.size(); ++i)
             if (list[i] >= vertices)
                 primitive.fail(
-                    concat("has index ", list[i], " at place ", i, ", and ", vertices, " vertices"));
+                    concat("has index ", list[i], " at position ", i, ", but ", vertices, " vertices"));
         if (mode == 4) {
             if (list.size() % 3)
                 primitive.fail(concat("has ", list.size(), " indices, which is no multiple of 3"));
@@ -339,7 +339,7 @@ class Builder {
             for (int c = 0; c < 3; ++c) {
                 if (!std::isfinite(float(p[c])))
                     part.primitive["attributes"]["POSITION"].fail(
-                        concat("has vertex ", v, " at a place that is not finite"));
+                        concat("has a position that is not finite, of vertex ", v));
                 mesh.positions.push_back(float(p[c]));
                 mesh.normals.push_back(float(n[c]));
             }
@@ -363,7 +363,7 @@ class Builder {
         std::vector<float> values = document_.floats(attributes, key, components);
         if (values.size() != vertices * components)
             attributes[key].fail(
-                concat("has ", values.size() / components, " elements, POSITION ", vertices));
+                concat("has ", values.size() / components, " elements, but POSITION has ", vertices));
         return values;
     }
 

@@ -61,7 +61,8 @@ std::vector<std::string> chosenDevices(const BenchArguments& a) {
         else
             chosen.push_back(std::to_string(d.index));
     }
-    if (chosen.empty() && a.firstGpu) std::fprintf(stderr, "no GPU is there: the best device stands in\n");
+    if (chosen.empty() && a.firstGpu)
+        std::fprintf(stderr, "no GPU was found: measuring the best device instead\n");
     if (chosen.empty()) chosen.push_back("");  // opening it gives the library's message
     return chosen;
 }
@@ -296,7 +297,7 @@ void compare(const BenchArguments& a) {
         try {
             result = bench::compareReports(reports[0], reports[i]);
         } catch (const nlohmann::json::exception& e) {
-            throw InputError(a.reports[0] + " or " + a.reports[i] + ": not whole: " + e.what());
+            throw InputError(a.reports[0] + " or " + a.reports[i] + ": incomplete report: " + e.what());
         }
         int compared = 0;
         for (const char* key : {"same", "faster", "slower", "less_accurate", "fails"})

@@ -10,7 +10,7 @@ namespace {
 constexpr const char* starter = R"(
 import importlib.util, runpy, sys
 if importlib.util.find_spec("pellucid") is None:
-    print("pellucid: view and gallery are of the Python package, which this python3 does not have: "
+    print("pellucid: view and gallery need the Python package, which this python3 does not have: "
           "pip install 'pellucid[view]', or ./run view in a checkout", file=sys.stderr)
     sys.exit(2)
 runpy.run_module(sys.argv.pop(1), run_name="__main__", alter_sys=True)

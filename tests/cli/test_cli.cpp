@@ -97,7 +97,7 @@ const Refusal refusals[] = {
     {"bench -o /proc/nowhere", 2, "/proc/nowhere"},
     {"bench compare @none.json @none.json", 3, "none.json: cannot be read"},
     {"bench compare @a.json @a.json", 3, "not a report"},
-    {"bench compare @b.json @b.json", 3, "not whole"},
+    {"bench compare @b.json @b.json", 3, "incomplete report"},
 };
 
 }  // namespace

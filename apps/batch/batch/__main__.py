@@ -21,9 +21,9 @@ def main() -> int:
     add("--device", action="append", default=[], metavar="D",
         help="without --scheduler: device by number, name or type; several are taken by turns")
     add("--timeout", type=float, default=120, metavar="S",
-        help="give a worker up that finishes nothing for so many seconds (default: 120)")
+        help="give up a worker that finishes nothing for this many seconds (default: 120)")
     add("--patience", type=float, default=300, metavar="S",
-        help="give up after so many seconds without any worker (default: 300)")
+        help="stop after this many seconds without any worker (default: 300)")
     add("--jobs", "-j", type=int, default=0, metavar="N",
         help="tables in flight per worker (default: four per core)")
     add("--json", action="store_true", help="one JSON object on standard output")

@@ -253,7 +253,7 @@ class Dispatcher:
                     indices = self._pieces[future][0]
                     answers = [(*answer, self._is_true(indices, *answer)) for answer in answers]
                 except (LookupError, TypeError, ValueError):
-                    return address, "garbage", "no answer of a known form"
+                    return address, "garbage", "an answer of unknown form"
             return address, kind, answers
         except BaseException as e:  # what Dask raises, an output that is gone
             return e
@@ -282,7 +282,7 @@ class Dispatcher:
             self._bar(answer[0], f"gets no work: {answer[2]}", restart=False)
             self._submit(indices)
         elif answer[1] == "garbage":
-            self._bar(answer[0], f"gave garbage: {answer[2]}")
+            self._bar(answer[0], f"returned invalid results: {answer[2]}")
             self._again(indices)
         else:
             self._made(answer[0], indices, answer[2])
@@ -303,8 +303,9 @@ class Dispatcher:
                 broken += what == work.DEVICE_FAILED
                 self._last_trouble = text
         if lies:
-            self._bar(address, f"gave garbage for {lies} entries: files are not in {self._store.out}, or "
-                               "are not what it says that it wrote (all machines must see the same folder)")
+            self._bar(address, f"returned invalid results for {lies} entries: files are missing from "
+                               f"{self._store.out}, or differ from what it reports (all machines must see "
+                               "the same folder)")
         elif broken and broken == len(answers):
             self._bar(address, f"has a device that fails: {self._last_trouble}")
         self._again(indices)

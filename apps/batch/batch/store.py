@@ -38,7 +38,7 @@ class Store:
             else:
                 self._files.makedirs(self._root, exist_ok=True)
         except Exception as e:  # of an object store: whatever its library raises
-            raise StoreError(f"{self.out}: is not a folder and cannot be made one: "
+            raise StoreError(f"{self.out}: is not a folder and cannot be created: "
                              f"{getattr(e, 'strerror', None) or e}") from e
 
     def read(self, name: str) -> Optional[bytes]:

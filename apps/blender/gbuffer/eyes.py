@@ -77,7 +77,7 @@ def find(things, unit):
             used = {v for face in thing.data.polygons if face.material_index == slot for v in face.vertices}
             ball = ball_of([tuple(thing.data.vertices[v].co) for v in used]) if len(used) > 8 else None
             if ball is None:
-                warn(f"material '{material.name}': its faces are no ball, so it is no eye")
+                warn(f"material '{material.name}': its faces form no ball, so it is not taken as an eye")
                 continue
             taken.add(material.name)
             centre, radius, gaze = ball

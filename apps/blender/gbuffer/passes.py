@@ -65,7 +65,7 @@ def warn_if_out_of_view(scene, camera, things):
         if any(ahead) and not beside:
             return
     warn(f"the camera sees none of the {len(things)} objects, so the picture will be empty: turn it to them, "
-         "or remove it, and one that frames everything is made")
+         "or remove it to get a camera that frames everything")
 
 
 def prepare(scene, size):

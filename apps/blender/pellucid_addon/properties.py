@@ -10,10 +10,10 @@ import bpy
 from .fields import FIELDS  # which packaging/blender_addon writes
 
 PRESET = "pellucid_preset"
-FIXED = [("auto", "From its shader", "Scatters as its Subsurface says: weight 0 is no skin"),
+FIXED = [("auto", "From its shader", "Scatters by its Subsurface inputs; with weight 0 it does not scatter"),
          ("plain", "Nothing scatters", "Shaded by Lambert, with the gloss of its shader"),
          ("skin", "Skin, by tables", "Skin as in real-time renderers: curvature and shadow tables"),
-         ("eye", "Eye", "A refracting cornea, iris and pupil round the ball that its faces make")]
+         ("eye", "Eye", "A refracting cornea, an iris and a pupil, fitted to the ball of its faces")]
 _library = []
 
 
@@ -58,7 +58,7 @@ def write(material, index):
 
 
 class PELLUCID_OT_own_value(bpy.types.Operator):
-    """Sets this value for the material, or leaves it to the preset again"""
+    """Set this value for the material, or return to the value of the preset"""
 
     bl_idname, bl_label, bl_options = "pellucid.own_value", "Own value", {"UNDO"}
     material: bpy.props.StringProperty()
@@ -79,10 +79,9 @@ class PELLUCID_OT_own_value(bpy.types.Operator):
 
 class Settings(bpy.types.PropertyGroup):
     samples: bpy.props.EnumProperty(name="Anti-aliasing",
-                                    description="The G-buffer is rendered larger on each side, and the "
-                                                "picture made smaller",
-                                    items=[("1", "Off", "One sample a pixel"),
-                                           ("2", "2 x 2", "Four samples a pixel")], default="1")
+                                    description="Render the G-buffer larger, and scale the picture down",
+                                    items=[("1", "Off", "One sample per pixel"),
+                                           ("2", "2 x 2", "Four samples per pixel")], default="1")
     shadow_size: bpy.props.IntProperty(name="Shadow maps", description="Texels on a side", default=1024,
                                        min=64, max=16384)
     exposure: bpy.props.FloatProperty(name="Exposure", description="Multiplies the picture", default=1.0,
@@ -99,14 +98,14 @@ class Preferences(bpy.types.AddonPreferences):
                                       description="Empty: $PELLUCID_COMMAND, else the one on the PATH",
                                       subtype="FILE_PATH")
     device: bpy.props.StringProperty(name="OpenCL device",
-                                     description="A number, cpu, gpu or a part of a name; empty: the "
-                                                 "standard one")
+                                     description="A number, cpu, gpu or a part of a name; empty: the default "
+                                                 "device")
 
     def draw(self, context):
         self.layout.prop(self, "command")
         self.layout.prop(self, "device")
         if not library():
-            self.layout.label(text=f"'{command()}' does not answer: pip install pellucid brings it",
+            self.layout.label(text=f"'{command()}' cannot be run: pip install pellucid installs it",
                               icon="ERROR")
 
 

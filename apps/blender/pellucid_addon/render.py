@@ -45,7 +45,7 @@ def failure_reason(log):
     lines = [line for line in log.splitlines() if line.strip()]
     reasons = [line for line in lines if line.startswith(("render_gbuffer.py:", "pellucid:"))
             and "warning" not in line]
-    return (reasons or lines or ["it said nothing"])[-1]
+    return (reasons or lines or ["it printed no message"])[-1]
 
 
 def save_log(text):
@@ -86,11 +86,11 @@ class PELLUCID_OT_render(bpy.types.Operator):
     bl_label = "Render with Pellucid"
 
     filepath: bpy.props.StringProperty(name="PNG",
-                                       description="Where the picture goes beside the image; empty: nowhere",
+                                       description="File that the picture is also written to; empty: none",
                                        subtype="FILE_PATH", options={"SKIP_SAVE"})
     keep: bpy.props.StringProperty(name="Folder",
-                                   description="Where G-buffer, shadow maps and scene.toml are kept; empty: "
-                                               "nowhere", subtype="DIR_PATH", options={"SKIP_SAVE"})
+                                   description="Folder for G-buffer, shadow maps and scene.toml; empty: "
+                                               "none", subtype="DIR_PATH", options={"SKIP_SAVE"})
 
     def begin(self, context):
         scene = context.scene
@@ -115,7 +115,7 @@ class PELLUCID_OT_render(bpy.types.Operator):
                                             stdin=subprocess.DEVNULL)
         except OSError as error:
             raise Failure(f"cannot run '{command[0]}' ({error.strerror}): set the command in the add-on's "
-                          f"preferences; pip install pellucid brings it") from None
+                          f"preferences; pip install pellucid installs it") from None
         return True
 
     def done(self):

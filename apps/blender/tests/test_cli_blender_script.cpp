@@ -289,7 +289,7 @@ TEST_F(BlenderScript, SaysWhatIsWrong) {
     EXPECT_EQ(render("'" + write("empty.obj", "") + "' -o '" + path("out") + "'"), 3);
     EXPECT_TRUE(contains(said(), "empty.obj: there are no faces in it")) << said();
     EXPECT_EQ(render("empty.obj -o '" + path("out") + "' --smooth 2000"), 2);
-    EXPECT_TRUE(contains(said(), "--smooth: 0 to 1000 is possible")) << said();
+    EXPECT_TRUE(contains(said(), "--smooth must be from 0 to 1000")) << said();
     EXPECT_EQ(render("-o '" + path("out") + "'"), 2);
     EXPECT_TRUE(contains(said(), "name a .blend file before --python, or a mesh after --")) << said();
     EXPECT_EQ(render("'" + write("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n") + "' -o '" +

@@ -104,7 +104,7 @@ GALLERY: dict[str, list[Entry]] = {
         Entry("too-soft", "unit_mm said 0.1: skin turns to wax.", _side(mm=0.1)),
         Entry("orange-rim",
               "deep_scatter_color (FaceWorks' term) with a strong colour: a rim along nose, lips and ears "
-              "that light has not.", _side(method="preintegrated", deep_scatter=(2.0, 0.6, 0.2))),
+              "that real skin does not have.", _side(method="preintegrated", deep_scatter=(2.0, 0.6, 0.2))),
         Entry("coarse-shadow-map",
               "A shadow map of 128 texels: its texels are wider than the profile reaches, and edges of "
               "shadows are steps.", _side(shadow_size=128)),

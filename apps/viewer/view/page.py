@@ -137,11 +137,11 @@ class MeshPanel(Panel):
 
             self.button(f"Head, {which}", head, f"head-{which}")
         self.upload("Drop an OFF, OBJ, PLY, STL or GLB file here", dropped, "upload")
-        for kind, name in (("albedo", "Drop a picture of skin's albedo here"),
+        for kind, name in (("albedo", "Drop an albedo map of skin here"),
                            ("normal", "Drop a normal map of skin here")):
             self.upload(name, functools.partial(painted, kind), f"{kind}-upload", 1 << 28)
         if session.paint:
-            self.button("Take all pictures off", lambda: self.change(lambda: session.show_bare()),
+            self.button("Remove all pictures", lambda: self.change(lambda: session.show_bare()),
                         "bare", flat=True)
 
         async def unit(e: events.ValueChangeEventArguments) -> None:

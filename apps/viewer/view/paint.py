@@ -71,7 +71,8 @@ def load(path: Any, subdivide: Optional[int], up: str) -> tuple[Mesh, Paint, str
     told = f"scattering: {', '.join(scene.names[id] for id in sorted(soft))}"
     if not soft:
         soft = {id for id, kind in scene.taken_for.items() if kind == "plain"} or set(scene.names)
-        told = f"no material scatters by itself; here do {', '.join(scene.names[id] for id in soft)}"
+        told = ("no material scatters by itself; scattering is applied to "
+                f"{', '.join(scene.names[id] for id in soft)}")
     albedo, layers = np.zeros((len(ids), 3), np.float32), np.full(len(ids), -1, np.int32)
     pictures = []
     for id, material in scene.materials.items():

@@ -247,9 +247,10 @@ class ComparePanel(Panel):
                 session.look, session.other = session.other, session.look
                 self.rebuild()
 
-        ui.label("On the right of a divider: another method, or the current settings by Keep. Alt and drag "
-                 "moves it. Change the settings on the left.").classes("text-xs")
-        self.select("On the right", {"": "What Keep kept, if anything", **METHODS}, "against", owner=session)
+        ui.label("Compares two pictures. On the right of the divider: another method, or the settings stored "
+                 "by Keep. On the left: the current settings. Alt and drag moves the divider."
+                 ).classes("text-xs")
+        self.select("On the right", {"": "The settings stored by Keep", **METHODS}, "against", owner=session)
         self.switch("Side by side", session, "beside")
         with ui.row():
             for name, act in (("Keep", lambda: keep(self.look.copy())), ("Swap", swap),

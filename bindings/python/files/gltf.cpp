@@ -67,7 +67,7 @@ class Gltf {
         const py::gil_scoped_release free;
         std::error_code error;
         std::filesystem::create_directories(folder, error);
-        if (error) throw io::FileError(folder, "cannot be made: " + error.message());
+        if (error) throw io::FileError(folder, "cannot be created: " + error.message());
         io::writeImported(folder, made_);
     }
 

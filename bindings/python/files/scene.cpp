@@ -130,8 +130,8 @@ class Scene {
             if (m.material.profile)
                 throw py::value_error(
                     "material " + std::to_string(m.id) +
-                    " has a profile of its own, which a scene file can only name: set Scene.profiles[" +
-                    std::to_string(m.id) + "] to the name or the file of one");
+                    " has a profile object, which a scene file cannot hold: set Scene.profiles[" +
+                    std::to_string(m.id) + "] to the name or the file of a profile");
         namespace fs = std::filesystem;
         const fs::path folder = fs::absolute(path).parent_path();
         const auto move = [&](std::string& file) {

@@ -83,9 +83,9 @@ void opensDevices() {
 void refuseForked() {
     if (opener && opener != getpid())
         throw CallError{PEL_ERROR_INVALID_STATE,
-                        "this process was forked from one that had used OpenCL, whose threads did not come "
-                        "along: start processes by "
-                        "multiprocessing.get_context(\"spawn\"), or open no device before"};
+                        "this process was forked from one that had used OpenCL, whose threads do not exist "
+                        "here: start processes with "
+                        "multiprocessing.get_context(\"spawn\"), or open no device before the fork"};
 }
 
 // Raises the pending exception of a progress callback on this thread (or its Ctrl-C), if any. Needs the GIL.

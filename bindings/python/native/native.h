@@ -76,8 +76,7 @@ T* structOf(const py::object& object) {
     const py::buffer_info info = py::reinterpret_borrow<py::buffer>(object).request(true);
     if (size_t(info.size * info.itemsize) != sizeof(T))
         throw CallError{PEL_ERROR_UNKNOWN, "a structure of " + std::to_string(info.size * info.itemsize) +
-                                               " bytes where one of " + std::to_string(sizeof(T)) +
-                                               " belongs"};
+                                               " bytes instead of one of " + std::to_string(sizeof(T))};
     return static_cast<T*>(info.ptr);
 }
 

@@ -170,7 +170,7 @@ def test_what_is_saved_shades_the_same(folder, device, tmp_path_factory):
     again = pel.load_scene(folder / "deeper/changed.toml", folder / "gbuffer.exr")
     assert np.array_equal(pel.shade(again, device).radiance, made)
     scene.materials[1].profile = pel.Profile.burley_distance(0.5)
-    with pytest.raises(ValueError, match="material 1 has a profile of its own"):
+    with pytest.raises(ValueError, match="material 1 has a profile object"):
         scene.save(folder / "own.toml")
 
 
