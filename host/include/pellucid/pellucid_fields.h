@@ -81,8 +81,8 @@
       "RGB. Directional: irradiance / π at normal incidence; others: that at distance 1, of a rectangle " \
       "along its axis") \
     X(UINT, plainShadow, 0, 0, 1, PEL_NONE, "", "plain_shadow", PEL_NO_SLIDER, \
-      "1: `wide_shadow` is what is seen of the light, sharp or as soft as its size makes it, not " \
-      "filtered for tables; `auto` scatters on the screen by it")
+      "1: `wide_shadow` is the visible share of the light, with sharp edges or true penumbrae, not " \
+      "filtered for tables; `auto` can then scatter on the screen")
 /* Of directional lights, of all others, of spots, spheres and rectangles; checked only for these types. */
 #define PEL_EACH_DIRECTIONAL_LIGHT_FIELD(X) \
     X(VECTOR, toLight, (0, 0, 1), -PEL_FINITE, PEL_FINITE, PEL_NONE, "", "to_light", PEL_NO_SLIDER, \
@@ -91,7 +91,7 @@
     X(VECTOR, position, (0, 0, 0), -PEL_FINITE, PEL_FINITE, PEL_NONE, "length", "position", PEL_NO_SLIDER, \
       "all but directional: world; of a sphere or rectangle the centre") \
     X(FLOAT, range, 0, 0, PEL_HUGE, PEL_NONE, "length", "range", PEL_NO_SLIDER, \
-      "all but directional: there is no light beyond; 0: no limit")
+      "all but directional: distance beyond which there is no light; 0: no limit")
 #define PEL_EACH_SPOT_LIGHT_FIELD(X) \
     X(VECTOR, spotDirection, (0, 0, -1), -PEL_FINITE, PEL_FINITE, PEL_NONE, "", "spot_direction", \
       PEL_NO_SLIDER, \
@@ -132,10 +132,11 @@
       "across; 0: materials of " \
       "\"preintegrated\" get no shadow from it") \
     X(FLOAT, shadowBias, -1, 0, PEL_HUGE, -1, "length", "bias", PEL_NO_SLIDER, \
-      "an occluder must stand this far before the surface to count; -1: from the profile, else 0.5 mm") \
+      "an occluder counts only if it is this far in front of the surface; -1: from the profile, else " \
+      "0.5 mm") \
     X(FLOAT, shadowSoftness, -1, 1e-3f, PEL_HUGE, -1, "", "softness", PEL_NO_SLIDER, \
-      "times `shadow_filter_width`: how much further before it counts in full; -1: from the profile, " \
-      "else 0.25") \
+      "times `shadow_filter_width`: distance over which an occluder fades in beyond the bias; -1: from " \
+      "the profile, else 0.25") \
     X(FLOAT, shadowConeSlope, -1, 0, PEL_HUGE, -1, "", "cone_slope", PEL_NO_SLIDER, \
       "growth of the bias by sideways distance; -1: from the profile, else 0.5") \
     X(FREE, shadowExponent, 0, -PEL_FINITE, PEL_FINITE, PEL_NONE, "", "exponent", PEL_NO_SLIDER, \
@@ -143,14 +144,14 @@
     X(FLOAT, shadowMinDeviation, 0.25f, 0, PEL_HUGE, PEL_NONE, "length", "min_deviation", PEL_NO_SLIDER, \
       "moments: minimum standard deviation") \
     X(FLOAT, shadowBleeding, 0.1f, 0, 0.999f, PEL_NONE, "", "bleeding", PEL_NO_SLIDER, \
-      "moments: share of light that counts as none") \
+      "moments: visibility up to this share counts as full shadow") \
     X(UINT, shadowCascades, 0, 0, 4, PEL_NONE, "", "cascades", PEL_NO_SLIDER, \
       "directional, parallel: number of maps, this one the finest; 0: one map that is no cascade")
 
 #define PEL_EACH_OPTION_FIELD(X) \
     X(FLOAT, targetError, 2e-3f, 0, 1, PEL_NONE, "", "target_error", PEL_SLIDER("Target error", 0.0005, \
       0.02, 0.0005), \
-      "what methods that leave out small contributions may be off, as a share of white") \
+      "error allowed to methods that leave out small contributions, as a share of white") \
     X(FLOAT, millimetresPerUnit, 1, PEL_TINY, PEL_HUGE, PEL_NONE, "mm", "unit_mm", PEL_NO_SLIDER, \
       "of a unit of positions: profiles are in millimetres, every other length in the scene's unit") \
     X(FREE_UINT, blurNormals, 0, 0, 1, PEL_NONE, "", "blur_normals", PEL_NO_SLIDER, \
@@ -160,10 +161,10 @@
       "1: the disk of thickness taps is rotated from pixel to pixel " \
       "([shading.md](shading.md#rotated-disk-of-taps))") \
     X(FREE_UINT, everyPixel, 0, 0, 1, PEL_NONE, "", "every_pixel", PEL_NO_SLIDER, \
-      "1: wide shadows that are made here, and thickness by taps, are computed at every pixel, none " \
-      "between others ([shading.md](shading.md#between-pixels))") \
+      "1: wide shadows filtered from shadow maps, and thickness by taps, are computed at every pixel, " \
+      "never interpolated ([shading.md](shading.md#between-pixels))") \
     X(FREE_UINT, frameIndex, 0, 0, PEL_FINITE, PEL_NONE, "", "frame_index", PEL_NO_SLIDER, \
-      "each number gives another random placement of scattering taps, for hosts that average frames") \
+      "seed of the random placement of scattering taps, for hosts that average frames") \
     X(FREE_UINT, halfRate, 0, 0, 1, PEL_NONE, "", "half_rate", PEL_NO_SLIDER, \
       "1: `light`, `separable`, and `screen` with taps compute every second pixel along both axes " \
       "([shading.md](shading.md#half-rate))") \
@@ -176,11 +177,11 @@
     X(FLOAT, historyWeight, 0, 0, 0.95f, PEL_NONE, "", "history_weight", PEL_NO_SLIDER, \
       "share of earlier frames in light that is scattered by taps ([shading.md](shading.md#history))") \
     X(FREE_UINT, historyCut, 0, 0, PEL_FINITE, PEL_NONE, "", "history_cut", PEL_NO_SLIDER, \
-      "another number than in the frame before: nothing is taken from earlier frames")
+      "if it differs from the previous frame, nothing is taken from earlier frames")
 
 #define PEL_EACH_SCATTER_PARAM_FIELD(X) \
     X(FLOAT, targetError, 2e-3f, 0, PEL_FINITE, PEL_NONE, "", "target_error", PEL_NO_SLIDER, \
-      "share of `white` that the result may be off") \
+      "allowed error of the result, as a share of `white`") \
     X(FLOAT, white, 1, PEL_ABOVE_0, PEL_FINITE, PEL_NONE, "", "white", PEL_NO_SLIDER, \
       "irradiance that counts as white")
 
