@@ -33,6 +33,8 @@ GltfMaterial readGltfMaterial(const GltfDocument& document, const GltfValue& mat
         m.metallic = pbr.number("metallicFactor", 1, 0, 1);
         m.roughness = pbr.number("roughnessFactor", 1, 0, 1);
         texture(pbr, "metallicRoughnessTexture");
+        if (pbr.has("metallicRoughnessTexture"))
+            m.metallic = 0;  // its factor is of unknown texels, mostly of 0
         if (pbr.has("baseColorTexture")) {
             const GltfValue info = pbr["baseColorTexture"], top = document.root();
             const GltfValue named = top.element("textures", info, "index");
@@ -307,6 +309,7 @@ class Builder {
             checkSceneSize(primitive, vertices, 0);
             part.triangles = trianglesOf(primitive, mode, vertices);
             if (part.triangles.empty()) continue;
+            if (attributes.has("COLOR_0")) warn("vertex colours are left out");
             if (attributes.has("NORMAL")) part.normals = sized(attributes, "NORMAL", 3, vertices);
             if (attributes.has("TEXCOORD_0")) part.uvs = sized(attributes, "TEXCOORD_0", 2, vertices);
             part.material = materialIndex(primitive);

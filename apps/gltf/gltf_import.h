@@ -15,8 +15,7 @@ struct GltfLook {
 };
 
 // Material `id`. `profile`: one of the library or a .toml file in place of the glTF material's volume, or "".
-GltfLook lookOf(const GltfMaterial& material, const std::string& name, uint32_t id,
-                const std::string& profile);
+GltfLook lookOf(GltfMaterial material, const std::string& name, uint32_t id, const std::string& profile);
 
 // Unique names of letters, digits, _ and -, for files and keys.
 std::vector<std::string> plainNames(const std::vector<GltfMaterial>& materials);

@@ -81,8 +81,9 @@ double singleScatterAlbedo(double multiscatter, double anisotropy) {
     return std::clamp((1 - s * s) / std::max(1 - anisotropy * s * s, 1e-9), 0.0, 1.0);
 }
 
-GltfLook lookOf(const GltfMaterial& m, const std::string& name, uint32_t id, const std::string& profile) {
+GltfLook lookOf(GltfMaterial m, const std::string& name, uint32_t id, const std::string& profile) {
     GltfLook look;
+    if (!profile.empty()) m.metallic = 0;  // 1 by default, even where the user says what it is
     look.how = m.metallic > 0.5 ? "metal" : m.transmission > 0.5 ? "clear" : "plain";
     for (size_t c = 0; c < 3; ++c) look.albedo[c] = m.baseColor[c] * (1 - m.metallic);
     PelMaterial& p = look.material.material;

@@ -70,9 +70,9 @@ class Run {
 
   private:
     Options options_;
+    Progress progress_;  // first: the time of opening the device counts
     Device device_;
     PelDeviceStats before_;
-    Progress progress_;
     nlohmann::ordered_json warnings_ = nlohmann::ordered_json::array();
 };
 

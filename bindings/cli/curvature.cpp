@@ -112,8 +112,7 @@ void addCurvature(CLI::App& app) {
            "PNG to write as well: the mesh coloured by the values, with a colour bar");
     option(command, "--range", a.range,
            "LOW HIGH: the values at the ends of the colour scale of --picture and of a .ply, the same for "
-           "several "
-           "meshes to compare; default: from the values, without the highest",
+           "several meshes to compare; default: from the values, without the highest",
            Count{2});
     option(command, "--up", a.up,
            "of the picture: the mesh's up axis, z (it looks to -y) or y (it looks to +z)",

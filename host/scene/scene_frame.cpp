@@ -323,6 +323,18 @@ void SceneFrame::setMaterial(const SceneFile& scene, const SceneMaterial& m, Lut
             material.diffusionRadius = profile.info().radius / scene.options.millimetresPerUnit;
     } else if (profile) {
         material.profile = profile.get();
+    } else if (material.diffusionRadius == 0) {
+        // `pellucid lut` writes lengths in mm, and the library takes a table's for the scene's unit.
+        const SceneLut* const table = curvature ? scene.lut(m.curvatureLut, PEL_LUT_CURVATURE)
+                                      : shadow  ? scene.lut(m.shadowLut, PEL_LUT_SHADOW)
+                                                : nullptr;
+        if (table && !table->file.empty() &&
+            std::ranges::find(table->expected, "diffusion_radius") == table->expected.end()) {
+            const PelLutInfo info = (curvature ? curvature : shadow).info();
+            material.diffusionRadius =
+                (curvature ? info.curvature.diffusionRadius : info.shadow.diffusionRadius) /
+                scene.options.millimetresPerUnit;
+        }
     }
     shader_.setMaterial(m.id, material, curvature, shadow);
 }

@@ -89,6 +89,9 @@ Capture::Capture(Device& device, const ShaderState& state, const ScatterInput* s
         to.id = id;
         to.material = from.given;
         to.material.profile = nullptr;
+        // A table's file does not say whose unit its radius is in.
+        if (!from.profile && (from.givenCurvatureLut || from.givenShadowLut))
+            to.material.diffusionRadius = from.params.diffusionRadius;
         if (scatter) to.scale = scatter->scales.at(id);
         to.profile = numberOf(from.profile);
         to.curvature = handleOf(from.givenCurvatureLut);

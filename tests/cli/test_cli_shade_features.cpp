@@ -214,6 +214,20 @@ TEST_F(ShadeFeatures, AProfileIsEnough) {
     EXPECT_EQ(shaded(), preset);
 }
 
+// The file has its radius in mm, whatever the scene's unit.
+TEST_F(ShadeFeatures, ATableIsTheSameFromItsFile) {
+    addSphere(30);
+    scene_.options.millimetresPerUnit = 0.5f;
+    scene_.luts.resize(1);
+    scene_.luts[0].name = scene_.materials[0].curvatureLut = "t";
+    scene_.materials[0].material.scattering = PEL_SCATTERING_PREINTEGRATED;
+    const std::vector<float> made = shaded();
+    done("lut curvature -o @t.exr --encoding float");
+    scene_.luts[0].file = "t.exr";
+    const std::vector<float> read = shaded();
+    for (size_t i = 0; i < made.size(); ++i) ASSERT_NEAR(read[i], made[i], tolerance::shadeTerm) << i;
+}
+
 TEST_F(ShadeFeatures, SizesThatCannotBeTheProfilesAreSaid) {
     addSphere(90);
     scene_.materials[0].profile = "skin";

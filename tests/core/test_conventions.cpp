@@ -145,6 +145,9 @@ TEST_P(Conventions, ACameraFindsPlacesFromDepth) {
     if (!c.perspective) {  // far away, against the view
         const Vec3 q{camera.position[0], camera.position[1], camera.position[2]};
         EXPECT_NEAR(dot(normalized(q), forward), -1, 1e-5);
+        const auto m = times(camera.inverseViewProjection, {0, 0, 0.5, 1});
+        const Vec3 away = q - Vec3{m[0] / m[3], m[1] / m[3], m[2] / m[3]};
+        EXPECT_LT(length(away - dot(away, forward) * forward), 0.3) << "beside the middle of the picture";
     }
 }
 

@@ -258,7 +258,10 @@ TEST(Gltf, MaterialsThatScatter) {
     }
     const GltfMaterial metal = material(json::object());
     EXPECT_EQ(lookOf(metal, "m", 1, "").how, "metal");
+    const PelMaterial named = lookOf(metal, "m", 1, "skin").material.material;
     EXPECT_EQ(lookOf(metal, "m", 1, "skin").material.profile, "skin");
+    EXPECT_EQ(named.albedo[0], 1) << "the base colour's, as of no metal";
+    EXPECT_LT(named.f0, 0.1f);
     EXPECT_EQ(lookOf(material(R"({"pbrMetallicRoughness": {"metallicFactor": 0}})"_json), "m", 1, "")
                   .material.material.scattering,
               PEL_SCATTERING_NONE);

@@ -56,6 +56,9 @@ def standard_head(which: str = "female") -> Path:
     raise FileNotFoundError(f"the head {which!r} did not come with the package; name a mesh file")
 
 
+_MOST_LEVELS = 6  # of subdivision: each makes four times as many triangles
+
+
 def load_mesh(path: Any, subdivide: Optional[int] = None, up: str = "auto") -> Mesh:
     """Reads an OFF, OBJ, PLY or STL file.
 
@@ -66,7 +69,8 @@ def load_mesh(path: Any, subdivide: Optional[int] = None, up: str = "auto") -> M
     ----------
     path : str or path
     subdivide : int, optional
-        Levels of subdivision: Catmull-Clark for the heads of the package (2), Loop for other meshes (0).
+        Levels of subdivision, 0 to 6: Catmull-Clark for the heads of the package (2), Loop for other meshes
+        (0).
     up : str
         "y", "z", or "auto": y for OBJ files, z for the others.
 
@@ -77,6 +81,8 @@ def load_mesh(path: Any, subdivide: Optional[int] = None, up: str = "auto") -> M
     """
     if up not in ("auto", "y", "z"):
         raise ValueError(f"up is {up!r}; it must be 'auto', 'y' or 'z'")
+    if subdivide is not None and not 0 <= subdivide <= _MOST_LEVELS:
+        raise ValueError(f"subdivide is {subdivide}; it must be from 0 to {_MOST_LEVELS}")
     name = str(path)
     head = _files.load_head(name,
                             2 if subdivide is None else subdivide) if name.lower().endswith(".obj") else None

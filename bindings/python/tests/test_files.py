@@ -68,6 +68,8 @@ def test_images_come_back(tmp_path):
     (lambda f: files.read_image(f / "missing.exr"), files.FileError, "missing.exr"),
     (lambda f: files.tonemap(np.zeros((4, 3)), curve="sepia"), ValueError, "soft, none, filmic or agx-like"),
     (lambda f: files.load_mesh(f / "a.off", up="x"), ValueError, "'auto', 'y' or 'z'"),
+    (lambda f: files.load_mesh(f / "a.off", subdivide=7), ValueError, "from 0 to 6"),
+    (lambda f: files.load_mesh(f / "a.off", subdivide=-1), ValueError, "from 0 to 6"),
     (lambda f: files.load_mesh(f / "missing.off"), files.FileError, "missing.off"),
     (lambda f: files.load_mesh(f / "bad.off"), files.FileError, "bad.off")])
 def test_wrong_use_says_what_would_be_right(tmp_path, use, error, message):

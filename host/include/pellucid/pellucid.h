@@ -1110,8 +1110,8 @@ typedef struct PelAmbient {
 typedef struct PelCamera {
     uint32_t structSize;
     float position[3]; /* world; needed by specular */
-    /* clip to world, for PEL_SLOT_DEPTH. x and y in [-1, 1], y up, row 0 on top; z as in the depth image, so
-     * that ordinary and reversed depth both work */
+    /* clip to world, for PEL_SLOT_DEPTH, historyWeight, PEL_SCATTERING_SEPARABLE and scatterTaps. x and y in
+     * [-1, 1], y up, row 0 on top; z as in the depth image, so that ordinary and reversed depth both work */
     float inverseViewProjection[16];
 } PelCamera;
 

@@ -64,8 +64,8 @@ class Handle {
     }
     // `value`, filled in by a call of the C interface.
     template <class Value>
-    Value filled(PelError (*get)(H, Value*), Value value) const {
-        check(get(h_, &value));
+    Value filled(PelError (*call)(H, Value*), Value value) const {
+        check(call(h_, &value));
         return value;
     }
     H h_ = nullptr;

@@ -87,7 +87,7 @@ static inline int pelConventionInvert_(double m[4][4], double inverse[4][4]) {
  * written. */
 static inline PelError pelCameraFromViewProjection(const float viewProjection[16], PelConvention convention,
                                                    PelCamera* camera) {
-    double m[4][4], inverse[4][4], eye[4], largest = 0, nearer = 0;
+    double m[4][4], inverse[4][4], eye[4], middle[3], largest = 0, nearer = 0, length2, along = 0;
     int i, k;
     if (!viewProjection || !camera || !pelConventionRead_(viewProjection, &convention, m))
         return PEL_ERROR_INVALID_ARGUMENT;
@@ -100,13 +100,17 @@ static inline PelError pelCameraFromViewProjection(const float viewProjection[16
     for (k = 0; k < 3; ++k) nearer -= m[2][k] * eye[k] * m[3][3];
     if (convention.depth == PEL_CLIP_DEPTH_ONE_TO_ZERO) nearer = -nearer;
     if (!pelConventionInvert_(m, inverse)) return PEL_ERROR_INVALID_ARGUMENT;
-    for (k = 0; k < 3; ++k) largest = fabs(eye[k]) > largest ? fabs(eye[k]) : largest;
     for (k = 0; k < 3; ++k) {
-        const double length = sqrt(eye[0] * eye[0] + eye[1] * eye[1] + eye[2] * eye[2]);
-        camera->position[k] =
-            (float)(fabs(eye[3]) > 1e-12 * largest ? eye[k] / eye[3]
-                                                   : (nearer > 0 ? 1e6 : -1e6) * eye[k] / length);
+        largest = fabs(eye[k]) > largest ? fabs(eye[k]) : largest;
+        middle[k] = (0.5 * inverse[k][2] + inverse[k][3]) / (0.5 * inverse[3][2] + inverse[3][3]);
     }
+    length2 = eye[0] * eye[0] + eye[1] * eye[1] + eye[2] * eye[2];
+    for (k = 0; k < 3; ++k) along += middle[k] * eye[k] / length2;
+    for (k = 0; k < 3; ++k)
+        camera->position[k] =
+            (float)(fabs(eye[3]) > 1e-12 * largest
+                        ? eye[k] / eye[3]
+                        : middle[k] + ((nearer > 0 ? 1e6 : -1e6) / sqrt(length2) - along) * eye[k]);
     for (i = 0; i < 4; ++i)
         for (k = 0; k < 4; ++k) camera->inverseViewProjection[4 * i + k] = (float)inverse[i][k];
     return PEL_SUCCESS;
