@@ -252,6 +252,7 @@ TEST_F(Capture, RepeatsScatteringAlone) {
     p.params.targetError = 1e-3f;
     // Pixels of 0.3, depth along z.
     p.params.inverseViewProjection[0] = p.params.inverseViewProjection[5] = 36 * 0.3f;
+    p.params.inverseViewProjection[10] = p.params.inverseViewProjection[15] = 1;
     Random random(4);
     const auto values = [&](uint32_t components) {
         std::vector<float> image(components * p.pixels());

@@ -226,7 +226,7 @@ class Image:
         # Strides that NumPy leaves undefined for lengths of one.
         pixel = strides[1] if width > 1 else (dtype.itemsize if planar else components * dtype.itemsize)
         row = strides[0] if height > 1 else pixel * width
-        if (height > 1 and row < pixel * width) or pixel % dtype.itemsize or row % dtype.itemsize:
+        if (height > 1 and 0 < row < pixel * width) or pixel % dtype.itemsize or row % dtype.itemsize:
             raise ValueError(f"{_slot} has pixels {pixel} bytes apart and rows {row}, which images cannot "
                              "have; pass numpy.ascontiguousarray(array)")
         tail = (int(self.format), width, height, byte_offset if cl else 0, pixel, row,

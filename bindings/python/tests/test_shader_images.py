@@ -50,7 +50,7 @@ def read_only(array):
     ("albedo", np.broadcast_to(np.float32(1), (4, 4, 3)), "albedo is broadcast"),
     ("albedo", np.zeros((0, 4, 3), np.float32), "albedo is empty"),
     ("albedo", np.zeros((3, 4, 4), np.float16).transpose(1, 2, 0), "components that lie apart"),
-    ("albedo", np.zeros((5, 4, 3), np.float32).transpose(1, 0, 2), "rowStride"),
+    ("albedo", np.zeros((5, 4, 3), np.float32).transpose(1, 0, 2), "ascontiguousarray"),
     ("albdo", np.zeros((4, 4, 3), np.float32), "slot is 'albdo'; did you mean 'albedo'"),
     ("radiance", read_only(np.zeros((4, 4, 3), np.float32)), "radiance is read-only"),
     *[(slot, np.ones(shape, dtype), f"{slot} has the byte order of another machine .*big-endian")
