@@ -158,7 +158,7 @@ void Shader::setLights(const PelLight* lights, uint32_t count) {
 
 void Shader::setLightImage(uint32_t light, PelLightSlot slot, const PelImageDesc* image) {
     if (light >= state_.lights.size())
-        invalidArgument("there is no light ", light, ", only ", state_.lights.size(),
+        invalidArgument("light ", light, " is not set, only the first ", state_.lights.size(),
                         "; pelShaderSetLights comes first");
     if (uint32_t(slot) >= PEL_LIGHT_SLOT_COUNT)
         invalidArgument("light image slot ", int(slot), " is not a value of PelLightSlot");

@@ -35,7 +35,8 @@ TEST(ShadeBadInput, ExecuteNeedsACommit) {
 TEST(ShadeBadInput, ImagesThatDoNotFit) {
     Ready r;
     for (const uint32_t light : {1u, 2u, UINT32_MAX})
-        expectRefused(PEL_ERROR_INVALID_ARGUMENT, {"of 1", "pelShaderSetLights comes first"},
+        expectRefused(PEL_ERROR_INVALID_ARGUMENT,
+                      {"is not set, only the first 1", "pelShaderSetLights comes first"},
                       [&] { r.shader.set(light, PEL_LIGHT_WIDE_SHADOW, nullptr); });
     static const Buffer buffer(device(), 32 * 16 * 16), foreign(Device(""), 4096);
     const struct {
