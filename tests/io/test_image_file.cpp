@@ -192,6 +192,8 @@ TEST_F(ImageFile, ChannelsAreFoundByNameOrTheErrorListsThem) {
     EXPECT_EQ(image.interleaved(both), (std::vector<float>{2, 1}));
     const std::string message = messageOf<FileError>([&] { image.channel("N.Z"); });
     EXPECT_TRUE(contains(message, "g.exr: has no channel 'N.Z'; it has: View.N.X, View.N.Y, View.NN.X"));
+    EXPECT_TRUE(
+        contains(messageOf<FileError>([&] { image.channel(""); }), "'channel' names one of: View.N.X"));
     EXPECT_TRUE(contains(messageOf<FileError>([&] { image.channel("X"); }), "several"));
     EXPECT_THROW(image.addInterleaved(names, std::vector<float>{1}), std::invalid_argument);
 }

@@ -116,6 +116,12 @@ TEST(Gltf, NodesMoveTurnScaleAndMirror) {
     EXPECT_EQ(position(s, 5), (std::vector<float>{9, 0, 5}));
 }
 
+TEST(Gltf, VertexColoursAreLeftOutWithAWarning) {
+    const GltfScene s = decoded(square({{"/meshes/0/primitives/0/attributes/COLOR_0", 0}}));
+    ASSERT_EQ(s.mesh.warnings.size(), 1u);
+    EXPECT_TRUE(s.mesh.warnings[0].find("vertex colours") != std::string::npos);
+}
+
 TEST(Gltf, WithoutASceneAllRootsAreShown) {
     const GltfScene s = decoded(square({{"/nodes", R"([{"mesh": 0, "translation": [1, 0, 0]},
         {"children": [0], "translation": [10, 0, 0]}, {"mesh": 0}])"_json},
@@ -262,6 +268,8 @@ TEST(Gltf, MaterialsThatScatter) {
     EXPECT_EQ(lookOf(metal, "m", 1, "skin").material.profile, "skin");
     EXPECT_EQ(named.albedo[0], 1) << "the base colour's, as of no metal";
     EXPECT_LT(named.f0, 0.1f);
+    const json textured = R"({"pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 0}}})"_json;
+    EXPECT_EQ(lookOf(material(textured), "m", 1, "").how, "plain") << "its metalness is not read";
     EXPECT_EQ(lookOf(material(R"({"pbrMetallicRoughness": {"metallicFactor": 0}})"_json), "m", 1, "")
                   .material.material.scattering,
               PEL_SCATTERING_NONE);
