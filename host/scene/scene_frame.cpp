@@ -303,6 +303,16 @@ PelImageDesc SceneFrame::mapOf(const std::string& file, const std::string& chann
     return maps_[key] = upload(map, channels, pictures_);
 }
 
+// The radius of a table from a file, in mm: `pellucid lut` writes mm, while the library takes the radius of a
+// table in the scene's unit. 0 for other tables, and if the scene itself names the radius.
+static float fileRadius(const SceneFile& scene, const std::string& name, const Lut& lut) {
+    if (!lut) return 0;
+    const PelLutInfo info = lut.info();
+    const SceneLut& table = *scene.lut(name, info.kind);
+    if (table.file.empty() || std::ranges::count(table.expected, "diffusion_radius")) return 0;
+    return info.kind == PEL_LUT_SHADOW ? info.shadow.diffusionRadius : info.curvature.diffusionRadius;
+}
+
 void SceneFrame::setMaterial(const SceneFile& scene, const SceneMaterial& m, LutStore& luts) {
     PelMaterial material = m.material;
     Lut curvature = luts.get(scene, m.curvatureLut, PEL_LUT_CURVATURE),
@@ -324,17 +334,9 @@ void SceneFrame::setMaterial(const SceneFile& scene, const SceneMaterial& m, Lut
     } else if (profile) {
         material.profile = profile.get();
     } else if (material.diffusionRadius == 0) {
-        // `pellucid lut` writes lengths in mm, and the library takes a table's for the scene's unit.
-        const SceneLut* const table = curvature ? scene.lut(m.curvatureLut, PEL_LUT_CURVATURE)
-                                      : shadow  ? scene.lut(m.shadowLut, PEL_LUT_SHADOW)
-                                                : nullptr;
-        if (table && !table->file.empty() &&
-            std::ranges::find(table->expected, "diffusion_radius") == table->expected.end()) {
-            const PelLutInfo info = (curvature ? curvature : shadow).info();
-            material.diffusionRadius =
-                (curvature ? info.curvature.diffusionRadius : info.shadow.diffusionRadius) /
-                scene.options.millimetresPerUnit;
-        }
+        const float mm =
+            curvature ? fileRadius(scene, m.curvatureLut, curvature) : fileRadius(scene, m.shadowLut, shadow);
+        material.diffusionRadius = mm / scene.options.millimetresPerUnit;
     }
     shader_.setMaterial(m.id, material, curvature, shadow);
 }
