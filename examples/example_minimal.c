@@ -25,7 +25,8 @@ static PelImageDesc image(PelDevice device, PelFormat format, void* pixels, size
 
 int main(void) {
     for (int i = 0; i < SIZE * SIZE; ++i) { /* what a renderer would have drawn: a sphere of 8 mm radius */
-        const float x = (i % SIZE + 0.5f) / SIZE * 2.2f - 1.1f, y = 1.1f - (i / SIZE + 0.5f) / SIZE * 2.2f;
+        const float column = (float)(i % SIZE), row = (float)(i / SIZE);
+        const float x = (column + 0.5f) / SIZE * 2.2f - 1.1f, y = 1.1f - (row + 0.5f) / SIZE * 2.2f;
         material[i] = x * x + y * y < 1.0f;
         normals[i][0] = x, normals[i][1] = y,
         normals[i][2] = material[i] ? sqrtf(1.0f - x * x - y * y) : 0.0f;

@@ -32,7 +32,7 @@ int main(void) {
     }
     enum { COUNT = 64 };
     float cosines[COUNT], result[COUNT];
-    for (int i = 0; i < COUNT; ++i) cosines[i] = (i + 1.0f) / COUNT;
+    for (int i = 0; i < COUNT; ++i) cosines[i] = (float)(i + 1) / COUNT;
     cl_mem in =
         clCreateBuffer(context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof cosines, cosines, NULL);
     cl_mem out = clCreateBuffer(context, CL_MEM_WRITE_ONLY, sizeof result, NULL, NULL);

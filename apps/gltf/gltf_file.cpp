@@ -38,6 +38,10 @@ GltfMaterial readGltfMaterial(const GltfDocument& document, const GltfValue& mat
         if (pbr.has("baseColorTexture")) {
             const GltfValue info = pbr["baseColorTexture"], top = document.root();
             const GltfValue named = top.element("textures", info, "index");
+            if (named.has("sampler"))
+                for (const char* wrap : {"wrapS", "wrapT"})
+                    if (top.element("samplers", named, "sampler").whole(wrap, 10497, 65535) != 10497)
+                        warnOnce(warnings, "textures are repeated, also where samplers clamp or mirror them");
             if (info.whole("texCoord", 0, 255) != 0 || info.hasExtension("KHR_texture_transform"))
                 warnOnce(warnings,
                          "textures with their own coordinates are left out: only TEXCOORD_0 is read");
@@ -48,6 +52,12 @@ GltfMaterial readGltfMaterial(const GltfDocument& document, const GltfValue& mat
         }
     }
     for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"}) texture(material, key);
+    double emission[3] = {0, 0, 0};
+    material.numbers("emissiveFactor", emission, 3, 0, 1e30);
+    if (std::ranges::any_of(emission, [](double e) { return e > 0; }))
+        warnOnce(warnings, "emission is left out");
+    if (material.text("alphaMode", "OPAQUE") != "OPAQUE")
+        warnOnce(warnings, "transparency is left out: all surfaces are opaque (alphaMode)");
     const auto with = [&](const char* name, auto&& read) {
         if (material.hasExtension(name)) read(material.extension(name));
     };

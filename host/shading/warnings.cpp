@@ -32,6 +32,11 @@ MapLengths lengthsOf(const PelLight& l, const ImageView& map) {
 // profile cannot hold it.
 constexpr double leastReaches = 2;
 
+bool scattersByTaps(const PelMaterial& m) {
+    return m.scattering == PEL_SCATTERING_SEPARABLE ||
+           (m.scattering == PEL_SCATTERING_SCREEN && m.scatterTaps > 0);
+}
+
 // The settings that have no effect with the material's method; "" if there are none.
 std::string withoutEffect(const ShaderMaterial& material) {
     const PelMaterial &m = material.params, &given = material.given;
@@ -75,10 +80,8 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
         }
     if (state.images[PEL_SLOT_SKIN] && !usesSkinMaps(state))
         warn("the skin image is without effect: no material has a profile of pelProfileCreateSkinLayers");
-    if (state.options.historyWeight > 0 && std::ranges::none_of(state.materials, [](const auto& m) {
-            return m.second.params.scattering == PEL_SCATTERING_SEPARABLE ||
-                   (m.second.params.scattering == PEL_SCATTERING_SCREEN && m.second.params.scatterTaps > 0);
-        }))
+    if (state.options.historyWeight > 0 &&
+        std::ranges::none_of(state.materials, [](auto& m) { return scattersByTaps(m.second.params); }))
         warn("historyWeight is without effect: no material scatters by taps");
     for (const auto& [id, material] : state.materials) {
         const PelMaterial& m = material.params;
@@ -91,6 +94,10 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
         if (const std::string idle = withoutEffect(material); !idle.empty())
             warn("material ", id, " has ", idle, " without effect: it scatters by \"",
                  scatteringName(m.scattering), "\" (docs/guide/methods.md, \"Controls\")");
+        if (scattersByTaps(m) &&
+            std::ranges::equal(state.camera.inverseViewProjection, pelCameraDefaults().inverseViewProjection))
+            warn("material ", id,
+                 " scatters by taps, placed by PelCamera.inverseViewProjection, which is the default");
         if (m.scattering == PEL_SCATTERING_LIGHT && !lightIsMapped(state))
             warn("material ", id,
                  " scatters by \"light\", but not all light comes from shadow maps: ambient light and lights "

@@ -308,6 +308,17 @@ TEST(ShadeProfile, WhatHasNoEffectIsSaid) {
     EXPECT_NE(Shading(m, in).shader.warnings().find("deepScatterColor without effect"), std::string::npos);
     in.thickness = true;
     EXPECT_EQ(Shading(m, in).shader.warnings(), "");
+    // Taps without the camera's matrix.
+    const Profile profile = Profile::named("skin-burley");
+    m = materialOf(profile);
+    Shading shading(m, in);
+    shading.set(PEL_SLOT_POSITION, shading.scene.position);
+    m.scattering = PEL_SCATTERING_SEPARABLE;
+    shading.shader.setMaterial(1, m).commit();
+    EXPECT_NE(shading.shader.warnings().find("placed by PelCamera.inverseViewProjection"), std::string::npos);
+    PelCamera camera = pelCameraDefaults();
+    camera.inverseViewProjection[0] = 2;
+    EXPECT_EQ(std::string(shading.shader.set(camera).commit().warnings()), "");
 }
 
 // PEL_SCATTERING_AUTO scatters on the screen where that fits; it says how much there must be.

@@ -116,10 +116,27 @@ TEST(Gltf, NodesMoveTurnScaleAndMirror) {
     EXPECT_EQ(position(s, 5), (std::vector<float>{9, 0, 5}));
 }
 
-TEST(Gltf, VertexColoursAreLeftOutWithAWarning) {
-    const GltfScene s = decoded(square({{"/meshes/0/primitives/0/attributes/COLOR_0", 0}}));
-    ASSERT_EQ(s.mesh.warnings.size(), 1u);
-    EXPECT_TRUE(s.mesh.warnings[0].find("vertex colours") != std::string::npos);
+TEST(Gltf, WhatIsLeftOutIsSaid) {
+    const auto expectSaid = [](const Edits& edits, const char* word) {
+        const GltfScene s = decoded(square(edits));
+        ASSERT_EQ(s.mesh.warnings.size(), word ? 1u : 0u) << (word ? word : s.mesh.warnings[0]);
+        if (word) EXPECT_NE(s.mesh.warnings[0].find(word), std::string::npos) << s.mesh.warnings[0];
+    };
+    expectSaid({{"/meshes/0/primitives/0/attributes/COLOR_0", 0}}, "vertex colours");
+    const auto of = [](const json& material, const json& sampler = json::object()) {
+        return Edits{{"/meshes/0/primitives/0/material", 0},
+                     {"/materials", json::array({material})},
+                     {"/images", R"([{"uri": "data:image/png;base64,AAAA"}])"_json},
+                     {"/samplers", json::array({sampler})},
+                     {"/textures", R"([{"source": 0, "sampler": 0}])"_json}};
+    };
+    expectSaid(of(R"({"emissiveFactor": [0, 0.5, 0]})"_json), "emission");
+    expectSaid(of(R"({"alphaMode": "MASK"})"_json), "alphaMode");
+    expectSaid(of(R"({"alphaMode": "OPAQUE", "emissiveFactor": [0, 0, 0]})"_json), nullptr);
+    const json textured = R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}})"_json;
+    expectSaid(of(textured, R"({"wrapS": 10497})"_json), nullptr);
+    expectSaid(of(textured, R"({"wrapS": 33071})"_json), "clamp or mirror");
+    expectSaid(of(textured, R"({"wrapT": 33648})"_json), "clamp or mirror");
 }
 
 TEST(Gltf, WithoutASceneAllRootsAreShown) {

@@ -583,10 +583,10 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
 
   private:
     template <class T>
-    std::vector<T> listed(PelError (*get)(PelShader, T*, uint32_t*), const T& each) const {
+    std::vector<T> listed(PelError (*read)(PelShader, T*, uint32_t*), const T& each) const {
         std::vector<T> all(24, each);
         uint32_t count = uint32_t(all.size());
-        check(get(h_, all.data(), &count));
+        check(read(h_, all.data(), &count));
         all.resize(count);
         return all;
     }

@@ -2,6 +2,9 @@
  * that the caller compiled with. */
 #ifndef PELLUCID_DEFAULTS_H
 #define PELLUCID_DEFAULTS_H
+#ifndef PELLUCID_H
+#error "include pellucid/pellucid.h, which includes this file"
+#endif
 #include <string.h>
 
 #include "pellucid_fields.h"
