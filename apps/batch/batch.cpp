@@ -186,7 +186,11 @@ class Batch {
 
     State handle(const io::BatchEntry& entry, size_t device) {
         const std::string path = (std::filesystem::path(a_.folder) / entry.file).string();
-        const bool exists = std::filesystem::exists(path);
+        std::error_code error;
+        const auto status = std::filesystem::status(path, error);
+        const bool exists = std::filesystem::is_regular_file(status);
+        if (!exists && status.type() != std::filesystem::file_type::not_found)
+            throw Error(PEL_ERROR_INVALID_ARGUMENT, path + " is in the way: it is not a file");
         if (exists && io::verifyLutExr(io::readWholeFile(path), entry.key)) {
             for (const io::BatchTable& table : entry.tables)  // the index will describe them
                 if (table.profile.valid()) table.profile.wait();

@@ -169,8 +169,8 @@ class Expansion {
     }
 
   private:
-    // A profile and its part of the key: its numbers, not only its name, since a changed file is another
-    // request.
+    // A profile and its part of the key: its numbers or its file's content, not only its name, since a
+    // changed file is another request.
     struct Known {
         std::shared_future<Profile> profile;
         std::string key;
@@ -217,7 +217,10 @@ class Expansion {
                 std::vector<double> distances;
                 for (double f : {0.01, 0.03, 0.1, 0.3, 0.7, 1.0, 1.5, 2.0, 3.0})
                     distances.push_back(f * info.radius);
-                for (double value : p.radial(distances)) key("R", float(value));
+                if (const auto text = manifest_.profiles.find(name); text != manifest_.profiles.end())
+                    key("file", hexDigits(contentHash(text->second)));
+                else
+                    for (double value : p.radial(distances)) key("R", float(value));
                 at->second.key = key.out.str();
             } catch (const FileError& e) {
                 known_.erase(at);

@@ -237,6 +237,8 @@ void runCompare(const CompareArguments& a) {
     if (!worse) return;
     if (all.pixels == 0)
         std::fprintf(stderr, "pellucid: no pixel could be compared with --max-rmse\n");
+    else if (all.rmseAll <= a.maxRmse)
+        std::fprintf(stderr, "pellucid: --max-rmse allows no pixel with NaN or Inf\n");
     else
         std::fprintf(stderr, "pellucid: the RMSE is %.6g over %zu pixels, more than --max-rmse %.6g allows\n",
                      all.rmseAll, all.pixels, double(a.maxRmse));

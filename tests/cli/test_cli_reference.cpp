@@ -295,6 +295,7 @@ TEST_F(CliReference, Compare) {
           {"@b.exr @a.npy --max-rmse 0.05", "more than --max-rmse 0.05"},
           {"@a.exr @a.npy --scale-b 1.5 --max-rmse 0.24", "more than --max-rmse 0.24"},
           {"@one.npy @a.exr --max-rmse 1", "1 pixels with NaN"},
+          {"@one.npy @a.exr --max-rmse 1", "--max-rmse allows no pixel with NaN"},
           {"@nan.npy @a.exr --max-rmse 1", "no pixel could be compared"}}) {
         const Result result = cli(std::string("compare ") + arguments);
         EXPECT_EQ(result.exitCode, *message ? 1 : 0) << arguments;

@@ -116,6 +116,16 @@ TEST_F(BatchCommand, NamesFilesAndWritesAnIndexOfThem) {
     EXPECT_EQ(index()["missing"], 1);
     EXPECT_EQ(index()["tables"], tables);
     EXPECT_EQ(made("[[lut]]\nname = \"shine\"\nsize = 8\n")["redone"], 1) << "another request of this name";
+    // What is no file is in the way of its own entry alone.
+    fs::create_directory(path("out/folder.exr"));
+    fs::create_symlink("loop.exr", path("out/loop.exr"));
+    const Result beside = batch(
+        "[[lut]]\nname = \"folder\"\nsize = 8\n[[lut]]\nname = \"loop\"\nsize = 8\n"
+        "[[lut]]\nname = \"free\"\nsize = 8\n");
+    EXPECT_EQ(beside.exitCode, 3);
+    EXPECT_EQ(beside.json()["made"], 1);
+    for (const char* name : {"m.toml:1", "folder.exr is in the way", "m.toml:4", "loop.exr is in the way"})
+        EXPECT_TRUE(contains(beside.err, name)) << beside.err;
 }
 
 // Requests that differ in one field alone.
@@ -135,6 +145,19 @@ TEST(BatchManifest, EveryFieldOfATableIsInItsName) {
     std::set<std::string> names;
     for (const auto& entry : manifest.entries) names.insert(entry.file);
     EXPECT_EQ(names.size(), 19u);
+    // And the whole of a profile's file, such as one row of a table.
+    std::set<std::string> files;
+    for (const char* value : {"0.5", "0.25"}) {
+        std::string profile = "name = \"rows\"\nkind = \"table\"\nunit = \"mm\"\nsource = \"none\"\n";
+        for (int i = 0; i < 40; ++i)
+            profile += "[[sample]]\ndistance = 0." + std::to_string(10 + i) + "\nvalue = [1, 1, " +
+                       (i == 20 ? value : "1") + "]\n";
+        const auto made =
+            pellucid::io::parseManifest("m.toml", "[[lut]]\nprofile = \"p.toml\"\n", {{"p.toml", profile}});
+        ASSERT_TRUE(made.errors.empty()) << made.errors[0].message;
+        files.insert(made.entries.at(0).file);
+    }
+    EXPECT_EQ(files.size(), 2u);
 }
 
 // By default a manifest of version 1 makes FaceWorks' tables, one of version 2 those that a material makes of

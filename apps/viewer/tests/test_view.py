@@ -367,8 +367,13 @@ def test_presets_and_looks():
     for name, values in PRESETS.items():
         look = Look.from_dict(values)
         assert Look.from_dict(json.loads(json.dumps(look.to_dict()))) == look, name
-    with pytest.raises(ValueError, match="no 'gloss'"):
-        Look.from_dict({"gloss": 1})
+    for wrong, message in (({"gloss": 1}, "no 'gloss'"), ([], "JSON object"), ({"albedo": [1, 1]}, "albedo"),
+                           ({"albedo": 1}, "albedo of a look"), ({"roughness": "x"}, "roughness"),
+                           ({"lamps": []}, "lamps"), ({"lamps": [1]}, "a lamp is"),
+                           ({"lamps": [{"on": 1}]}, "on of a lamp"), ({"white": float("nan")}, "white"),
+                           ({"profile": "skn"}, "profile of a look is 'skn'")):
+        with pytest.raises(ValueError, match=message):
+            Look.from_dict(wrong)
 
 
 def test_a_bad_mesh_leaves_the_one_before(session, tmp_path):

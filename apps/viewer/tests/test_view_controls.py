@@ -6,6 +6,7 @@ import tempfile
 from dataclasses import fields
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 pytest.importorskip("moderngl", reason="moderngl is not installed")
@@ -18,10 +19,12 @@ from view_session import reset  # noqa: E402
 import pellucid  # noqa: E402
 from pellucid._types import MaterialValues  # noqa: E402
 from pellucid.view.export import export  # noqa: E402
+from pellucid.view.history import History  # noqa: E402
 from pellucid.view.look import Lamp, Look  # noqa: E402
 from pellucid.view.memory import Memory  # noqa: E402
 from pellucid.view.page import Page  # noqa: E402
 from pellucid.view.scene_session import MODES, SceneSession  # noqa: E402
+from pellucid.view.server import Viewer  # noqa: E402
 
 
 class Shown:
@@ -29,7 +32,9 @@ class Shown:
 
     def __init__(self, session, folder):
         self.session, self.last, self.changes = session, None, 0
-        self.memory, self.histogram = Memory(Path(folder) / "view.json"), False
+        self.memory, self.histogram, self.pages = Memory(Path(folder) / "view.json"), False, set()
+
+    rebuild = Viewer.rebuild
 
     def changed(self, moving=False):
         self.changes += 1
@@ -142,6 +147,18 @@ def test_a_preset_sets_the_material_and_keeps_the_light(fresh):
     opened(fresh, act)
 
 
+def test_every_page_sets_what_is_shown_after_a_preset_on_another_one(fresh):
+    def act(elements, viewer):
+        client = Client(page("/"))
+        with client:
+            Page(viewer)
+        marked(elements, ui.select)["preset"].set_value("Jade")
+        marked(client.elements.values(), ui.slider)["slider-roughness"].set_value(0.7)
+        assert fresh.look.profile == "jade" and fresh.look.roughness == 0.7
+
+    opened(fresh, act)
+
+
 def test_presets_of_ones_own_are_saved_and_deleted(fresh):
     def act(elements, viewer):
         client = elements[0].client
@@ -205,5 +222,11 @@ def test_a_scene_has_controls_too(fresh, tmp_path):
             assert scene.profiles[id] == "jade" and scene.materials[id].scattering.name == "LIGHT"
         assert list(selects["mode"].options) == list(MODES) and "export-scene" in marked(elements, ui.button)
         assert viewer.changes == len(sliders) + 2 * len(scene.materials)
+        kept, material = History(shown), scene.materials[id]
+        before = material.roughness
+        material.roughness, scene.profiles[id] = 0.11, "marble"
+        kept.note(shown)
+        assert kept.undo(shown) and material.roughness == before and scene.profiles[id] == "jade"
+        assert kept.redo(shown) and material.roughness == np.float32(0.11) and scene.profiles[id] == "marble"
 
     opened(shown, act)

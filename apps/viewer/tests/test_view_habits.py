@@ -119,11 +119,14 @@ def test_presets_and_what_was_open_come_back(fresh, tmp_path):
     memory = Memory(path)
     assert recall(memory, fresh) == "" and not memory.problem
     fresh.look.roughness, fresh.orbit.azimuth, fresh.orbit.pivot = 0.77, 64.0, (1.0, 2.0, 3.0)
-    memory.part("presets")["Mine"] = fresh.look.to_dict()
-    remember(memory, fresh, subdivide=1, up="auto")
-    memory.save()
+    other = Memory(path)
+    memory.update(presets={"Mine": fresh.look.to_dict(), "Old": {}})
+    memory.update(presets={"Old": None})
+    other.opened["Skin"] = True
+    remember(other, fresh, subdivide=1, up="auto")  # another viewer's presets stay
     assert [p.name for p in path.parent.iterdir()] == ["view.json"]
     again = Memory(path)
+    assert list(again.part("presets")) == ["Mine"] and again.opened == {"Skin": True}
     session = Session(fresh.device)
     assert recall(again, session) == str(files.standard_head())
     assert session.look == fresh.look == Look.from_dict(again.part("presets")["Mine"])
@@ -132,14 +135,19 @@ def test_presets_and_what_was_open_come_back(fresh, tmp_path):
 
 @pytest.mark.parametrize("text", ["{", "[]", '{"last": 3}',
                                   '{"last": {"mesh": "HEAD", "look": {"roughnes": 1}}}',
-                                  '{"last": {"mesh": "HEAD", "look": {}, "orbit": {}, "mm": "x"}}'])
+                                  '{"last": {"mesh": "HEAD", "look": {}, "orbit": {}, "mm": "x"}}',
+                                  '{"last": {"mesh": "HEAD", "look": [], "orbit": {}, "mm": 1}}',
+                                  '{"last": {"mesh": "HEAD", "look": {}, "orbit": [], "mm": 1}}',
+                                  '{"last": {"mesh": "HEAD.gone", "look": {}, "orbit": {}, "mm": 1}}',
+                                  '{"last": {"mesh": "BAD", "look": {}, "orbit": {}, "mm": 1000}}'])
 def test_a_damaged_memory_is_no_obstacle(fresh, tmp_path, text):
     path = tmp_path / "view.json"
-    path.write_text(text.replace("HEAD", str(files.standard_head())))
+    bad = tmp_path / "bad.obj"
+    bad.write_text("v 0 0 0\nf 1 2 3\n")
+    path.write_text(text.replace("HEAD", str(files.standard_head())).replace("BAD", str(bad)))
     memory = Memory(path)
     assert bool(memory.problem) == (text in ("{", "[]"))
     look = fresh.look.copy()
-    assert recall(memory, fresh) == "" and fresh.look == look
-    memory.part("presets")["Mine"] = look.to_dict()
-    memory.save()
+    assert recall(memory, fresh) == "" and fresh.look == look and fresh.mm == 1
+    memory.update(presets={"Mine": look.to_dict()})
     assert json.loads(path.read_text())["presets"]["Mine"]["roughness"] == look.roughness

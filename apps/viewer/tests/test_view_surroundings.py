@@ -55,6 +55,12 @@ def test_it_turns_shines_and_is_exported(alone, tmp_path):
     assert (turned - alone.radiance(width=160, height=90)).mean() > 0.001
     alone.look.specular = 0.35
     export(alone, tmp_path, 160, 90)
+    # What was dropped on the page lies elsewhere than what is exported.
+    alone.look.surroundings = str(tmp_path / "surroundings.exr")
+    alone.look.surroundings_light = 1.0
+    export(alone, tmp_path / "again", 160, 90)
+    assert renders_again(tmp_path / "again")
+    assert "surroundings.exr" in (tmp_path / "again" / "look.json").read_text().split('"')
     np.testing.assert_array_equal(files.read_image(tmp_path / "picture.exr")["R"], turned[..., 0])
     assert renders_again(tmp_path)
     alone.look.surroundings = ""

@@ -123,10 +123,11 @@ def main() -> int:
         print(f"pellucid view: {resumed}, as it was left (--fresh: begin anew)", file=sys.stderr)
 
     def leave() -> None:
-        if isinstance(viewer.session, Session):
-            remember(memory, viewer.session, subdivide=a.subdivide, up=a.up)
         try:
-            memory.save()
+            if isinstance(viewer.session, Session):
+                remember(memory, viewer.session, subdivide=a.subdivide, up=a.up)
+            else:
+                memory.update(open=memory.opened)
         except OSError as error:
             print(f"pellucid view: {error}", file=sys.stderr)
 

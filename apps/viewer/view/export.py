@@ -61,7 +61,7 @@ def export(session: Session, folder: Any, width: int = 1280, height: int = 720) 
 
 def _export(session: Session, out: Path, width: int, height: int) -> list[Path]:
     out.mkdir(parents=True, exist_ok=True)
-    look = session.look.copy()
+    look, shown = session.look.copy(), session.look.copy()  # `shown`: with the names of files in the folder
     mode, session.look.mode = session.look.mode, "final"
     try:
         radiance = session.radiance(look, width, height)
@@ -81,16 +81,16 @@ def _export(session: Session, out: Path, width: int, height: int) -> list[Path]:
         iris = session.iris(look)
         if iris is not None:
             write_image(out / "iris.exr", iris)
-            look.iris_texture = "iris.exr"
+            shown.iris_texture = "iris.exr"
         around = session.surroundings(look)
         if around is not None:
             write_image(out / "surroundings.exr", around[0])
             if look.surroundings != STUDIO:
-                look.surroundings, look.surroundings_light = "surroundings.exr", 1.0
+                shown.surroundings, shown.surroundings_light = "surroundings.exr", 1.0
         write_image(out / "picture.exr", radiance)
         write_image(out / "picture.png", radiance, exposure=look.exposure, shoulder=look.shoulder,
                     curve=look.curve)
-        texts = {"look.json": json.dumps(look.to_dict(), indent=2) + "\n"}
+        texts = {"look.json": json.dumps(shown.to_dict(), indent=2) + "\n"}
         if look.profile in ("custom", "pigments"):
             texts["profile.toml"] = profile_text(look)
         for name, text in texts.items():

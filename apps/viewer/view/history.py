@@ -5,7 +5,7 @@ import copy
 import time
 from typing import Any, Optional
 
-KEPT = "look", "other", "against", "wipe", "beside", "orbit"  # of a session
+KEPT = "look", "other", "against", "wipe", "beside", "orbit", "settings"  # of a session
 PAUSE = 0.5  # seconds without a change, after which the next one is a step of its own
 MOST = 200
 

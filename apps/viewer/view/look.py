@@ -2,10 +2,11 @@
 from __future__ import annotations
 
 import copy
-from dataclasses import asdict, dataclass, field, fields
-from typing import Any
+from dataclasses import asdict, dataclass, field
+from typing import Any, TypeVar
 
 from .._types import MaterialValues
+from ..profile import Profile
 
 MODES = {
     "final": "Final picture",
@@ -36,10 +37,42 @@ METHODS = {
     "texture": "Texture space",
 }
 
+CURVES = {"soft": "Soft", "none": "None", "filmic": "Filmic", "agx-like": "AgX-like"}
+SHADOW_SIZES = [512, 1024, 2048, 4096]
+
+
+def profiles() -> list[str]:
+    return [*Profile.library_names(), "pigments", "custom"]
+
+
 # Material ids of the heads that come with the package.
 SKIN, EYES, TEETH, TONGUE, CUT, RIGHT_EYE = MATERIALS = 1, 2, 3, 4, 5, 6  # EYES: the left one
 NAMES = {SKIN: "skin", EYES: "left eye", TEETH: "teeth", TONGUE: "tongue", CUT: "other",
          RIGHT_EYE: "right eye"}
+
+T = TypeVar("T")
+
+
+def filled(default: T, given: Any, what: str) -> T:
+    """A dataclass with the values that JSON gives for some of its fields, of the types of the default ones.
+    Raises ValueError, naming it, for another key or type."""
+    def like(own: Any, value: Any, name: str) -> Any:
+        if isinstance(own, tuple) and isinstance(value, (list, tuple)) and len(value) == len(own):
+            return tuple(like(o, v, name) for o, v in zip(own, value))
+        number = type(value) in (int, float) and abs(value) < 1e30
+        if not (number if isinstance(own, float) else type(value) is type(own)):
+            raise ValueError(f"{name} of {what} is {value!r}; {own!r} would do")
+        return value
+
+    if not isinstance(given, dict):
+        raise ValueError(f"{what} is a JSON object with keys and values")
+    made = copy.deepcopy(default)
+    known = vars(made)
+    for key, value in given.items():
+        if key not in known:
+            raise ValueError(f"{what} has no {key!r}; it has {', '.join(sorted(known))}")
+        setattr(made, key, like(known[key], value, key))
+    return made
 
 
 def skin_triangles(mesh: Any) -> Any:
@@ -120,17 +153,17 @@ class Look(MaterialValues):
 
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> Look:
-        """From `to_dict`. Raises ValueError, naming it, for a key that there is not."""
-        known = {f.name for f in fields(cls)}
-        for key in values:
-            if key not in known:
-                raise ValueError(f"a look has no {key!r}; it has {', '.join(sorted(known))}")
-        def known_types(given: dict[str, Any]) -> dict[str, Any]:  # JSON has lists alone
-            return {k: tuple(v) if isinstance(v, list) else v for k, v in given.items()}
-
-        look = cls(**known_types({k: v for k, v in values.items() if k != "lamps"}))
+        """From `to_dict`. Raises ValueError, naming it, for an unknown key or a value of another type."""
+        look = filled(cls(), values, "a look")
+        if not look.lamps:
+            raise ValueError("lamps of a look is empty")
         if "lamps" in values:
-            look.lamps = [Lamp(**known_types(lamp)) for lamp in values["lamps"]]
+            look.lamps = [filled(Lamp("", 0.0, 0.0), lamp, "a lamp") for lamp in values["lamps"]]
+        for key, known in {"mode": MODES, "method": METHODS, "curve": CURVES, "shadow_size": SHADOW_SIZES,
+                           "profile": profiles(), "iris_profile": ["", *Profile.library_names()]}.items():
+            if getattr(look, key) not in known:
+                raise ValueError(f"{key} of a look is {getattr(look, key)!r}; it is one of "
+                                 f"{', '.join(str(k) for k in known)}")
         return look
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from .._errors import PellucidError
 from .camera import Orbit
-from .look import Look
+from .look import Look, filled
 from .surroundings import STUDIO
 
 
@@ -26,24 +26,33 @@ class Memory:
         self.path = path
         self.values: dict[str, Any] = {}
         self.problem = ""  # why the file was not read; it is left alone until something is saved
+        self._read()
+        self.opened = self.part("open").copy()  # of this run
+
+    def _read(self) -> None:
         try:
-            found = json.loads(path.read_text(encoding="utf-8"))
+            found = json.loads(self.path.read_text(encoding="utf-8"))
             if not isinstance(found, dict):
                 raise ValueError("it holds no JSON object")
             self.values = found
         except FileNotFoundError:
             pass
         except (OSError, ValueError) as error:
-            self.problem = f"{path} was not read: {error}"
+            self.problem = f"{self.path} was not read: {error}"
 
     def part(self, name: str) -> dict[str, Any]:
-        """A part that may be changed before `save`."""
+        """A part, as it was when the file was last read or written."""
         if not isinstance(self.values.get(name), dict):
             self.values[name] = {}
         return self.values[name]
 
-    def save(self) -> None:
-        """Replaces the file as a whole. Raises OSError."""
+    def update(self, **parts: dict[str, Any]) -> None:
+        """Sets values in parts of the file, which another viewer may have written meanwhile; None removes
+        one. Raises OSError."""
+        self._read()
+        for name, values in parts.items():
+            self.part(name).update(values)
+            self.values[name] = {key: value for key, value in self.part(name).items() if value is not None}
         self.path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=self.path.parent, suffix=".json",
                                          delete=False) as file:
@@ -56,24 +65,24 @@ class Memory:
 
 
 def remember(memory: Memory, session: Any, **opened: Any) -> None:
-    """Notes what a session shows, and how its mesh was `opened`."""
-    memory.values["last"] = {"mesh": str(Path(session.mesh.source).absolute()) if session.mesh.source else "",
-                             "mm": session.mm, "look": session.look.to_dict(), "orbit": asdict(session.orbit),
-                             **opened}
+    """Saves what a session shows, and how its mesh was `opened`. Raises OSError."""
+    memory.update(open=memory.opened, last={
+        "mesh": str(Path(session.mesh.source).absolute()) if session.mesh.source else "",
+        "mm": session.mm, "look": session.look.to_dict(), "orbit": asdict(session.orbit), **opened})
 
 
 def recall(memory: Memory, session: Any) -> str:
     """Shows the last session. Returns the mesh's file, or "" if there is none, it no longer exists, or it
     cannot be shown."""
-    last = memory.part("last")
+    last, unit = memory.part("last"), session.mm
     try:
         if not Path(last["mesh"]).is_file():
             return ""
-        look, orbit = Look.from_dict(last["look"]), Orbit(**{
-            k: tuple(v) if isinstance(v, list) else v for k, v in last["orbit"].items()})
+        look, orbit = Look.from_dict(last["look"]), filled(Orbit(), last["orbit"], "the camera")
         session.mm = float(last["mm"])
         session.load(last["mesh"], last.get("subdivide"), last.get("up", "auto"))
     except (KeyError, TypeError, ValueError, OSError, PellucidError):
+        session.mm = unit
         return ""
     for name in ("iris_texture", "surroundings"):  # files dropped on the page were deleted with that run
         if getattr(look, name) not in ("", STUDIO) and not Path(getattr(look, name)).is_file():

@@ -231,6 +231,7 @@ class Page:
                            ExportPanel(self)]
             mesh.question()
         self.build()
+        viewer.pages.add(self)
         ui.timer(0.5, self.statistics.update)
         ui.keyboard(self.key)
         with ui.dialog().props("data-pel=keys") as self.keys, ui.card():
@@ -247,8 +248,7 @@ class Page:
         if e.modifiers.ctrl or e.modifiers.meta:
             again = name == "y" or (name == "z" and e.modifiers.shift)
             if name in ("z", "y") and (viewer.redo() if again else viewer.undo()):
-                self.build()
-                viewer.changed()
+                viewer.rebuild()
                 return
         if name == "?":
             self.keys.open()
@@ -262,13 +262,8 @@ class Page:
             azimuth, elevation = VIEWS[name]
             viewer.look_from(azimuth + 180 * away * (name != "7"), elevation * (-1 if away else 1))
 
-    @property
-    def opened(self) -> dict[str, Any]:
-        """Whether a panel is open, by its name; contains only panels that the user has opened or closed."""
-        return self.viewer.memory.part("open")
-
     def fold(self, name: str, open: bool) -> None:
-        self.opened[name] = open
+        self.viewer.memory.opened[name] = open
 
     def follow(self) -> None:
         """Updates the widgets to values that another widget has set."""
@@ -282,7 +277,7 @@ class Page:
             ui.label("Pellucid").classes("text-lg")
             for panel in self.panels:
                 if panel.name:
-                    with ui.expansion(panel.name, value=self.opened.get(panel.name, panel.open),
+                    with ui.expansion(panel.name, value=self.viewer.memory.opened.get(panel.name, panel.open),
                                       on_value_change=lambda e, name=panel.name: self.fold(
                                           name, e.value)).classes("w-full"):
                         panel.build()

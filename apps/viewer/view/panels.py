@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Optional
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 from nicegui import events, ui
@@ -11,15 +11,24 @@ from nicegui import events, ui
 from .._types import MaterialValues
 from ..profile import Profile
 from ..skin import skin_info
-from .look import ARRANGEMENTS, KEPT_BY_PRESETS, METHODS, MODES, PIGMENTS, PRESETS, Look
+from .look import (
+    ARRANGEMENTS,
+    CURVES,
+    KEPT_BY_PRESETS,
+    METHODS,
+    MODES,
+    PIGMENTS,
+    PRESETS,
+    SHADOW_SIZES,
+    Look,
+    profiles,
+)
 from .session import iris_image, pigments
 from .surroundings import STUDIO, read
 from .widgets import Panel, fail
 
 if TYPE_CHECKING:
     from .page import Page
-
-CURVES = {"soft": "Soft", "none": "None", "filmic": "Filmic", "agx-like": "AgX-like"}
 
 
 def tone_mapping(panel: Panel) -> None:
@@ -50,16 +59,15 @@ class PicturePanel(Panel):
         if not name or name in PRESETS:
             fail(f"{name} is a preset of the program: choose another name" if name else "name the preset")
             return
-        self.viewer.memory.part("presets")[name] = self.look.to_dict()
-        self.saved()
+        self.save(name, self.look.to_dict())
 
     def drop(self, name: str) -> None:
-        if self.viewer.memory.part("presets").pop(name, None) is not None:
-            self.saved()
+        if name in self.viewer.memory.part("presets"):
+            self.save(name, None)
 
-    def saved(self) -> None:
+    def save(self, name: str, values: Optional[dict[str, Any]]) -> None:
         try:
-            self.viewer.memory.save()
+            self.viewer.memory.update(presets={name: values})
         except OSError as error:
             fail(error)
         self.rebuild()
@@ -174,7 +182,7 @@ class LightsPanel(Panel):
         self.slider("Surroundings, turn", self.look, "surroundings_turn", -180, 180, 1)
         self.upload("Drop an image of the surroundings here (HDR, EXR)", self.surround, "around-upload",
                     1 << 29)
-        self.select("Shadow map, texels", [512, 1024, 2048, 4096], "shadow_size")
+        self.select("Shadow map, texels", SHADOW_SIZES, "shadow_size")
         for i, lamp in enumerate(self.look.lamps):
             self.switch(lamp.name, lamp, "on", f"lamp-{i}-on")
             self.slider("Intensity", lamp, "intensity", 0, 4, 0.05, f"lamp-{i}-intensity")
@@ -204,7 +212,7 @@ class ProfilePanel(Panel):
     name = "Profile"
 
     def build(self) -> None:
-        self.select("Profile", [*Profile.library_names(), "pigments", "custom"], "profile", self.chosen)
+        self.select("Profile", profiles(), "profile", self.chosen)
         self.channels("Custom d, {}, mm", "distance", 0.01, 5.0, 0.01, self.draw_profile)
         text = {"color": "#ccc"}
         lines = [{"type": "line", "showSymbol": False, "data": [], "lineStyle": {"color": color}}

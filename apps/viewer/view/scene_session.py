@@ -99,6 +99,19 @@ class SceneSession:
         return Frame(pixels, times, made.stats.to_dict(), made.warnings, after, after - built,
                      bool(made.stats.stands_in))
 
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Materials and profiles, which the page sets in the scene itself, for undo and redo."""
+        return {"materials": {id: m._data.tobytes() for id, m in self.scene.materials.items()},
+                "profiles": dict(self.scene.profiles)}
+
+    @settings.setter
+    def settings(self, values: dict[str, Any]) -> None:
+        for id, data in values["materials"].items():
+            stored = self.scene.materials[id]._data
+            stored[...] = np.frombuffer(data, stored.dtype)
+        self.scene.profiles = values["profiles"]
+
     def prepare(self, width: int, height: int) -> None:
         """Does nothing: a scene's sliders need no other kernels."""
 

@@ -8,6 +8,7 @@ import json
 import math
 import tempfile
 import time
+import weakref
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, Callable, Optional, TypeVar
@@ -81,6 +82,7 @@ class Viewer:
         self._thread = ThreadPoolExecutor(1, "pellucid-view")  # OpenGL contexts belong to a thread
         self._opening = self._thread.submit(lambda: make(self._device()))
         self._folder, self._kept = tempfile.TemporaryDirectory(), 0
+        self.pages: weakref.WeakSet[Any] = weakref.WeakSet()
         self.error = ""
         self.last: Optional[Frame] = None
         self.busy = ""  # what takes long just now
@@ -149,6 +151,13 @@ class Viewer:
     def moving(self) -> bool:
         return time.monotonic() - self._moved < SETTLED
 
+    def rebuild(self) -> None:
+        """Builds the widgets of every page anew: settings that they are bound to were replaced."""
+        for page in list(self.pages):
+            if not page.column.is_deleted:
+                page.build()
+        self.changed()
+
     def undo(self) -> bool:
         """Undoes the last change. Returns whether there was one."""
         self._history.note(self.session)
@@ -175,7 +184,7 @@ class Viewer:
         """A new device and OpenGL context, with the same mesh, look and camera."""
         self.session = await self.on_thread(lambda: self.session.restarted(self._device()))
         self.error = ""
-        self.changed()
+        self.rebuild()
 
     async def frame(self, width: int, height: int, small: int,
                     sample: int = 0) -> Optional[tuple[Frame, bytes]]:

@@ -54,9 +54,8 @@ class Panel:
         raise NotImplementedError
 
     def rebuild(self) -> None:
-        """All widgets anew, and the picture."""
-        self.page.build()
-        self.viewer.changed()
+        """The widgets of all pages anew, and the picture."""
+        self.viewer.rebuild()
 
     async def deliver(self, make: Callable[[], bytes], name: str) -> None:
         """Makes a file on the session's thread, for the browser to download unless the page was closed."""

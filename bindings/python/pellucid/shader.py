@@ -74,6 +74,10 @@ class Shader(OfThisProcess):
 
     def _keep(self, key: Any, image: Any, what: str, use: Any, output: bool = False,
               ids: bool = False) -> Shader:
+        for kept in self._images.values():  # an array that is input and output is one image
+            span = kept._view.span
+            if getattr(span, "array", None) is image and (output or span.output) and image.flags.writeable:
+                image = kept
         image = to_image(self.device, image, what, output, ids)
         use(None if image is None else image._view.native)
         if image is None:

@@ -37,6 +37,14 @@ def test_half_and_bytes(device, view):
     assert np.abs(half[..., :3].astype(float) - view.lambert).max() < 2**-11 * 2 + 1 / 510
 
 
+@pytest.mark.parametrize("last", ["albedo", "radiance"])
+def test_an_array_that_is_input_and_output(device, view, last):
+    expected, both = shaded(device, view), view.albedo.copy()
+    shader = shader_for(device, view, both)
+    shader.set_image("albedo", both).set_image(last, None).set_image(last, both).commit().execute()
+    assert np.array_equal(both[view.inside], expected[view.inside])
+
+
 def read_only(array):
     array.flags.writeable = False
     return array
