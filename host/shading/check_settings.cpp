@@ -206,6 +206,8 @@ void checkAxes(const std::array<float, 9>& axes) {
 
 void checkCamera(const PelCamera& camera) {
     checkFinite("PelCamera", "position", camera.position, 3);
+    for (const float p : camera.position)
+        if (std::abs(p) > 1e18f) invalidArgument("PelCamera.position holds ", p, "; 1e18 is the most");
     checkFinite("PelCamera", "inverseViewProjection", camera.inverseViewProjection, 16);
 }
 

@@ -92,9 +92,9 @@ static inline float3 meanLight(float3 light, float3 weight, float3 e) {
 // The weights of blocks add up to nearly that of a plane. Returns the factor that makes it exact where the
 // difference is small.
 static inline float asOfPlane(float weight, float plane) {
-    if (!(weight > 0.1f * plane)) return 1.0f;
-    const float off = weight / plane - 1.0f,
-                trust = clamp(2.0f - fabs(off) * (1.0f / NEARLY_PLANE), 0.0f, 1.0f);
+    const float off = weight / plane - 1.0f;
+    if (!(fabs(off) < 2.0f * NEARLY_PLANE)) return 1.0f;  // NaN too: a window that holds all light
+    const float trust = clamp(2.0f - fabs(off) * (1.0f / NEARLY_PLANE), 0.0f, 1.0f);
     return (1.0f + off * (1.0f - trust)) / (1.0f + off);
 }
 

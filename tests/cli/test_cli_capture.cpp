@@ -98,6 +98,12 @@ TEST_F(Capture, RepeatsLightsAndTables) {
     EXPECT_TRUE(sameBits(radianceOf(folder + "diffuse.exr"), diffuse.readAll<float>()));
     EXPECT_TRUE(sameBits(pellucid::io::readImage(folder + "thickness.exr").channels[0].pixels,
                          thickness.readAll<float>()));
+    // Textures that nothing reads need no coordinates.
+    expectRepeats(randomFrame(7, 32, 16, 1), [](Shader& unread) {
+        const Buffer values(device(), std::vector<float>(12, 0.5f));
+        const PelImageDesc texture = imageDesc(values, PEL_FORMAT_RGB32F, 2, 2);
+        unread.setScatteredTexture(1, texture).setNormalMap(1, {texture});
+    });
 }
 
 // The previous radiance stays where there is no material, and is added to elsewhere.

@@ -147,6 +147,7 @@ TEST_P(Conventions, ACameraFindsPlacesFromDepth) {
         EXPECT_NEAR(dot(normalized(q), forward), -1, 1e-5);
         const auto m = times(camera.inverseViewProjection, {0, 0, 0.5, 1});
         const Vec3 away = q - Vec3{m[0] / m[3], m[1] / m[3], m[2] / m[3]};
+        EXPECT_NEAR(1.3 * length(away), 1e6, 1e3) << "of half of the width";
         EXPECT_LT(length(away - dot(away, forward) * forward), 0.3) << "beside the middle of the picture";
     }
 }

@@ -203,6 +203,22 @@ TEST(LightSpace, TexelsBeyondReachDoNotCount) {
     }
 }
 
+// A profile that is narrower than a texel leaves light where it falls.
+TEST(LightSpace, ANarrowProfileLeavesLightWhereItFalls) {
+    const uint32_t side = sized(96u, 32u);
+    for (const uint32_t mapSide : {16u, 64u}) {
+        const LitBall ball = makeBall(Form::parallel, normalized(Vec3{0.3, 0.2, 1}), mapSide);
+        const Picture p = pictureOf(ball, side);
+        for (const float width : {0.03f, 0.06f, 0.12f, 0.24f}) {
+            const std::vector<float> light = frameOf({ball}, side, byLight, width).shade().light;
+            for (size_t i = 0; i < light.size(); ++i)
+                if (p.ids[i / 3] && p.irradiance[i] > 0.6f) {
+                    ASSERT_NEAR(light[i], p.irradiance[i], 0.05) << "map " << mapSide << ", radius " << width;
+                }
+        }
+    }
+}
+
 // Texels of a surface that the camera sees as another object are left out, whether it scatters or not. No
 // pixel is dark, because a dark pixel would mark nothing.
 TEST(LightSpace, TexelsOfOtherObjectsDoNotCount) {

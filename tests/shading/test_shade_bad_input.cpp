@@ -205,6 +205,8 @@ TEST(ShadeBadInput, Values) {
     PelCamera camera = pelCameraDefaults();
     camera.position[0] = NAN;
     expectRefused("position[0]", [&] { r.shader.set(camera); });
+    camera.position[0] = -1e19f;
+    expectRefused("1e18 is the most", [&] { r.shader.set(camera); });
     r.shader.commit().execute();
 }
 

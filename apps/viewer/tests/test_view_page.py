@@ -281,6 +281,13 @@ def test_a_lost_device_is_reported_and_opened_again(page, lost):
     page.find_element(By.ID, "pel-again").click()
     wait_for(lambda: page.execute_script("return window.pelFrames") > count, "a picture")
     assert not box.is_displayed() and picture(page).std() > 10
+    # Widgets set the new session.
+    page.find_element(By.CSS_SELECTOR, "[data-pel='count']").click()
+
+    def counts():
+        return page.find_element(By.CSS_SELECTOR, "[data-pel='counts']").text
+
+    wait_for(lambda: "pixels shaded" in counts() and "pixels eye" not in counts(), "counts without details")
 
 
 def test_export_renders_again(page, tmp_path):

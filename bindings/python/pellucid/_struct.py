@@ -144,6 +144,11 @@ class Struct(metaclass=_PublicNames):
         """An independent copy."""
         return self._with(self, {})
 
+    __copy__ = copy
+
+    def __deepcopy__(self: S, memo: Any) -> S:
+        return self.copy()
+
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(f'{n}={getattr(self, n)!r}' for n in self.field_names())})"
 

@@ -1,4 +1,5 @@
 """Structures and enumerations: the same memory as in C, the same defaults, and wrong values named."""
+import copy
 import enum
 import inspect
 import pickle
@@ -33,6 +34,9 @@ def test_fields_have_the_librarys_defaults_and_keep_what_they_are_given():
     light = pel.Light(type="spot", color=(1, 2, 3), range=5, world_to_shadow=np.arange(16).reshape(4, 4))
     assert light.type is pel.LightType.SPOT and light.color.tolist() == [1, 2, 3] and light.range == 5
     assert light.world_to_shadow.tolist() == list(range(16))
+    twin = copy.copy(light)
+    twin.range = 6
+    assert light.range == 5 and copy.deepcopy(pel.Material(profile="skin")).profile.info.name == "skin"
     assert light.copy() == light and pel.Light() != light and light.to_dict()["type"] == "spot"
     table = pel.LutInfo(kind="shadow", shadow=pel.ShadowLutDesc(width=7))
     assert table.shadow.width == 7 and table.copy().shadow == table.shadow

@@ -1321,9 +1321,9 @@ typedef struct PelShaderOptions {
     uint32_t buildInBackground;
     /* milliseconds of the device that materials of PEL_SCATTERING_AUTO may take beyond plain lighting; 0: as
      * many as targetError needs. pelShaderCommit then counts their pixels in the material image (all of the
-     * frame if it shows none yet), and takes the method and the error, not below targetError, that are
-     * nearest to light among those that fit. Times are from the device's record: a file that PELLUCID_TUNING
-     * names, or a guess (docs/guide/shading.md, "Time budget"). PelShaderStats reports the choice; 0 */
+     * frame if it shows none yet), waiting for what is queued, and takes the method and the error, not below
+     * targetError, that are nearest to light among those that fit. Times are from the device's record: a file
+     * of PELLUCID_TUNING, or a guess (docs/guide/shading.md, "Time budget"). PelShaderStats has both; 0 */
     float timeBudget;
     /* pixels: the part of all images of the frame that is shaded, for images that are larger than the
      * viewport (docs/guide/hosts.md, "A part of the images"). Its pixels have no neighbours outside, as if
@@ -1600,7 +1600,7 @@ typedef struct PelTextureScatterStats {
     uint32_t launches; /* of the last execution */
     uint64_t texelsTotal;
     uint64_t texelsCovered; /* by a triangle */
-    uint64_t texelsInvalid; /* NaN or Inf in irradiance or albedo: count as not covered, and get 0 */
+    uint64_t texelsInvalid; /* irradiance or albedo that is NaN, Inf or above 1e15: not covered */
     uint64_t tilesTotal;    /* of 16 x 16 texels */
     uint64_t tilesBlurred;  /* with a covered texel, summed over Gaussians; other tiles are free */
     uint64_t gaussians;

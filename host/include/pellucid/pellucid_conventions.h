@@ -87,7 +87,7 @@ static inline int pelConventionInvert_(double m[4][4], double inverse[4][4]) {
  * written. */
 static inline PelError pelCameraFromViewProjection(const float viewProjection[16], PelConvention convention,
                                                    PelCamera* camera) {
-    double m[4][4], inverse[4][4], eye[4], middle[3], largest = 0, nearer = 0, length2, along = 0;
+    double m[4][4], inverse[4][4], eye[4], middle[3], largest = 0, nearer = 0, length2, along = 0, away;
     int i, k;
     if (!viewProjection || !camera || !pelConventionRead_(viewProjection, &convention, m))
         return PEL_ERROR_INVALID_ARGUMENT;
@@ -106,11 +106,16 @@ static inline PelError pelCameraFromViewProjection(const float viewProjection[16
     }
     length2 = eye[0] * eye[0] + eye[1] * eye[1] + eye[2] * eye[2];
     for (k = 0; k < 3; ++k) along += middle[k] * eye[k] / length2;
+    /* a million times half of the width that is seen, whatever the unit */
+    away =
+        1e6 *
+        sqrt(inverse[0][0] * inverse[0][0] + inverse[1][0] * inverse[1][0] + inverse[2][0] * inverse[2][0]) /
+        fabs(inverse[3][3]);
     for (k = 0; k < 3; ++k)
         camera->position[k] =
             (float)(fabs(eye[3]) > 1e-12 * largest
                         ? eye[k] / eye[3]
-                        : middle[k] + ((nearer > 0 ? 1e6 : -1e6) / sqrt(length2) - along) * eye[k]);
+                        : middle[k] + ((nearer > 0 ? away : -away) / sqrt(length2) - along) * eye[k]);
     for (i = 0; i < 4; ++i)
         for (k = 0; k < 4; ++k) camera->inverseViewProjection[4 * i + k] = (float)inverse[i][k];
     return PEL_SUCCESS;

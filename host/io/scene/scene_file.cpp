@@ -101,7 +101,10 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
         if (!m.normalMap.empty() && !m.normalMapLevels.empty())
             throw FileError(scene.source,
                             "'normal_map_levels' cannot stand beside 'normal_map'; leave one out", m.line);
-        if (!m.normalMap.empty() || !m.normalMapLevels.empty())
+        // What is not read needs no coordinates.
+        const bool unblurred = scene.channels[PEL_SLOT_NORMAL_BLURRED].empty(),
+                   scatters = m.material.scattering == PEL_SCATTERING_TEXTURE;
+        if (unblurred && (!m.normalMap.empty() || !m.normalMapLevels.empty()))
             for (const auto& [slot, key] : {std::pair{PEL_SLOT_UV, "uv"}, {PEL_SLOT_TANGENT, "tangent"}})
                 if (scene.channels[slot].empty())
                     channels.fail(key, concat("is missing; the normal map of material ", m.id, " needs it"));
@@ -110,7 +113,7 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
                 scene.source,
                 concat("'scatter_taps' is ", m.material.scatterTaps, "; 0, or 8 to 256 would be right"),
                 m.line);
-        if (!m.scatteredTexture.empty() && scene.channels[PEL_SLOT_UV].empty())
+        if (scatters && !m.scatteredTexture.empty() && scene.channels[PEL_SLOT_UV].empty())
             channels.fail("uv", concat("is missing; the scattered texture of material ", m.id, " needs it"));
         for (PelLutKind kind : {PEL_LUT_CURVATURE, PEL_LUT_SHADOW}) {
             const std::string& name = kind == PEL_LUT_CURVATURE ? m.curvatureLut : m.shadowLut;
