@@ -37,7 +37,7 @@ void reportMaterials(Run& run, const ImportArguments& a, const io::ImportedGltf&
         run.report["materials"].push_back(
             {{"id", i + 1}, {"name", name}, {"taken_for", look.how}, {"profile", profile}});
         if (!a.run.json)
-            std::printf("material %zu: %s, %s%s\n", i + 1, name.c_str(), look.how.c_str(),
+            std::printf("material %zu: %s, %s%s\n", i + 1, io::printable(name).c_str(), look.how.c_str(),
                         profile.empty() ? "" : (" " + profile).c_str());
     }
 }

@@ -193,6 +193,12 @@ void measure(const BenchArguments& a) {
         request.cancelled = [] { return stopped.load(); };
         report["devices"].push_back(bench::measureDevice(request));
         Json& d = report["devices"].back();
+        for (const std::string& word : a.only)
+            if (request.stability <= 0 && std::ranges::none_of(d.at("operations"), [&](const Json& e) {
+                    return e.at("name").get<std::string>().find(word) != std::string::npos;
+                }))
+                throw UsageError("--only " + word +
+                                 ": no operation has that in its name; a report without --only names all");
         bench::summarize(d, budgets, a.errors);
         if (a.firstGpu) {
             bench::judgeFirst(

@@ -174,7 +174,8 @@ void printReport(const nlohmann::ordered_json& report, bool json, int width) {
     }
     for (const auto& [key, value] : report.items())
         std::printf("%-*s %s\n", width, key.c_str(),
-                    value.is_string() ? value.get<std::string>().c_str() : jsonText(value, -1).c_str());
+                    value.is_string() ? io::printable(value.get<std::string>()).c_str()
+                                      : jsonText(value, -1).c_str());
 }
 
 void apply(CLI::Option& option, Word word) {

@@ -53,16 +53,6 @@ class TomlWriter {
         function(inner);
     }
 
-  private:
-    void line(std::string_view key, const std::string& value) {
-        out_.append(key).append(" = ").append(value) += '\n';
-    }
-
-    static std::string shown(const float* values, size_t count) {
-        std::string list;
-        for (size_t i = 0; i < count; ++i) list += (i ? ", " : "") + shortest(values[i]);
-        return "[" + list + "]";
-    }
     static std::string quoted(std::string_view text) {
         constexpr char hex[] = "0123456789ABCDEF";
         std::string out = "\"";
@@ -78,6 +68,16 @@ class TomlWriter {
         return out + "\"";
     }
 
+  private:
+    void line(std::string_view key, const std::string& value) {
+        out_.append(key).append(" = ").append(value) += '\n';
+    }
+
+    static std::string shown(const float* values, size_t count) {
+        std::string list;
+        for (size_t i = 0; i < count; ++i) list += (i ? ", " : "") + shortest(values[i]);
+        return "[" + list + "]";
+    }
     std::string& out_;
     std::string name_;
 };

@@ -5,6 +5,8 @@
 #include <span>
 #include <sstream>
 
+#include "io/toml_writer.h"
+
 namespace pellucid::io {
 namespace {
 
@@ -323,7 +325,8 @@ std::string profileText(const ProfileFit& fit, const std::string& name, const st
     std::ostringstream out;
     out.imbue(std::locale::classic());
     out.precision(9);
-    out << "name = \"" << name << "\"\nkind = \"gaussians\"\nunit = \"mm\"\nsource = \"" << source << "\"\n";
+    out << "name = " << TomlWriter::quoted(name)
+        << "\nkind = \"gaussians\"\nunit = \"mm\"\nsource = " << TomlWriter::quoted(source) << '\n';
     for (const PelGaussian& g : fit.gaussians)
         out << "[[gaussian]]\nvariance = " << std::showpoint << g.variance << "\nweight = [" << g.weight[0]
             << ", " << g.weight[1] << ", " << g.weight[2] << "]\n";

@@ -490,6 +490,9 @@ TEST_F(BenchCommand, FailsOnlyWhereItIsAskedTo) {
     refused("bench compare @old.json", 2, "two or more reports");
     refused("bench compare @old.json @slow.json --fail-if-slower 10", 2, "a number and %");
     refused("bench -o @out --budget 1s", 2, "a number and ms");
+    const Result none = cli("bench -o @out --only nosuch");
+    EXPECT_EQ(none.exitCode, 2);
+    EXPECT_TRUE(contains(none.err, "no operation has that in its name"));
 }
 
 // Reports of another size, of another device, of several devices; folders in place of their bench.json.

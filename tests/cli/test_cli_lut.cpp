@@ -109,6 +109,13 @@ TEST_F(CliLut, ProfilesAreShownDrawnAndFitted) {
     expectKept("jade.png", "profile.png", "0.0003");
     done("profile fit marble --gaussians 3 -o @fit.toml");
     EXPECT_EQ(reportOf("profile show @fit.toml")["gaussians"], 3);
+    // A name is written and shown with what it holds.
+    write("name.toml",
+          "name = 'a\"b\\c\u00e9'\nkind = 'burley'\nunit = 'mm'\nsource = \"\\u001b[1m\"\n"
+          "distance = [1, 1, 1]\n");
+    done("profile fit @name.toml --gaussians 2 -o @fit.toml");
+    EXPECT_EQ(reportOf("profile show @fit.toml")["name"], "a\"b\\c\u00e9-2-gaussians");
+    EXPECT_TRUE(contains(done("profile show @name.toml").out, "\\x1b[1m"));
 }
 
 TEST_F(CliLut, SkinIsDescribedDrawnAndTakenFromAPicture) {
