@@ -40,8 +40,8 @@ TEST_F(TextureFile, Dds) {
     const std::string bytes = read(path("t.dds"));
     EXPECT_EQ(bytes.substr(0, 4), "DDS ");
     EXPECT_EQ(bytes.substr(84, 4), "DX10");
-    // Own size, what is given, height, width, bytes of a row, mip levels, size of the pixel format, that it is
-    // a name; a texture; R16G16B16A16_FLOAT, of two dimensions, one.
+    // Own size, what is given, height, width, bytes of a row, mip levels, size of the pixel format, that it
+    // has a name; a texture; R16G16B16A16_FLOAT, of two dimensions, one.
     expectWords(bytes, 4, 84,
                 {{4, 124}, {8, 0x100F}, {12, 3}, {16, 5}, {20, 40}, {28, 1}, {76, 32}, {80, 4}});
     expectWords(bytes, 88, 148, {{108, 0x1000}, {128, 10}, {132, 3}, {140, 1}});
