@@ -120,6 +120,17 @@ TEST_F(PoclCache, FoldersOfOthersAreRefused) {
     fs::remove_all(ours());
     std::ofstream(ours()) << "a file";
     EXPECT_EQ(table(set), 0);
+    if (::geteuid() == 0) {  // a user without a home
+        ASSERT_EQ(::chown(path("temporary").c_str(), 12345, 12345), 0);
+        ASSERT_EQ(::chmod(path("home").c_str(), 0700), 0);
+        for (const char* name : {"temporary", "none"})
+            EXPECT_EQ(table([&] {
+                          ::setenv("TMPDIR", path(name).c_str(), 1);
+                          if (::setuid(12345) != 0) throw pellucid::Error(PEL_ERROR_UNKNOWN, "setuid");
+                      }),
+                      0)
+                << name;
+    }
     EXPECT_TRUE(fs::is_empty(path("temporary"))) << "its own folder went with the process";
 }
 

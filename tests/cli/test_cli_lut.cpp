@@ -32,6 +32,12 @@ TEST_F(CliLut, LutFilesHoldTheLibrarysTexels) {
             "lut curvature --preset faceworks --size 24x10 --radius-min 2 --radius-max 50 -o @" + file);
         expectReport(report);
         EXPECT_EQ(report.at("texels"), 240);
+        EXPECT_EQ(report.at("form"), "arc");
+        EXPECT_EQ(report.at("axis"), "linear");
+        for (const auto& [name, value] : {std::pair{"radius_min", 2.0f},
+                                          {"radius_max", 50.0f},
+                                          {"diffusion_radius", expected.info().curvature.diffusionRadius}})
+            EXPECT_EQ(report.at(name).get<float>(), value) << name;
         EXPECT_GT(report.at("device_ms").get<double>(), 0.0);
     };
     make("f.npy");
@@ -94,7 +100,13 @@ TEST_F(CliLut, TablesOfCaustics) {
 // A .png without --encoding is a picture to look at, as the report states.
 TEST_F(CliLut, ATableAsAPictureHasTheTablesValues) {
     EXPECT_TRUE(contains(reportOf("lut shadow --size 16x8 -o @look.png").at("encoding"), "picture"));
-    EXPECT_EQ(reportOf("lut shadow --size 16x8 -o @t.exr").at("encoding"), "float");
+    const auto report = reportOf("lut shadow --size 16x8 -o @t.exr");
+    EXPECT_EQ(report.at("encoding"), "float");
+    const PelShadowLutDesc made = io::readLut(device_, path("t.exr")).info().shadow;
+    for (const auto& [name, value] : {std::pair{"width_min", made.widthMin},
+                                      {"width_max", made.widthMax},
+                                      {"diffusion_radius", made.diffusionRadius}})
+        EXPECT_EQ(report.at(name).get<float>(), value) << name;
     const std::vector<std::string> rgb{"R", "G", "B"};
     const std::vector<float> picture = io::readImage(path("look.png")).interleaved(rgb),
                              table = io::readImage(path("t.exr")).interleaved(rgb);

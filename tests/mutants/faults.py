@@ -30,6 +30,8 @@ SAVES_TIME = r"(?:!SKIPPING \|\| )?anyw\("
 ENDS_EARLY = r"(?:SKIPPING && )?!anyw\("
 # With one lane, loadw(i, p) is p[i], which is i[p]; with more the other order does not compile.
 COMMUTATIVE = re.compile(r"\b(?:f?(?:min|max)w?|add3|dot3?|hypot|gcd|loadw|sameShape|distance)$")
+# A number of elements, and the character after it.
+COUNT = re.compile(r"\bfor \([^;]*;[^;]*< \w+;$|\b(?:copy|fill)_n\(.*, \w+,$|\bmem(?:cpy|cmp)\(.*, \w+\)$")
 TIME_ALONE = r"\b(?:PEL_PREFETCH|reserve)\("
 # Comments, the texts of literals (not a quote between digits), and preprocessor lines.
 HIDDEN_C = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|(?P<text>"(?:\\.|[^"\\\n])*"'
@@ -112,12 +114,14 @@ def operand(text, at):
 
 
 def number(match):
-    """Another constant, or nothing."""
+    """Another constant, or nothing. Loops and copies end one too early: one too late would be undefined, and
+    often unseen."""
     digits, suffix = re.fullmatch(r"(0[xX][0-9a-fA-F]+|[\d.]+(?:[eE][-+]?\d+)?)(\w*)", match[0]).groups()
     if digits[:2] in ("0x", "0X"):
         return f"{hex(int(digits, 16) ^ 1)}{suffix}"
     if digits.isdigit():
-        return f"{int(digits) + 1 if int(digits) != 1 else 2}{suffix}"
+        line = match.string[match.string.rfind("\n", 0, match.start()) + 1:match.end() + 1]
+        return f"{int(digits) + (-1 if int(digits) > 1 and COUNT.search(line) else 1)}{suffix}"
     value = float(digits)
     if 0 < abs(value) < 1e-15:
         return None  # a guard against 0, whatever its size
@@ -164,7 +168,6 @@ def candidates(path, text, m):
     yield from each(m, "constant", r"(?<![\w.'])(?:0[xX][0-9a-fA-F]+|(?:\d+\.\d*|\d+)(?:[eE][-+]?\d+)?|\.\d+)"
                     r"[fFuUlL]*(?![\w.'])", lambda match: None if match.start() in lengths else number(match))
     for match in re.finditer(r" (<=|>=|==|!=|<|>)(?= )", m):
-        # A loop ends one too early: one too late would be undefined, and often unseen.
         early = match[1] == "<" and re.search(r"\bfor \([^;]*;[^;]*$", line(match, match.start()))
         yield *match.span(1), "+ 1 <" if early else COMPARISON[match[1]], "comparison"
     for match in re.finditer(r" (\+=|-=|\*=|/=|\|=|&=|&&|\|\||and|or|%|&|\|(?! None)|<<|>>)(?=\s)", m):

@@ -39,6 +39,9 @@ TEST(ShadeBadInput, ImagesThatDoNotFit) {
                       {"is not set, only the first 1", "pelShaderSetLights comes first"},
                       [&] { r.shader.set(light, PEL_LIGHT_WIDE_SHADOW, nullptr); });
     static const Buffer buffer(device(), 32 * 16 * 16), foreign(Device(""), 4096);
+    for (const PelFormat format : {PEL_FORMAT_OCT16X2_SNORM, PEL_FORMAT_RGBA8_SRGB})
+        expectRefused(PEL_ERROR_INVALID_ARGUMENT, {"normal map 0", "averaged"},
+                      [&] { r.shader.setNormalMap(1, {imageDesc(buffer, format, 8, 8)}); });
     const struct {
         PelImageSlot slot;
         PelFormat format;

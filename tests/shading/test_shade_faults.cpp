@@ -67,6 +67,7 @@ TEST_P(ShadeFaults, EachAllocationInTurn) {
     const Buffer target(device(), f.pixels() * 12), curvature(device(), f.slots[PEL_SLOT_CURVATURE].values);
     setFrame(shader, f, target);
     shader.commit();
+    const std::vector<float> none(3 * f.pixels());
     int failures = 0, recovered = 0;
     for (int n = 1; n < 2000; ++n) {
         // A new shader, so that everything is allocated anew.
@@ -102,6 +103,14 @@ TEST_P(ShadeFaults, EachAllocationInTurn) {
             EXPECT_EQ(target.readAll<float>(), right) << "after call " << n;
         }
         if (!fresh.get()) continue;
+        // What failed to commit is not executed.
+        target.write(none.data(), none.size() * sizeof none[0]);
+        try {
+            fresh.execute();
+            EXPECT_EQ(target.readAll<float>(), right) << "after call " << n;
+        } catch (const pellucid::Error& e) {
+            EXPECT_EQ(e.code(), PEL_ERROR_INVALID_STATE) << e.what();
+        }
         setFrame(fresh, f, target);
         fresh.commit().execute();
         EXPECT_EQ(target.readAll<float>(), right) << "after call " << n;

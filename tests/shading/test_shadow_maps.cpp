@@ -292,31 +292,35 @@ TEST(ShadowFilter, AStraightEdgeHasTheTablesProfile) {
     }
 }
 
-// The bounds of a map follow from its decoded texels, in any format.
+// The bounds of a map follow from its decoded texels, in any format: each of those that lie alone counts.
 TEST(ShadowFilter, AMapOfIntegersIsTheMapOfItsFloats) {
-    MapLight from = mapLight(7, false, false, slanted, {26, 12, 5}, 70, 200);
-    std::vector<uint16_t> integers;
-    for (size_t i = 0; i < from.light.map.values.size(); ++i) {
-        integers.push_back(uint16_t(std::lround(65535 * std::clamp(from.light.map.values[i], 0.0f, 1.0f))));
-        setDepth(from, i, from.view.decoding.range * integers.back() / 65535.0);
-    }
-    Frame f = filterFrame();
-    f.lights = {from.light};
-    showWideShadow(f);
-    const std::vector<float> shown = shade(f, nullptr, [&](Shader& shader) {
-        const Buffer map(device(), integers);
-        shader.set(0, PEL_LIGHT_SHADOW_MAP, imageDesc(map, PEL_FORMAT_R16_UNORM, 200, 200));
-    });
-    EXPECT_GT(*std::max_element(shown.begin(), shown.end()), 0.1f);
-    const FormTruth truth = truthOf(from);
-    for (size_t i = 0; i < f.pixels(); ++i)
-        if (const PelMaterial* m = materialAt(f, i)) {
-            ASSERT_NEAR(
-                shown[3 * i],
-                truth.wide(*m, f.slots[PEL_SLOT_POSITION].vec(i), f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i)),
-                tolerance::wideShadow)
-                << i;
+    for (const size_t apart : {113u, 149u}) {
+        MapLight from = mapLight(7, false, false, {0, 0, 1}, {24, 10, 0}, 50, 200);
+        std::vector<uint16_t> integers;
+        for (size_t i = 0; i < from.light.map.values.size(); ++i) {
+            setDepth(from, i, i % apart == 0 ? 100 : 200);
+            integers.push_back(
+                uint16_t(std::lround(65535 * std::clamp(from.light.map.values[i], 0.0f, 1.0f))));
+            setDepth(from, i, from.view.decoding.range * integers.back() / 65535.0);
         }
+        Frame f = flattened(filterFrame(1, 0.4f));
+        f.lights = {from.light};
+        showWideShadow(f);
+        const std::vector<float> shown = shade(f, nullptr, [&](Shader& shader) {
+            const Buffer map(device(), integers);
+            shader.set(0, PEL_LIGHT_SHADOW_MAP, imageDesc(map, PEL_FORMAT_R16_UNORM, 200, 200));
+        });
+        EXPECT_GT(*std::max_element(shown.begin(), shown.end()), 0.1f);
+        const FormTruth truth = truthOf(from);
+        for (size_t i = 0; i < f.pixels(); ++i)
+            if (const PelMaterial* m = materialAt(f, i)) {
+                ASSERT_NEAR(shown[3 * i],
+                            truth.wide(*m, f.slots[PEL_SLOT_POSITION].vec(i),
+                                       f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i)),
+                            tolerance::wideShadow)
+                    << i;
+            }
+    }
 }
 
 // --- when a map is filtered ---

@@ -4,6 +4,7 @@
 #include "io/choice_keys.h"
 #include "io/content_hash.h"
 #include "io/image/image_file.h"
+#include "io/image/image_format.h"
 #include "io/lut/lut_file.h"
 
 namespace fs = std::filesystem;
@@ -370,7 +371,7 @@ TEST_F(BatchCommand, ProgressIsInPlaceOnATerminalAndLinesElsewhere) {
         EXPECT_TRUE(contains(read(path("terminal")), part));
 }
 
-// The bytes of a batch's files are encoded in memory; OpenImageIO reads them.
+// The bytes of a batch's files are encoded in memory; OpenImageIO reads them, and writes the same header.
 TEST_F(BatchCommand, FilesHoldTheTexelsOfTheTable) {
     const auto entries = pellucid::io::readManifest(write("m.toml",
                                                           "[[grid]]\nsize = [1, 7, 33]\naxis = \"root\"\n"
@@ -397,6 +398,16 @@ TEST_F(BatchCommand, FilesHoldTheTexelsOfTheTable) {
             EXPECT_EQ(lut.read<uint16_t>(PEL_LUT_HALF), again.read<uint16_t>(PEL_LUT_HALF));
         else
             EXPECT_EQ(lut.read<float>(PEL_LUT_FLOAT), again.read<float>(PEL_LUT_FLOAT));
+        pellucid::io::writeLut(path("t.exr"), again, entry.encoding);
+        std::map<std::string_view, std::string_view> known;
+        const std::string whole = read(path("t.exr"));
+        for (pellucid::io::ExrAttributes from(whole); const auto a = from.next();) known[a->name] = a->value;
+        for (pellucid::io::ExrAttributes from(bytes); const auto a = from.next();) {
+            const bool own = a->name == "compression" || a->name.ends_with("key") || a->name.ends_with("sum");
+            EXPECT_TRUE(own || known[a->name] == a->value) << a->name;
+            known.erase(a->name);
+        }
+        for (const auto& [name, value] : known) EXPECT_FALSE(name.starts_with("pellucid:")) << name;
     }
 }
 

@@ -1,5 +1,7 @@
 """The viewer's guard: which requests are admitted, whatever cookies other programs have set."""
 import asyncio
+import importlib
+import re
 import socket
 
 import pytest
@@ -15,6 +17,21 @@ def test_a_unit_has_a_length(unit, monkeypatch, capsys):
     with pytest.raises(SystemExit) as ended:
         main()
     assert ended.value.code == 2 and "--unit-mm must be above 0" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("program, options", [
+    ("view.__main__", {"unit_mm", "port"}), ("view.gallery", {"size"}),
+    ("batch.__main__", {"timeout", "patience"})])
+def test_help_states_the_defaults(program, options, monkeypatch):
+    def parse(parser):
+        stated = {a.dest: (float(found[1]), a.default) for a in parser._actions
+                  if (found := re.search(r"\((?:default: )?([\d.]+)\)", a.help or ""))}
+        assert set(stated) == options and all(said == default for said, default in stated.values())
+        parser.exit()
+
+    monkeypatch.setattr("argparse.ArgumentParser.parse_args", parse)
+    with pytest.raises(SystemExit):
+        importlib.import_module(f"pellucid.{program}").main()
 
 
 def ask(guard, path="/", query="", cookie=None, kind="http", **headers):
