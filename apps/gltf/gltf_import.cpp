@@ -7,6 +7,7 @@
 #include <map>
 
 #include "io/atomic_file.h"
+#include "io/concat.h"
 #include "io/lut/profile_file.h"
 #include "io/shortest.h"
 
@@ -91,7 +92,7 @@ std::map<std::string, std::string> profilesOf(const std::vector<std::string>& wo
                                               const std::vector<GltfMaterial>& materials) {
     std::map<std::string, std::string> chosen;
     std::string known;
-    for (const GltfMaterial& m : materials) known += (known.empty() ? "" : ", ") + m.name;
+    for (const GltfMaterial& m : materials) known += (known.empty() ? "" : ", ") + printable(m.name);
     for (const std::string& word : words) {
         const size_t at = word.rfind('=');
         const std::string profile = at == std::string::npos ? word : word.substr(at + 1);

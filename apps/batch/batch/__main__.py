@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import sys
 from dataclasses import asdict
 
@@ -31,7 +32,8 @@ def main() -> int:
     if a.scheduler and (a.workers or a.device):
         parser.error("--workers and --device are for processes of this machine; with --scheduler the cluster "
                      "has its own")
-    if a.timeout <= 0 or a.patience < 0 or not 0 <= a.jobs <= 256 or (a.workers or 1) < 1 or a.workers == 0:
+    times = 0 < a.timeout < math.inf and 0 <= a.patience < math.inf
+    if not times or not 0 <= a.jobs <= 256 or (a.workers or 1) < 1 or a.workers == 0:
         parser.error("--timeout must be above 0, --workers 1 or more, --patience 0 or more, --jobs from 0 to "
                      "256")
 

@@ -106,6 +106,8 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
     """
     if scheduler is not None and workers is not None:
         raise ValueError("workers are processes of this machine; a cluster has its own: cluster.scale(n)")
+    if scheduler is None and os.fspath(out).startswith(("memory://", "local://")):
+        raise ValueError(f"{out}: processes of this machine share no memory; name a folder")
     if not isinstance(manifest, Manifest):
         manifest = Manifest(manifest)
     try:

@@ -1,7 +1,9 @@
 """Where the files of a batch go: a folder that all workers see, or an object store."""
 from __future__ import annotations
 
+import errno
 import os
+import stat
 from pathlib import Path
 from typing import Any, Optional
 
@@ -10,6 +12,10 @@ from .. import _native
 
 class StoreError(Exception):
     """The output is full, gone or not writable: no other entry can succeed either."""
+
+
+class InTheWay(Exception):
+    """Something that is no file has the name of an entry's file."""
 
 
 class Store:
@@ -45,11 +51,16 @@ class Store:
         """The file's bytes, None if there is none."""
         try:
             if self._files is None:
-                return (Path(self.out) / name).read_bytes()
+                path = Path(self.out) / name
+                if not stat.S_ISREG(path.stat().st_mode):
+                    raise InTheWay(f"{path} is in the way: it is not a file")
+                return path.read_bytes()
             return bytes(self._files.cat_file(f"{self._root}/{name}"))
         except FileNotFoundError:
             return None
         except OSError as e:
+            if e.errno == errno.ELOOP:
+                raise InTheWay(f"{self.out}/{name} is in the way: {e.strerror}") from e
             raise StoreError(f"{self.out}/{name}: cannot be read: {e.strerror or e}") from e
 
     def write(self, name: str, data: bytes) -> None:

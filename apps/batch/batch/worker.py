@@ -16,7 +16,7 @@ from .._errors import PellucidError
 from .._types import ErrorCode
 from ..device import Device
 from .manifest import Manifest
-from .store import Store, StoreError
+from .store import InTheWay, Store, StoreError
 
 _lock = threading.Lock()
 
@@ -57,6 +57,8 @@ def make_entry(manifest: Manifest, index: int, store: Store, device: Device) -> 
         return index, MADE if old is None else REDONE, hashlib.sha256(data).hexdigest()
     except StoreError as e:
         return index, NO_STORE, str(e)
+    except InTheWay as e:
+        return index, BAD, str(e)
     except PellucidError as e:
         kinds = {ErrorCode.DEVICE: DEVICE_FAILED, ErrorCode.NO_DEVICE: DEVICE_FAILED,
                  ErrorCode.UNKNOWN: DEVICE_FAILED, ErrorCode.OUT_OF_MEMORY: NO_ROOM}

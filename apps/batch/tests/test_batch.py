@@ -284,6 +284,9 @@ def test_bad_entries_are_reported_and_the_others_made(tmp_path):
     (["m.toml", "--out", "o", "--scheduler", "here"], 4, "no Dask scheduler at here: missing port number"),
     (["none.toml", "--out", "o"], 3, "none.toml: cannot be read"),
     (["m.toml", "--out", "m.toml"], 3, "m.toml: is not a folder"),
+    (["m.toml", "--out", "memory://o"], 3, "share no memory"),
+    (["m.toml", "--out", "o", "--timeout", "nan"], 2, "--timeout must be above 0"),
+    (["m.toml", "--out", "o", "--patience", "inf"], 2, "--patience 0 or more"),
 ])
 def test_wrong_use(tmp_path, monkeypatch, capsys, arguments, code, message):
     (tmp_path / "m.toml").write_text(grid(1))
@@ -317,6 +320,11 @@ def test_a_folder_that_has_gone_and_what_is_no_file(tmp_path):
     gone = store.Store(tmp_path / "gone")
     assert gone.read("a.exr") is None
     os.mkfifo(tmp_path / "pipe.exr")
+    (tmp_path / "folder.exr").mkdir()
+    (tmp_path / "loop.exr").symlink_to("loop.exr")
+    for name in ("pipe.exr", "folder.exr", "loop.exr"):  # an error of that entry alone
+        with pytest.raises(store.InTheWay, match=f"{name} is in the way"):
+            store.Store(tmp_path).read(name)
     for folder, name, message in ((gone, "a.exr", "there is no folder"),
                                   (store.Store(tmp_path), "pipe.exr", "must be the name of a file")):
         with pytest.raises(store.StoreError, match=message):

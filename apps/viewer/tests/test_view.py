@@ -353,6 +353,9 @@ def test_the_mouse_takes_the_object_along():
         shown.look.roughness = roughness
         state.changed()
     assert state.undo() and shown.look.roughness == 0.21
+    shown.mesh = types.SimpleNamespace(low=(-5, -5, -5), high=(5, 5, 5))
+    state.new_object()
+    assert not state.undo(), "to a camera that frames the mesh before"
 
 
 def test_eyes_look_where_those_of_the_mesh_do(session):

@@ -7,7 +7,7 @@ import socket
 import pytest
 
 pytest.importorskip("nicegui", reason="nicegui is not installed")
-from pellucid.view.__main__ import free_port, main  # noqa: E402
+from pellucid.view.__main__ import address, free_port, main  # noqa: E402
 from pellucid.view.guard import Guard, Keys, cookie_values  # noqa: E402
 
 
@@ -95,6 +95,8 @@ def test_an_address_is_valid_once_and_its_key_is_not_the_cookie(guard):
 def test_a_chosen_token_stays_valid(guard):
     guard.keys = Keys(8350, "mine")
     assert [ask(guard, query="token=mine")[0] for _ in range(2)] == [303, 303]
+    guard.keys = Keys(8350, "a+b &c%25")
+    assert ask(guard, query=address("127.0.0.1", 8350, "a+b &c%25").split("?")[1])[0] == 303
     assert ask(guard, query="token=min\u00e9".encode().decode("latin-1"))[0] == 403
 
 

@@ -127,6 +127,10 @@ def test_presets_and_what_was_open_come_back(fresh, tmp_path):
     assert [p.name for p in path.parent.iterdir()] == ["view.json"]
     again = Memory(path)
     assert list(again.part("presets")) == ["Mine"] and again.opened == {"Skin": True}
+    elsewhere = Memory(path)
+    elsewhere.update(last={"mesh": str(tmp_path / "dropped.obj")})
+    session = Session(fresh.device)
+    assert recall(elsewhere, session) == "" and session.look == fresh.look
     session = Session(fresh.device)
     assert recall(again, session) == str(files.standard_head())
     assert session.look == fresh.look == Look.from_dict(again.part("presets")["Mine"])

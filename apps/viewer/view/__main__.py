@@ -8,6 +8,7 @@ import socket
 import sys
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 
 def free_port(host: str, port: int) -> int:
@@ -18,12 +19,16 @@ def free_port(host: str, port: int) -> int:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # as the server does
             try:
                 probe.bind((address[0], port + offset, *address[2:]))
-                return port + offset
+                return int(probe.getsockname()[1])
             except PermissionError:
                 raise
             except (OSError, OverflowError) as error:
                 last = error
     raise OSError(f"no port from {port} to {port + 49} can be used on {host}: {last}")
+
+
+def address(host: str, port: int, token: str) -> str:
+    return f"http://{f'[{host}]' if ':' in host else host}:{port}/?token={quote(token, safe='')}"
 
 
 def main() -> int:
@@ -93,7 +98,7 @@ def main() -> int:
 
     try:
         port = free_port(a.host, a.port)
-        if port != a.port:
+        if a.port and port != a.port:
             print(f"pellucid view: port {a.port} is in use; this is {port}", file=sys.stderr)
         viewer = Viewer(lambda: Device(a.device), opened, memory)
         try:  # while the viewer opens the mesh
@@ -107,7 +112,6 @@ def main() -> int:
     except (OSError, ValueError, TypeError, RuntimeError, PellucidError) as error:
         print(f"pellucid view: {error}", file=sys.stderr)
         return 3
-    shown = f"[{a.host}]" if ":" in a.host else a.host
     try:
         local = ipaddress.ip_address(a.host).is_loopback
     except ValueError:
@@ -115,9 +119,6 @@ def main() -> int:
     if not local:
         print("pellucid view: the network can reach this page; its token travels unencrypted",
               file=sys.stderr)
-
-    def address(key: str) -> str:
-        return f"http://{shown}:{port}/?token={key}"
 
     if resumed:
         print(f"pellucid view: {resumed}, as it was left (--fresh: begin anew)", file=sys.stderr)
@@ -132,18 +133,19 @@ def main() -> int:
             print(f"pellucid view: {error}", file=sys.stderr)
 
     app.on_shutdown(leave)
-    keys = Keys(port, a.token, lambda key: print(f"for another browser: {address(key)}", flush=True))
+    keys = Keys(port, a.token, lambda key: print(f"for another browser: {address(a.host, port, key)}",
+                                                 flush=True))
     app.add_middleware(Guard, keys=keys)
     serve(viewer)
     better = viewer.session.better_unit() if isinstance(viewer.session, Session) else None
     if better is not None:
         print(f"pellucid view: {viewer.session.size_text()} If its lengths are in {UNITS[better]}: --unit-mm "
               f"{better:g}", file=sys.stderr)
-    print(address(keys.key), flush=True)
+    print(address(a.host, port, keys.key), flush=True)
     if not a.no_browser:
         import webbrowser
 
-        app.on_startup(lambda: webbrowser.open(address(keys.key)))
+        app.on_startup(lambda: webbrowser.open(address(a.host, port, keys.key)))
     logging.getLogger("nicegui").setLevel(logging.ERROR)  # it warns of each slow propagation of bindings
     ui.run(host=a.host, port=port, show=False, reload=False, show_welcome_message=False, dark=True,
            ws_per_message_deflate=False)  # JPEG files do not become smaller

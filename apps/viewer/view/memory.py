@@ -72,20 +72,21 @@ def remember(memory: Memory, session: Any, **opened: Any) -> None:
 
 
 def recall(memory: Memory, session: Any) -> str:
-    """Shows the last session. Returns the mesh's file, or "" if there is none, it no longer exists, or it
-    cannot be shown."""
+    """Shows the last session. Returns the mesh's file, or "" if there is none, it no longer exists (the look
+    is then shown alone), or it cannot be shown."""
     last, unit = memory.part("last"), session.mm
     try:
-        if not Path(last["mesh"]).is_file():
-            return ""
         look, orbit = Look.from_dict(last["look"]), filled(Orbit(), last["orbit"], "the camera")
+        for name in ("iris_texture", "surroundings"):  # files dropped on the page were deleted with that run
+            if getattr(look, name) not in ("", STUDIO) and not Path(getattr(look, name)).is_file():
+                setattr(look, name, "")
+        if not Path(last["mesh"]).is_file():  # such as one that was dropped on the page
+            session.look = look
+            return ""
         session.mm = float(last["mm"])
         session.load(last["mesh"], last.get("subdivide"), last.get("up", "auto"))
     except (KeyError, TypeError, ValueError, OSError, PellucidError):
         session.mm = unit
         return ""
-    for name in ("iris_texture", "surroundings"):  # files dropped on the page were deleted with that run
-        if getattr(look, name) not in ("", STUDIO) and not Path(getattr(look, name)).is_file():
-            setattr(look, name, "")
     session.look, session.orbit = look, orbit
     return str(last["mesh"])

@@ -24,14 +24,14 @@ class SceneMaterialsPanel(Panel):
     name, open = "Materials", True
 
     def build(self) -> None:
-        scene = self.viewer.session.scene
-        for id, material in scene.materials.items():
+        session = self.viewer.session
+        for id, material in session.materials.items():
             ui.label(f"Material {id}").classes("text-sm")
             known = Profile.library_names()
-            named = scene.profiles.get(id, "")
+            named = session.profiles.get(id, "")
 
             def profile(e: events.ValueChangeEventArguments, id: int = id) -> None:
-                scene.profiles[id] = e.value
+                session.profiles[id] = e.value
                 self.viewer.changed()
 
             names = known if named in known else [named, *known]

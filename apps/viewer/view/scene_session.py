@@ -46,6 +46,8 @@ class SceneSession:
         # While something moves, every second pixel serves.
         channels = {name: pixels[::2, ::2] for name, pixels in files.read_image(found).items()}
         self._small = load_scene(path, channels)
+        # What the page sets: the scene has others while it is shaded without scattering.
+        self.materials, self.profiles = self.scene.materials, self.scene.profiles
         self._colors = [light.color.copy() for light in self.scene.lights]
         self._ambient = (self.scene.ambient.constant.copy(), self.scene.ambient.sh.copy())
         self.look = SceneLook(lights=[1.0] * len(self._colors))
@@ -57,7 +59,7 @@ class SceneSession:
         scene = self._small if small else self.scene
         source = self.scene
         scene.options, scene.camera = source.options, source.camera
-        kept, names = source.materials, source.profiles
+        kept, names = self.materials, self.profiles
         scene.materials = {id: self._plain(m) for id, m in kept.items()} if plain else kept
         scene.profiles = dict.fromkeys(names, "") if plain else names
         for light, color, factor in zip(scene.lights, self._colors, self.look.lights):
@@ -101,16 +103,16 @@ class SceneSession:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """Materials and profiles, which the page sets in the scene itself, for undo and redo."""
-        return {"materials": {id: m._data.tobytes() for id, m in self.scene.materials.items()},
-                "profiles": dict(self.scene.profiles)}
+        """Materials and profiles, for undo and redo."""
+        return {"materials": {id: m._data.tobytes() for id, m in self.materials.items()},
+                "profiles": dict(self.profiles)}
 
     @settings.setter
     def settings(self, values: dict[str, Any]) -> None:
         for id, data in values["materials"].items():
-            stored = self.scene.materials[id]._data
+            stored = self.materials[id]._data
             stored[...] = np.frombuffer(data, stored.dtype)
-        self.scene.profiles = values["profiles"]
+        self.profiles.update(values["profiles"])
 
     def prepare(self, width: int, height: int) -> None:
         """Does nothing: a scene's sliders need no other kernels."""
@@ -122,7 +124,9 @@ class SceneSession:
     def restarted(self, device: Device) -> SceneSession:
         """The same with another device."""
         fresh = SceneSession(self.path, self.gbuffer_path, device)
-        for name in ("materials", "profiles", "options"):
-            setattr(fresh.scene, name, getattr(self.scene, name))
+        for name in ("materials", "profiles"):
+            setattr(fresh, name, getattr(self, name))
+            setattr(fresh.scene, name, getattr(self, name))
+        fresh.scene.options = self.scene.options
         fresh.look, fresh.count = self.look, self.count
         return fresh

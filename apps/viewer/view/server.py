@@ -175,6 +175,7 @@ class Viewer:
         """After another mesh has been loaded: the camera frames it until it is moved."""
         self._placed = self.resumed = False
         self.frame_object()
+        self._history = History(self.session)  # its cameras frame the mesh before
 
     def look_from(self, azimuth: float, elevation: float) -> None:
         self.session.orbit.azimuth, self.session.orbit.elevation = azimuth, elevation
