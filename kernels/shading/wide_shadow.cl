@@ -108,6 +108,19 @@ static inline maskw makeFilters(__global const PelWideShadow* light, const Filte
     return held & comparable(&r, p, n) & (radiusX < 1e6f) & (radiusY < 1e6f) & finitew(dzdx) & finitew(dzdy);
 }
 
+// Rounding errors of depths, here and in the map, which must not count as shadow.
+static inline floatw roundingOfDepth(floatw z) {
+    const int format = PEL_FORMAT_SHADOW_MAP & ~PEL_FMT_STRIDED;
+    const float least = 4e-7f, ofHalf = PEL_SHADOW_CONTENT == PEL_CONTENT_EXPONENTIAL ? least : 5e-4f;
+    const float relative = format < PEL_FMT_R16F ? least : format <= PEL_FMT_RGBA16F ? ofHalf : least;
+    const float absolute = format == PEL_FMT_R16_UNORM           ? 8e-6f  // half of a step
+                           : format == PEL_FMT_A2B10G10R10_UNORM ? 5e-4f
+                           : format == PEL_FMT_R8_UNORM          ? 2e-3f
+                           : format == PEL_FMT_RGBA8_UNORM       ? 2e-3f
+                                                                 : least;
+    return fma(fabs(z), (floatw)(relative), (floatw)(absolute));
+}
+
 // The sharp shadow of the lanes of `left` that this map holds; these are removed from `left`.
 static inline floatw sharpInMap(__global const PelWideShadow* light, __global const uchar* map, Vec3w p,
                                 Vec3w n, float perExponent, floatw shown, maskw* left) {
@@ -122,8 +135,7 @@ static inline floatw sharpInMap(__global const PelWideShadow* light, __global co
     s.x = r.x, s.y = r.y, s.z = r.z;
     s.dzdx = dot3(n, loadUniform3(light->right)) * tilt * r.texelU * r.zPerLength;
     s.dzdy = dot3(n, loadUniform3(light->down)) * tilt * r.texelV * r.zPerLength;
-    // Rounding errors of the largest depths must not count as shadow.
-    const floatw least = (fabs(r.z) + 1.0f) * 4e-7f;
+    const floatw least = roundingOfDepth(r.z);
     // A depth before the tangent plane by less than this belongs to the receiver itself: the deviation of a
     // surface and its facets from the plane, inside the footprint, grows with the size of texels.
     const floatw tolerance =

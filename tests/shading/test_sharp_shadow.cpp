@@ -35,8 +35,9 @@ Scene sceneOf(Vec3 toLight, bool perspective, bool reversed, const Cast& cast) {
     return s;
 }
 
-// Shadow times N.L of each point, all lengths counted in another unit.
-std::vector<float> lit(const Scene& s, double unit = 1, uint32_t cascades = 0) {
+// Shadow times N.L of each point, all lengths counted in another unit. `rounded`: the map in another format.
+std::vector<float> lit(const Scene& s, double unit = 1, uint32_t cascades = 0,
+                       const std::function<void(Shader&)>& rounded = {}) {
     Frame f;
     f.width = uint32_t(s.points.size()), f.height = 1;
     f.curvatureLut = f.shadowLut = false;
@@ -55,7 +56,7 @@ std::vector<float> lit(const Scene& s, double unit = 1, uint32_t cascades = 0) {
     l.shadowFilterTexels = 0;  // no wide shadow is wanted
     l.shadowCascades = cascades;
     f.lights = {light};
-    std::vector<float> radiance = shade(f), result;
+    std::vector<float> radiance = shade(f, nullptr, rounded), result;
     for (size_t i = 0; i < radiance.size(); i += 3) result.push_back(radiance[i]);
     return result;
 }
@@ -131,6 +132,36 @@ TEST(SharpShadow, IsItsDefinition) {
                         partly, turned);
             EXPECT_GT(partly, e.size() / 40);
             EXPECT_LE(turned, e.size() / 500);
+        }
+}
+
+// The steps of coarse formats are longer than half a texel.
+TEST(SharpShadow, FormatsOfMapsThrowNoneByTheirRounding) {
+    constexpr double share = 0.02;  // of the range, used by the ground
+    for (const PelFormat format : {PEL_FORMAT_R16_UNORM, PEL_FORMAT_R16F, PEL_FORMAT_R8_UNORM})
+        for (double c : {1.0, 0.3}) {
+            Scene s = sceneOf(lightAt(c, 2), false, false, ground);
+            scatterOverGround(s, 512);
+            PelLight& l = s.light.light.params;
+            const double part = format == PEL_FORMAT_R8_UNORM ? 1 : share;
+            for (int k = 8; k < 12; ++k) l.worldToShadow[k] *= float(part);
+            l.worldToShadow[11] += float(0.5 * (1 - part));
+            l.shadowDepthRange /= float(part);
+            std::vector<uint8_t> bytes;
+            for (const float z : s.light.light.map.values) {
+                const double stored = 0.5 + part * (double(z) - 0.5);
+                const auto bits = uint16_t(format == PEL_FORMAT_R16F        ? toHalf(float(stored))
+                                           : format == PEL_FORMAT_R16_UNORM ? std::lround(65535 * stored)
+                                                                            : std::lround(255 * stored));
+                bytes.push_back(uint8_t(bits & 255));
+                if (format != PEL_FORMAT_R8_UNORM) bytes.push_back(uint8_t(bits >> 8));
+            }
+            const std::vector<float> e = lit(s, 1, 0, [&](Shader& shader) {
+                const Buffer map(device(), bytes);
+                shader.set(0, PEL_LIGHT_SHADOW_MAP, imageDesc(map, format, mapSize, mapSize));
+            });
+            for (size_t i = 0; i < e.size(); ++i)
+                ASSERT_NEAR(e[i], cosine(s, i), 1e-4) << "format " << format << " cosine " << c << ", " << i;
         }
 }
 
