@@ -9,21 +9,28 @@
 namespace pel {
 namespace {
 
-// Lengths of a parallel map; 0 for others, whose texels grow with distance.
+// Lengths of a light's parallel maps; 0 for others, whose texels grow with distance.
 struct MapLengths {
-    double span = 0;   // of the longer side
-    double texel = 0;  // of a texel's longer side
+    double span = 0;   // of the longer side of the largest cascade
+    double texel = 0;  // of a texel's longer side in the finest
 };
 
-MapLengths lengthsOf(const PelLight& l, const ImageView& map) {
+MapLengths lengthsOf(const ShaderLight& light) {
     MapLengths lengths;
-    if (l.shadowProjection != PEL_SHADOW_PARALLEL || !map) return lengths;
-    for (int row = 0; row < 2; ++row) {
-        const float* m = l.worldToShadow + 4 * row;
-        const double perLength =
-            std::hypot(double(m[0]), double(m[1]), double(m[2])) / std::abs(double(l.worldToShadow[15]));
-        lengths.span = std::max(lengths.span, 1 / perLength);
-        lengths.texel = std::max(lengths.texel, 1 / (perLength * (row ? map.height : map.width)));
+    if (light.params.shadowProjection != PEL_SHADOW_PARALLEL || !light.images[PEL_LIGHT_SHADOW_MAP])
+        return lengths;
+    for (uint32_t k = 0; k < cascadesOf(light); ++k) {
+        const ShadowCascade cascade = shadowCascade(light, k);
+        const auto& m = *cascade.worldToShadow;
+        for (int row = 0; row < 2; ++row) {
+            const double perLength =
+                std::hypot(double(m[4 * row]), double(m[4 * row + 1]), double(m[4 * row + 2])) /
+                std::abs(double(m[15]));
+            lengths.span = std::max(lengths.span, 1 / perLength);
+            if (k == 0)
+                lengths.texel = std::max(lengths.texel,
+                                         1 / (perLength * (row ? cascade.map->height : cascade.map->width)));
+        }
     }
     return lengths;
 }
@@ -109,8 +116,7 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
         // Another radius than the profile's own stretches its reach too.
         const double reach = material.profile->reach() * m.diffusionRadius / material.profile->radius();
         for (size_t i = 0; i < state.lights.size(); ++i) {
-            const MapLengths map =
-                lengthsOf(state.lights[i].params, state.lights[i].images[PEL_LIGHT_SHADOW_MAP]);
+            const MapLengths map = lengthsOf(state.lights[i]);
             if (map.texel > reach && (byMap || summed))
                 warn("a texel of the shadow map of light ", i, " is ", map.texel,
                      " wide, but light travels only ", reach, " in material ", id,

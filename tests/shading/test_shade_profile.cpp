@@ -384,6 +384,13 @@ TEST(ShadeProfile, MapsThatDoNotFitTheProfileAreSaid) {
         EXPECT_EQ(shading.shader.warnings().find(c.word) != std::string::npos, c.said)
             << c.extent << ' ' << c.unit << ": " << shading.shader.warnings();
     }
+    Inputs in;  // the largest cascade is what the object must fit in
+    in.thickness = false;
+    Shading shading(materialOf(skin), in);
+    shading.set(PEL_SLOT_POSITION, shading.scene.position);
+    const std::vector<float> depth(64 * 64, 0.5f);
+    shading.setMaps({{64, 4, depth}, {64, 300, depth}});
+    EXPECT_EQ(shading.shader.warnings().find("millimetresPerUnit"), std::string::npos);
 }
 
 // The thickness is the greatest of eight taps within two texels: over a map of random heights, each tap is
