@@ -73,6 +73,23 @@ static inline Vec3w stepAlong(__global const PelLightMap* map, __global const uc
     return stepOf(p, before, after);
 }
 
+// The share of a length about `middle` that lies between 0 and `end`.
+static inline floatw shareWithin(floatw middle, floatw length, float end) {
+    return satw(fma(fmin(middle, end - middle), 1.0f / fmax(length, (floatw)(1e-6f)), (floatw)(0.5f)));
+}
+
+// The share of a cascade's texel, with these sides, that a finer cascade does not hold: surface inside that
+// one belongs to it.
+static inline floatw shareBeyond(__global const PelLightMap* finer, Vec3w p, Vec3w right, Vec3w down) {
+    floatw w;
+    const Vec3w at = texelOf(finer, p, &w), column = sub3(texelOf(finer, add3(p, right), &w), at),
+                row = sub3(texelOf(finer, add3(p, down), &w), at);
+    const floatw within =
+        shareWithin(at.x + 0.5f, fabs(column.x) + fabs(row.x), (float)finer->level[0].width) *
+        shareWithin(at.y + 0.5f, fabs(column.y) + fabs(row.y), (float)finer->level[0].height);
+    return selectw((floatw)(1.0f), 1.0f - within, (at.z >= 0.0f) & (at.z <= 1.0f));
+}
+
 // `region`: the texels within reach; `first`: the map's first texel.
 static PEL_OUT_OF_LINE void makeTexels(__global const PelLightMap* map, __global const uchar* first,
                                        __global const uchar* seen, __global const uint* region,
@@ -113,15 +130,9 @@ static PEL_OUT_OF_LINE void makeTexels(__global const PelLightMap* map, __global
         Vec3w toLight;
         const floatw strength = lightAt(map, p, &toLight);
         const floatw across = fabs(dot3(cross3(right, down), toLight));
-        // Surface inside a finer cascade belongs to that cascade.
-        for (uint k = 1; k <= map->finer; ++k) {
-            floatw w;
-            __global const PelLightMap* finer = map - k;
-            const Vec3w t = texelOf(finer, p, &w);
-            there &= notw((t.x >= -0.5f) & (t.y >= -0.5f) & (t.x <= (float)finer->level[0].width - 0.5f) &
-                          (t.y <= (float)finer->level[0].height - 0.5f) & (t.z >= 0.0f) & (t.z <= 1.0f));
-        }
-        there &= finite3(p) & finitew(across) & finitew(strength);
+        floatw share = 1.0f;
+        for (uint k = 1; k <= map->finer; ++k) share *= shareBeyond(map - k, p, right, down);
+        there &= (share > 0.0f) & finite3(p) & finitew(across) & finitew(strength);
         Vec3w along = p, below = p;
         PEL_ROLL for (int axis = 0; axis < 2; ++axis) {
             const Vec3w step =
@@ -129,10 +140,10 @@ static PEL_OUT_OF_LINE void makeTexels(__global const PelLightMap* map, __global
             if (axis == 0) along = step;
             below = step;
         }
-        flux = selectw((floatw)(0.0f), strength * across, there);
+        flux = selectw((floatw)(0.0f), strength * across * share, there);
         const Vec3w area = cross3(along, below);
         floatw extent = sqrt(dot3(area, area));
-        extent = fmin(selectw(across, extent, finitew(extent)), MAX_SLOPE * across);
+        extent = share * fmin(selectw(across, extent, finitew(extent)), MAX_SLOPE * across);
         const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
         const Vec3w q = select3(none, p, there);
         storew(selectw((floatw)(0.0f), extent, there), at + PEL_LIGHT_EXTENT * stride, pyramid);

@@ -203,6 +203,28 @@ TEST(LightSpace, TexelsBeyondReachDoNotCount) {
     }
 }
 
+// Texels of a cascade that the border of a finer one crosses count by the part outside of it: light does not
+// jump where that border passes their middles.
+TEST(LightSpace, BordersOfCascadesShowNoSteps) {
+    const uint32_t side = sized(96u, 32u);
+    const auto lightAt = [&](double border) {  // mm from the axis
+        LitBall ball = makeBall(Form::parallel, normalized(Vec3{0.3, 0.2, 1}), 40);
+        const LitBall fine = ball;
+        ball.maps.insert(ball.maps.begin(),
+                         parallelMap(ball.light.worldToShadow, ball.toLight, 2 * border, 40, false));
+        std::copy_n(fine.light.worldToShadow, 16, ball.light.cascadeToShadow[0]);
+        ball.light.shadowCascades = 2;
+        ball.light.cascadeDepthRange[0] = 20;
+        return frameOf({ball}, side, byLight, 1.5f).shade().light;
+    };
+    // Of 5 / 40 mm: with their borders, their middles, and just before and after those.
+    const std::vector<float> aligned = lightAt(1), before = lightAt(1.0624), after = lightAt(1.0626);
+    for (size_t i = 0; i < aligned.size(); ++i) {
+        ASSERT_NEAR(before[i], after[i], 0.002) << i;
+        ASSERT_NEAR(before[i], aligned[i], 0.02) << i;
+    }
+}
+
 // A profile that is narrower than a texel leaves light where it falls.
 TEST(LightSpace, ANarrowProfileLeavesLightWhereItFalls) {
     const uint32_t side = sized(96u, 32u);

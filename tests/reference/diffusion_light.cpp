@@ -66,6 +66,21 @@ bool holds(const LightDepths& map, Vec3 p) {
     return at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1 && at.z >= 0 && at.z <= 1;
 }
 
+// The share of a cascade's texel, at its depth, that no finer cascade holds.
+double shareBeyond(const MappedLight& light, size_t k, int x, int y) {
+    constexpr int steps = 24;
+    const LightDepths& map = light.maps[k];
+    const double depth = map.depth[size_t(y) * size_t(map.width) + size_t(x)];
+    int beyond = 0;
+    for (int i = 0; i < steps * steps; ++i) {
+        const Vec3 p = pointAt(map, light, (x + (i % steps + 0.5) / steps) / map.width,
+                               (y + (i / steps + 0.5) / steps) / map.height, depth);
+        beyond += std::none_of(light.maps.begin(), light.maps.begin() + std::ptrdiff_t(k),
+                               [&](const LightDepths& finer) { return holds(finer, p); });
+    }
+    return double(beyond) / (steps * steps);
+}
+
 // The longer side of a texel across the light, where it shines on `p`.
 double texelLength(const LightDepths& map, const MappedLight& light, Vec3 p) {
     if (map.face >= 0) {
@@ -167,10 +182,9 @@ std::vector<LitTexel> litTexels(const MappedLight& light) {
             for (int x = 0; x < map.width; ++x) {
                 const Vec3 p = place(x, y, x, y);
                 if (!std::isfinite(length(p))) continue;
-                bool finer = false;
-                for (size_t f = 0; f < k && map.face < 0; ++f) finer |= holds(light.maps[f], p);
-                if (finer) continue;
-                const double texel = beam(map, light, p) / (double(map.width) * map.height);
+                const double share = k > 0 && map.face < 0 ? shareBeyond(light, k, x, y) : 1;
+                if (share <= 0) continue;
+                const double texel = share * beam(map, light, p) / (double(map.width) * map.height);
                 const Vec3 from = light.position - p;
                 const double across = light.directional ? texel : texel * dot(from, from);
                 const Vec3 right = stepOf(p, place(x - 1, y, x - 1, y), place(x + 1, y, x + 1, y)),
