@@ -233,7 +233,7 @@ TEST(ScatterBlend, BlocksBecomeADiskWhereTheyHaveTo) {
     EXPECT_NE(automatic.light, usual.light);
     EXPECT_NE(automatic.warnings.find("64 taps on a disk, because it has a borderColor"), std::string::npos)
         << automatic.warnings;
-    EXPECT_EQ(disk.warnings, "");
+    EXPECT_EQ(disk.warnings.find("on a disk"), std::string::npos) << disk.warnings;
     const PelShaderStats& stats = automatic.stats;
     EXPECT_EQ(stats.scatterTaps, disk.stats.scatterTaps);
     EXPECT_GT(stats.pixelsByChoice[screen], 0u);
