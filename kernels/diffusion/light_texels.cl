@@ -73,20 +73,20 @@ static inline Vec3w stepAlong(__global const PelLightMap* map, __global const uc
     return stepOf(p, before, after);
 }
 
-// The share of a length about `middle` that lies between 0 and `end`.
-static inline floatw shareWithin(floatw middle, floatw length, float end) {
-    return satw(fma(fmin(middle, end - middle), 1.0f / fmax(length, (floatw)(1e-6f)), (floatw)(0.5f)));
-}
-
 // The share of a cascade's texel, with these sides, that a finer cascade does not hold: surface inside that
-// one belongs to it.
+// one belongs to it. Cascades are parallel maps.
 static inline floatw shareBeyond(__global const PelLightMap* finer, Vec3w p, Vec3w right, Vec3w down) {
-    floatw w;
-    const Vec3w at = texelOf(finer, p, &w), column = sub3(texelOf(finer, add3(p, right), &w), at),
-                row = sub3(texelOf(finer, add3(p, down), &w), at);
-    const floatw within =
-        shareWithin(at.x + 0.5f, fabs(column.x) + fabs(row.x), (float)finer->level[0].width) *
-        shareWithin(at.y + 0.5f, fabs(column.y) + fabs(row.y), (float)finer->level[0].height);
+    floatw w, within = 1.0f;
+    const Vec3w at = texelOf(finer, p, &w);
+    PEL_UNROLL
+    for (int axis = 0; axis < 2; ++axis) {
+        const Vec3w row = loadUniform3(finer->toMap + 4 * axis);
+        const float count = finer->size[axis],
+                    end = (float)(axis ? finer->level[0].height : finer->level[0].width);
+        const floatw length = (fabs(dot3(row, right)) + fabs(dot3(row, down))) * (count / finer->toMap[15]),
+                     middle = (axis ? at.y : at.x) + 0.5f;
+        within *= satw(fma(fmin(middle, end - middle), 1.0f / fmax(length, (floatw)(1e-6f)), (floatw)(0.5f)));
+    }
     return selectw((floatw)(1.0f), 1.0f - within, (at.z >= 0.0f) & (at.z <= 1.0f));
 }
 
