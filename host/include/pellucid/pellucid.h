@@ -17,7 +17,7 @@
  * - A function that can fail returns PelError. On an error no output is written and all objects stay usable;
  *   pelGetErrorMessage() says what was wrong, where, and what would be right.
  * - Functions may be called from any thread. One object may be used by several threads at a time, except that
- *   a PelShader is set, committed and executed by one thread at a time. */
+ *   a PelShader, PelScatter or PelTextureScatter is used by one thread at a time. */
 #ifndef PELLUCID_H
 #define PELLUCID_H
 
@@ -1109,7 +1109,7 @@ typedef struct PelAmbient {
 
 typedef struct PelCamera {
     uint32_t structSize;
-    float position[3]; /* world; needed by specular */
+    float position[3]; /* world, up to 1e18; needed by specular */
     /* clip to world, for PEL_SLOT_DEPTH, historyWeight, PEL_SCATTERING_SEPARABLE and scatterTaps. x and y in
      * [-1, 1], y up, row 0 on top; z as in the depth image, so that ordinary and reversed depth both work */
     float inverseViewProjection[16];
