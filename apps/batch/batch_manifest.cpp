@@ -214,13 +214,14 @@ class Expansion {
                 const PelProfileInfo info = p.info();
                 Key key;
                 key("profile", info.name)("radius", info.radius);
-                std::vector<double> distances;
-                for (double f : {0.01, 0.03, 0.1, 0.3, 0.7, 1.0, 1.5, 2.0, 3.0})
-                    distances.push_back(f * info.radius);
-                if (const auto text = manifest_.profiles.find(name); text != manifest_.profiles.end())
+                if (const auto text = manifest_.profiles.find(name); text != manifest_.profiles.end()) {
                     key("file", hexDigits(contentHash(text->second)));
-                else
+                } else {
+                    std::vector<double> distances;
+                    for (double f : {0.01, 0.03, 0.1, 0.3, 0.7, 1.0, 1.5, 2.0, 3.0})
+                        distances.push_back(f * info.radius);
                     for (double value : p.radial(distances)) key("R", float(value));
+                }
                 at->second.key = key.out.str();
             } catch (const FileError& e) {
                 known_.erase(at);

@@ -8,18 +8,6 @@ namespace pel {
 // The profile of the material, of its curvature table, or skin, scaled to the diffusion radius.
 ScreenScatter::Material profileOf(const ShaderMaterial& material);
 
-// Whether the irradiance of the material is scattered, by any method.
-inline bool scattersIrradiance(const ShaderMaterial& material) {
-    return readsIrradiance(material) && material.params.scattering != PEL_SCATTERING_NONE;
-}
-// By taps on a disk, not by the whole profile.
-inline bool scattersOnDisk(const ShaderMaterial& material) {
-    return material.params.scattering == PEL_SCATTERING_SCREEN && material.params.scatterTaps > 0;
-}
-// By taps, on a disk or along lines.
-inline bool scattersByTaps(const ShaderMaterial& material) {
-    return scattersOnDisk(material) || material.params.scattering == PEL_SCATTERING_SEPARABLE;
-}
 // Replaces 0 by the default.
 inline uint32_t scatterTapsOf(PelScattering scattering, uint32_t taps) {
     return taps || scattering != PEL_SCATTERING_SEPARABLE ? taps : 25;

@@ -96,11 +96,6 @@ ShaderState standInOf(const ShaderState& given) {
 
 namespace {
 
-bool byTaps(const PelMaterial& m) {
-    return m.scattering == PEL_SCATTERING_SEPARABLE ||
-           (m.scattering == PEL_SCATTERING_SCREEN && m.scatterTaps);
-}
-
 void checkMaterial(uint32_t id, const ShaderMaterial& material, const ShaderState& state) {
     const PelMaterial& m = material.params;
     if (m.thinThickness > 0 && (!material.profile || !readsIrradiance(material)))
@@ -116,7 +111,7 @@ void checkMaterial(uint32_t id, const ShaderMaterial& material, const ShaderStat
         invalidArgument("material ", id, " uses light that was scattered in its texture, but there is no ",
                         material.scatteredTexture ? "UV image to sample it by"
                                                   : "such texture: pelShaderSetScatteredTexture sets it");
-    if (!readsIrradiance(material) || m.scattering == PEL_SCATTERING_NONE || byTaps(m)) return;
+    if (!scattersIrradiance(material) || scattersByTaps(material)) return;
     if (hasBorder(m))
         fail(PEL_ERROR_UNSUPPORTED, "material ", id, " has a borderColor and scatters by \"",
              scatteringName(m.scattering),

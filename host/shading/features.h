@@ -27,6 +27,18 @@ bool filtersWide(const ShaderState& state, const ShaderLight& light);
 inline bool readsIrradiance(const ShaderMaterial& material) {
     return material.params.scattering != PEL_SCATTERING_PREINTEGRATED;
 }
+// Whether the irradiance of the material is scattered, by any method.
+inline bool scattersIrradiance(const ShaderMaterial& material) {
+    return readsIrradiance(material) && material.params.scattering != PEL_SCATTERING_NONE;
+}
+// By taps on a disk, not by the whole profile.
+inline bool scattersOnDisk(const ShaderMaterial& material) {
+    return material.params.scattering == PEL_SCATTERING_SCREEN && material.params.scatterTaps > 0;
+}
+// By taps, on a disk or along lines.
+inline bool scattersByTaps(const ShaderMaterial& material) {
+    return scattersOnDisk(material) || material.params.scattering == PEL_SCATTERING_SEPARABLE;
+}
 // Whether the shader makes that irradiance, which needs sharp shadows.
 bool makesIrradiance(const ShaderState& state);
 // Whether light from behind thin sheets is made: where the host gives it, it is added later.

@@ -39,11 +39,6 @@ MapLengths lengthsOf(const ShaderLight& light) {
 // profile cannot hold it.
 constexpr double leastReaches = 2;
 
-bool scattersByTaps(const PelMaterial& m) {
-    return m.scattering == PEL_SCATTERING_SEPARABLE ||
-           (m.scattering == PEL_SCATTERING_SCREEN && m.scatterTaps > 0);
-}
-
 // The settings that have no effect with the material's method; "" if there are none.
 std::string withoutEffect(const ShaderMaterial& material) {
     const PelMaterial &m = material.params, &given = material.given;
@@ -88,7 +83,7 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
     if (state.images[PEL_SLOT_SKIN] && !usesSkinMaps(state))
         warn("the skin image is without effect: no material has a profile of pelProfileCreateSkinLayers");
     if (state.options.historyWeight > 0 &&
-        std::ranges::none_of(state.materials, [](auto& m) { return scattersByTaps(m.second.params); }))
+        std::ranges::none_of(state.materials, [](auto& m) { return scattersByTaps(m.second); }))
         warn("historyWeight is without effect: no material scatters by taps");
     for (const auto& [id, material] : state.materials) {
         const PelMaterial& m = material.params;
@@ -101,7 +96,7 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
         if (const std::string idle = withoutEffect(material); !idle.empty())
             warn("material ", id, " has ", idle, " without effect: it scatters by \"",
                  scatteringName(m.scattering), "\" (docs/guide/methods.md, \"Controls\")");
-        if (scattersByTaps(m) &&
+        if (scattersByTaps(material) &&
             std::ranges::equal(state.camera.inverseViewProjection, pelCameraDefaults().inverseViewProjection))
             warn("material ", id,
                  " scatters by taps, placed by PelCamera.inverseViewProjection, which is the default");

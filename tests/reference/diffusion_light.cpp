@@ -68,17 +68,20 @@ bool holds(const LightDepths& map, Vec3 p) {
 
 // The share of a cascade's texel, at its depth, that no finer cascade holds.
 double shareBeyond(const MappedLight& light, size_t k, int x, int y) {
-    constexpr int steps = 24;
     const LightDepths& map = light.maps[k];
     const double depth = map.depth[size_t(y) * size_t(map.width) + size_t(x)];
-    int beyond = 0;
-    for (int i = 0; i < steps * steps; ++i) {
-        const Vec3 p = pointAt(map, light, (x + (i % steps + 0.5) / steps) / map.width,
-                               (y + (i / steps + 0.5) / steps) / map.height, depth);
-        beyond += std::none_of(light.maps.begin(), light.maps.begin() + std::ptrdiff_t(k),
-                               [&](const LightDepths& finer) { return holds(finer, p); });
-    }
-    return double(beyond) / (steps * steps);
+    const auto beyond = [&](double right, double down) {
+        const Vec3 p = pointAt(map, light, (x + right) / map.width, (y + down) / map.height, depth);
+        return std::none_of(light.maps.begin(), light.maps.begin() + std::ptrdiff_t(k),
+                            [&](const LightDepths& finer) { return holds(finer, p); });
+    };
+    const int corners = beyond(0, 0) + beyond(0, 1) + beyond(1, 0) + beyond(1, 1);
+    if (corners % 4 == 0) return corners / 4;  // no border crosses the texel
+    constexpr int steps = 24;
+    int count = 0;
+    for (int i = 0; i < steps * steps; ++i)
+        count += beyond((i % steps + 0.5) / steps, (i / steps + 0.5) / steps);
+    return double(count) / (steps * steps);
 }
 
 // The longer side of a texel across the light, where it shines on `p`.

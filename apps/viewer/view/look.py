@@ -53,9 +53,9 @@ NAMES = {SKIN: "skin", EYES: "left eye", TEETH: "teeth", TONGUE: "tongue", CUT: 
 T = TypeVar("T")
 
 
-def filled(default: T, given: Any, what: str) -> T:
-    """A dataclass with the values that JSON gives for some of its fields, of the types of the default ones.
-    Raises ValueError, naming it, for another key or type."""
+def filled(made: T, given: Any, what: str) -> T:
+    """A new dataclass, after it took the values that JSON gives for some of its fields, of the types of its
+    own. Raises ValueError, naming it, for another key or type."""
     def like(own: Any, value: Any, name: str) -> Any:
         if isinstance(own, tuple) and isinstance(value, (list, tuple)) and len(value) == len(own):
             return tuple(like(o, v, name) for o, v in zip(own, value))
@@ -66,7 +66,6 @@ def filled(default: T, given: Any, what: str) -> T:
 
     if not isinstance(given, dict):
         raise ValueError(f"{what} is a JSON object with keys and values")
-    made = copy.deepcopy(default)
     known = vars(made)
     for key, value in given.items():
         if key not in known:
