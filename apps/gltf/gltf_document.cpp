@@ -281,13 +281,14 @@ std::vector<double> GltfDocument::elements(const GltfValue& owner, uint64_t coun
 
 // All elements of an accessor, with those that replace some of them if it is sparse.
 std::vector<double> GltfDocument::numbers(const GltfValue& owner, const char* key, size_t components) const {
-    constexpr const char* types[] = {"SCALAR", "VEC2", "VEC3"};
+    constexpr const char* types[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
+    const char* wanted = components == 16 ? "MAT4" : types[components - 1];
     const GltfValue accessor = root().element("accessors", owner, key);
     const Component& kind = Component::of(accessor);
     const uint64_t count = accessor["count"].whole(mostBytes);
-    if (accessor["type"].text() != types[components - 1])
+    if (accessor["type"].text() != wanted)
         accessor["type"].fail("is '" + accessor["type"].text().substr(0, 20) + "'; " + owner.where() + "." +
-                              key + " needs " + types[components - 1]);
+                              key + " needs " + wanted);
     spend(accessor["count"], 8.0 * double(count) * double(components));
     std::vector<double> values = accessor.has("bufferView") ? elements(accessor, count, kind, components)
                                                             : std::vector<double>(count * components);

@@ -69,8 +69,8 @@ class GltfDocument {
     GltfValue root() const { return GltfValue(path_, *json_, ""); }
     const std::string& path() const { return path_; }
 
-    // The accessor that `owner.key` refers to: `components` numbers per element, normalised integers as
-    // fractions.
+    // The accessor that `owner.key` refers to: `components` numbers per element (1 to 4, or the 16 of a
+    // matrix), normalised integers as fractions.
     std::vector<float> floats(const GltfValue& owner, const char* key, size_t components) const;
     std::vector<uint32_t> indices(const GltfValue& owner, const char* key) const;
 

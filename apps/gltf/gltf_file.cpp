@@ -189,8 +189,9 @@ class Builder {
 
     GltfScene build() {
         scene_.mesh.source = document_.path();
-        entered_.resize(root_.count("nodes"));
-        for (const size_t node : roots()) enter(node, Matrix(), 0);
+        world_.resize(root_.count("nodes"));
+        for (const size_t node : roots()) locate(node, Matrix(), 0);
+        for (const size_t node : order_) enter(node);
         if (scene_.mesh.triangles.empty()) throw FileError(document_.path(), "has no triangles in its scene");
         MeshData& mesh = scene_.mesh;
         if (!uvsEverywhere_) mesh.uvs.clear();
@@ -224,27 +225,57 @@ class Builder {
 
     size_t nodeIndex(const GltfValue& value) const { return value.index("nodes", root_.count("nodes")); }
 
-    void enter(size_t index, const Matrix& above, int depth) {
+    // Finds the matrices of a node and of all below it; skins need those of nodes anywhere.
+    void locate(size_t index, const Matrix& above, int depth) {
         const GltfValue node = root_["nodes"][index];
         if (depth > 500) node.fail("is more than 500 nodes deep");
-        if (entered_[index]) node.fail("is a child of two nodes, or of itself");
-        entered_[index] = true;
+        if (world_[index]) node.fail("is a child of two nodes, or of itself");
         const Matrix m = localOf(node) * above;
         for (int i = 0; i < 16; ++i)
             if (!(std::abs(m[i / 4][i % 4]) <= mostCoordinate))
                 node.fail("is placed or scaled beyond what a float holds");
+        world_[index] = m;
+        order_.push_back(index);
+        for (size_t i = 0; i < node.count("children"); ++i)
+            locate(nodeIndex(node["children"][i]), m, depth + 1);
+    }
+
+    void enter(size_t index) {
+        const GltfValue node = root_["nodes"][index];
+        const Matrix& m = *world_[index];
         if (node.has("mesh")) {
-            if (node.has("skin")) warn("skins are left out: meshes are in their rest pose");
+            std::vector<Matrix> joints;
+            if (node.has("skin")) joints = jointsOf(root_.element("skins", node, "skin"));
             for (const Part& part : partsOf(node.reference("mesh", "meshes", root_.count("meshes"))))
-                place(part, m);
+                place(part, m, joints);
         }
         if (node.has("camera")) addCamera(root_.element("cameras", node, "camera"), m);
         constexpr const char* lights = "KHR_lights_punctual";
         if (node.hasExtension(lights))
             scene_.lights.push_back(
                 readGltfLight(root_.extension(lights).element("lights", node.extension(lights), "light"), m));
-        for (size_t i = 0; i < node.count("children"); ++i)
-            enter(nodeIndex(node["children"][i]), m, depth + 1);
+    }
+
+    // The matrices of a skin's joints, from the mesh's coordinates at binding to the world, in the pose that
+    // the nodes have without animation [glTF 2.0, 3.7.3].
+    std::vector<Matrix> jointsOf(const GltfValue& skin) const {
+        const size_t count = skin["joints"].size();
+        std::vector<float> inverse;
+        if (skin.has("inverseBindMatrices")) {
+            inverse = document_.floats(skin, "inverseBindMatrices", 16);
+            if (inverse.size() < 16 * count)
+                skin["inverseBindMatrices"].fail(
+                    concat("has ", inverse.size() / 16, " elements, but there are ", count, " joints"));
+        }
+        std::vector<Matrix> joints(count);
+        for (size_t j = 0; j < count; ++j) {
+            const GltfValue joint = skin["joints"][j];
+            const std::optional<Matrix>& world = world_[nodeIndex(joint)];
+            if (!world) joint.fail("is a node outside of the scene");
+            if (!inverse.empty()) std::copy_n(&inverse[16 * j], 16, joints[j].getValue());
+            joints[j] = joints[j] * *world;
+        }
+        return joints;
     }
 
     void addCamera(const GltfValue& camera, const Matrix& m) {
@@ -266,6 +297,7 @@ class Builder {
     struct Part {
         GltfValue primitive;
         std::vector<float> positions, normals, uvs;  // normals and uvs may be empty
+        std::vector<float> joints, weights;          // four per vertex, or empty
         std::vector<uint32_t> triangles;             // never empty
         uint32_t material;
     };
@@ -312,9 +344,9 @@ class Builder {
             }
             if (primitive.hasExtension("KHR_draco_mesh_compression"))
                 primitive.fail("is compressed by Draco: write the scene uncompressed");
-            if (primitive.has("targets")) warn("morph targets are left out: meshes are in their rest pose");
+            if (primitive.has("targets")) warn("morph targets are left out");
             const GltfValue attributes = primitive["attributes"];
-            Part part{primitive, document_.floats(attributes, "POSITION", 3), {}, {}, {}, 0};
+            Part part{primitive, document_.floats(attributes, "POSITION", 3), {}, {}, {}, {}, {}, 0};
             const size_t vertices = part.positions.size() / 3;
             checkSceneSize(primitive, vertices, 0);
             part.triangles = trianglesOf(primitive, mode, vertices);
@@ -322,6 +354,11 @@ class Builder {
             if (attributes.has("COLOR_0")) warn("vertex colours are left out");
             if (attributes.has("NORMAL")) part.normals = sized(attributes, "NORMAL", 3, vertices);
             if (attributes.has("TEXCOORD_0")) part.uvs = sized(attributes, "TEXCOORD_0", 2, vertices);
+            if (attributes.has("JOINTS_0")) {
+                part.joints = sized(attributes, "JOINTS_0", 4, vertices);
+                part.weights = sized(attributes, "WEIGHTS_0", 4, vertices);
+                if (attributes.has("JOINTS_1")) warn("of a vertex's joints the first four are used");
+            }
             part.material = materialIndex(primitive);
             found->second.push_back(std::move(part));
         }
@@ -335,15 +372,33 @@ class Builder {
             primitive.fail("makes the scene too large: " + tooLarge(bytes, inputLimit()));
     }
 
-    // Adds a part to the scene's mesh, transformed by the node's matrix.
-    void place(const Part& part, const Matrix& m) {
+    // The sum of the joints' matrices by the weights of vertex v; `m` if it has none.
+    static Matrix skinned(const Part& part, const std::vector<Matrix>& joints, size_t v, const Matrix& m) {
+        Matrix sum(0.0);
+        double weights = 0;
+        for (size_t k = 4 * v; k < 4 * v + 4; ++k) {
+            const double weight = part.weights[k];
+            if (!(weight > 0)) continue;
+            const float joint = part.joints[k];
+            if (!(joint >= 0 && joint < float(joints.size())))
+                part.primitive["attributes"]["JOINTS_0"].fail(
+                    concat("names joint ", joint, " of ", joints.size(), ", of vertex ", v));
+            sum += joints[size_t(joint)] * weight, weights += weight;
+        }
+        return weights > 0 ? sum * (1 / weights) : m;
+    }
+
+    // Adds a part to the scene's mesh, transformed by the node's matrix or, with `joints`, by its skin.
+    void place(const Part& part, const Matrix& node, const std::vector<Matrix>& joints) {
         const std::vector<float>&positions = part.positions, &normals = part.normals, &uvs = part.uvs;
         const size_t vertices = positions.size() / 3, first = scene_.mesh.vertexCount();
         checkSceneSize(part.primitive, vertices, part.triangles.size());
         MeshData& mesh = scene_.mesh;
-        const bool mirrored = m.determinant() < 0;
+        const bool bound = !joints.empty() && !part.joints.empty();
+        const bool mirrored = (bound ? joints[0] : node).determinant() < 0;
         bool bad = false;
         for (size_t v = 0; v < vertices; ++v) {
+            const Matrix m = bound ? skinned(part, joints, v, node) : node;
             const Triple p = vectorOf(&positions[3 * v]) * m,
                          n = normals.empty()
                                  ? Triple(0)
@@ -405,7 +460,8 @@ class Builder {
     const GltfDocument& document_;
     const GltfValue root_;
     GltfScene scene_;
-    std::vector<bool> entered_;
+    std::vector<std::optional<Matrix>> world_;   // by node; none outside of the scene
+    std::vector<size_t> order_;                  // of nodes, each before those below it
     std::map<size_t, std::vector<Part>> parts_;  // by mesh
     std::map<size_t, uint32_t> known_;
     std::map<int, int> images_;

@@ -47,7 +47,7 @@ struct GltfCamera {
 };
 
 struct GltfScene {
-    MeshData mesh;                        // normals always; uvs or none; rest pose
+    MeshData mesh;                        // normals always; uvs or none; in the pose of the nodes
     std::vector<uint32_t> materialOf;     // index of `materials` per triangle
     std::vector<GltfMaterial> materials;  // those that are used, in the file's order
     std::vector<GltfImage> images;

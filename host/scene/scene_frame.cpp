@@ -68,8 +68,7 @@ std::map<std::string, ShadowMapFile> shadowMapsOf(const SceneFile& scene) {
             map.groups.insert(second.empty() ? ChannelGroup{channel} : ChannelGroup{channel, second});
         };
         add(light.shadowMapFile, light.shadowMapChannel, light.secondChannel);
-        for (uint32_t k = 0; k + 1 < light.light.shadowCascades; ++k)
-            add(light.cascades[k].file, light.cascades[k].channel, light.cascades[k].secondChannel);
+        for (const SceneCascade& c : light.furtherCascades()) add(c.file, c.channel, c.secondChannel);
     }
     return files;
 }
@@ -276,11 +275,10 @@ void SceneFrame::setLights(const SceneFile& scene) {
         }
         if (l.shadowMapFile.empty()) continue;
         shader_.set(i, PEL_LIGHT_SHADOW_MAP, mapOf(l.shadowMapFile, l.shadowMapChannel, l.secondChannel));
-        for (uint32_t k = 0; k + 1 < l.light.shadowCascades; ++k) {
-            const SceneCascade& c = l.cascades[k];
-            shader_.set(i, PelLightSlot(PEL_LIGHT_CASCADE_1 + k),
+        auto slot = int(PEL_LIGHT_CASCADE_1);
+        for (const SceneCascade& c : l.furtherCascades())
+            shader_.set(i, PelLightSlot(slot++),
                         mapOf(c.file.empty() ? l.shadowMapFile : c.file, c.channel, c.secondChannel));
-        }
     }
 }
 

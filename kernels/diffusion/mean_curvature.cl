@@ -83,14 +83,19 @@ static inline Point pointFrom(const Images* in, int x, uint y) {
     return point;
 }
 
-// Squared length of the step to the next pixel; FLT_MAX without one of the material.
-static inline floatw stepTo(const Images* in, const Point* here, int x, int y) {
-    const maskw inside = insideAt(in, x, y);
-    if (!anyw(inside)) return (floatw)(FLT_MAX);
-    const Vec3w d = sub3(positionAt(in, (uint)x, (uint)y), here->p);
-    const floatw length2 = dot3(d, d);
-    return selectw((floatw)(FLT_MAX), length2,
-                   inside & (idAt(in, (uint)x, (uint)y) == here->id) & finitew(length2) & (length2 > 0.0f));
+// Squared length of the shorter step to the next pixel on either side; FLT_MAX without one of the material.
+static inline floatw stepAlong(const Images* in, const Point* here, int x, int y, int dx, int dy) {
+    floatw shortest = FLT_MAX;
+    for (int side = -1; side <= 1; side += 2) {
+        const maskw inside = insideAt(in, x + side * dx, y + side * dy);
+        if (!anyw(inside)) continue;
+        const Point there = pointFrom(in, x + side * dx, (uint)(y + side * dy));
+        const Vec3w d = sub3(there.p, here->p);
+        const floatw length2 = dot3(d, d);
+        shortest = selectw(shortest, fmin(shortest, length2),
+                           inside & (there.id == here->id) & finitew(length2) & (length2 > 0.0f));
+    }
+    return shortest;
 }
 
 // Differences of positions and of normals along one axis. Returns the lanes that have them.
@@ -132,7 +137,7 @@ static inline floatw curvatureAt(const Images* in, const Point* here, uint x, ui
 static inline floatw curvatureOf(const Images* in, const Point* here, uint x, uint y, float window,
                                  maskw on) {
     const floatw step =
-        sqrt(fmin(stepTo(in, here, (int)x + 1, (int)y), stepTo(in, here, (int)x, (int)y + 1)));
+        sqrt(fmin(stepAlong(in, here, (int)x, (int)y, 1, 0), stepAlong(in, here, (int)x, (int)y, 0, 1)));
     const uintw pixels =
         convert_uintw(clamp(window / step + 0.5f, (floatw)(1.0f), (floatw)((float)MAX_PIXELS)));
     floatw value = 0.0f;

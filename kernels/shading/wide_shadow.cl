@@ -72,6 +72,19 @@ static inline maskw comparable(const Receiver* r, Vec3w p, Vec3w n) {
            finitew(r->zPerLength);
 }
 
+// Rounding errors of depths, here and in the map, which must not count as shadow.
+static inline floatw roundingOfDepth(floatw z) {
+    const int format = PEL_FORMAT_SHADOW_MAP & ~PEL_FMT_STRIDED;
+    const float least = 4e-7f, ofHalf = PEL_SHADOW_CONTENT == PEL_CONTENT_EXPONENTIAL ? least : 5e-4f;
+    const float relative = format < PEL_FMT_R16F ? least : format <= PEL_FMT_RGBA16F ? ofHalf : least;
+    const float absolute = format == PEL_FMT_R16_UNORM           ? 8e-6f  // half of a step
+                           : format == PEL_FMT_A2B10G10R10_UNORM ? 5e-4f
+                           : format == PEL_FMT_R8_UNORM          ? 2e-3f
+                           : format == PEL_FMT_RGBA8_UNORM       ? 2e-3f
+                                                                 : least;
+    return fma(fabs(z), (floatw)(relative), (floatw)(absolute));
+}
+
 // Returns the lanes whose filter can be run. The other lanes lie behind the light or are not finite.
 static inline maskw makeFilters(__global const PelWideShadow* light, const FilterShape* shape, Vec3w p,
                                 Vec3w n, float flattest, Filters* f) {
@@ -89,7 +102,8 @@ static inline maskw makeFilters(__global const PelWideShadow* light, const Filte
     const floatw step = fmax(ceil(2.0f * fmax(radiusX, radiusY) / light->maxTexels), (floatw)(1.0f));
     storew(r.x, 0, f->x);
     storew(r.y, 0, f->y);
-    storew(r.z - (shape->bias + body) * zPerLength, 0, f->z);
+    const floatw bias = fmax(shape->bias * fabs(zPerLength), roundingOfDepth(r.z));
+    storew(r.z - copysign(bias, zPerLength) - body * zPerLength, 0, f->z);
     storew(dzdx, 0, f->dzdx);
     storew(dzdy, 0, f->dzdy);
     storew(radiusX, 0, f->radiusX);
@@ -106,19 +120,6 @@ static inline maskw makeFilters(__global const PelWideShadow* light, const Filte
     if ((PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) && light->cascades)
         held = mapHolds(vec3(r.u, r.v, r.z), 0.5f * width / r.extentU, 0.5f * width / r.extentV);
     return held & comparable(&r, p, n) & (radiusX < 1e6f) & (radiusY < 1e6f) & finitew(dzdx) & finitew(dzdy);
-}
-
-// Rounding errors of depths, here and in the map, which must not count as shadow.
-static inline floatw roundingOfDepth(floatw z) {
-    const int format = PEL_FORMAT_SHADOW_MAP & ~PEL_FMT_STRIDED;
-    const float least = 4e-7f, ofHalf = PEL_SHADOW_CONTENT == PEL_CONTENT_EXPONENTIAL ? least : 5e-4f;
-    const float relative = format < PEL_FMT_R16F ? least : format <= PEL_FMT_RGBA16F ? ofHalf : least;
-    const float absolute = format == PEL_FMT_R16_UNORM           ? 8e-6f  // half of a step
-                           : format == PEL_FMT_A2B10G10R10_UNORM ? 5e-4f
-                           : format == PEL_FMT_R8_UNORM          ? 2e-3f
-                           : format == PEL_FMT_RGBA8_UNORM       ? 2e-3f
-                                                                 : least;
-    return fma(fabs(z), (floatw)(relative), (floatw)(absolute));
 }
 
 // The sharp shadow of the lanes of `left` that this map holds; these are removed from `left`.

@@ -34,7 +34,8 @@ const Surface rippled{
 
 // Under even light, which scattering leaves as it is.
 Shown gainsOf(const Surface& surface, uint32_t side, double size, PelScattering method, float strength,
-              uint64_t budget = 0, bool cut = false, double unit = 1, const Device& device = Device("")) {
+              uint64_t budget = 0, bool cut = false, double unit = 1, const Device& device = Device(""),
+              bool mirrored = false) {
     scatter_scene::Picture p(side, side);
     std::vector<float> normals;
     for (uint32_t row = 0; row < side; ++row)
@@ -46,7 +47,7 @@ Shown gainsOf(const Surface& surface, uint32_t side, double size, PelScattering 
                                 (surface.height(x, y - h) - surface.height(x, y + h)) / (2 * h), 1});
             for (int k = 0; k < 3; ++k) normals.push_back(float(n[k]));
             p.set(p.at(column, row), Vec3{x, y, surface.height(x, y)} / unit, {},
-                  cut && column < side / 3 ? 0 : 1);
+                  cut && (mirrored ? side - 1 - column : column) < side / 3 ? 0 : 1);
         }
     scatter_scene::Frame f(p, method);
     f.images[PEL_SLOT_NORMAL_SHADING] = normals;
@@ -122,6 +123,24 @@ TEST(CurvatureGain, IsThatOfTheSurface) {
         for (auto [size, unit] : {std::pair{0.05, 1.0}, {0.2, 1.0}, {0.2, 1000.0}, {1.0, 1.0}})
             expectGain(surface, size, unit);
     expectGain(rippled, 0.05, 1);
+}
+
+// A steep slope, whose pixels are shorter on one side than on the other, and its mirror image.
+TEST(CurvatureGain, HasNoPreferredSide) {
+    const auto slope = [](double turn) {
+        return Surface{"slope",
+                       [=](double x, double y) { return -0.02 * x * x - 2 * std::exp(turn * x) - y; }, 0};
+    };
+    const uint32_t side = 48;
+    const auto gains = [&](double turn) {
+        return gainsOf(slope(turn), side, 0.1, PEL_SCATTERING_SCREEN, 1, 0, true, 1, Device(""), turn < 0)
+            .light;
+    };
+    const std::vector<float> left = gains(1), right = gains(-1);
+    for (size_t row = 0; row < side; ++row)
+        for (size_t column = 0; column < side; ++column)
+            EXPECT_NEAR(left[3 * (row * side + column)], right[3 * (row * side + side - 1 - column)], 1e-4)
+                << column << ", " << row;
 }
 
 TEST(CurvatureGain, FollowsItsStrengthAndIsNothingOnPlanes) {

@@ -36,8 +36,9 @@ Scene sceneOf(Vec3 toLight, bool perspective, bool reversed, const Cast& cast) {
 }
 
 // Shadow times N.L of each point, all lengths counted in another unit. `rounded`: the map in another format.
+// `width`: of the filter; 0: sharp shadows.
 std::vector<float> lit(const Scene& s, double unit = 1, uint32_t cascades = 0,
-                       const std::function<void(Shader&)>& rounded = {}) {
+                       const std::function<void(Shader&)>& rounded = {}, float width = 0) {
     Frame f;
     f.width = uint32_t(s.points.size()), f.height = 1;
     f.curvatureLut = f.shadowLut = false;
@@ -45,7 +46,7 @@ std::vector<float> lit(const Scene& s, double unit = 1, uint32_t cascades = 0,
     for (const Vec3& p : s.points) f.slots[PEL_SLOT_POSITION].push(unit * p);
     for (const Vec3& n : s.normals) f.slots[PEL_SLOT_NORMAL_SHADING].push(n);
     f.materials[1] = pelMaterialDefaults();
-    f.materials[1].scattering = PEL_SCATTERING_NONE;
+    f.materials[1].scattering = width > 0 ? PEL_SCATTERING_PREINTEGRATED : PEL_SCATTERING_NONE;
     for (float& a : f.materials[1].albedo) a = 1;
     Light light = s.light.light;
     PelLight& l = light.params;
@@ -53,7 +54,9 @@ std::vector<float> lit(const Scene& s, double unit = 1, uint32_t cascades = 0,
     l.shadowDepthRange = float(l.shadowDepthRange * unit);
     l.shadowDepthA = float(l.shadowDepthA / unit);
     l.shadowDepthB = float(l.shadowDepthB / unit);
-    l.shadowFilterTexels = 0;  // no wide shadow is wanted
+    f.materials[1].shadowFilterWidth = width;
+    l.shadowFilterTexels = width > 0 ? 48 : 0;
+    l.shadowBias = 0;
     l.shadowCascades = cascades;
     f.lights = {light};
     std::vector<float> radiance = shade(f, nullptr, rounded), result;
@@ -156,12 +159,16 @@ TEST(SharpShadow, FormatsOfMapsThrowNoneByTheirRounding) {
                 bytes.push_back(uint8_t(bits & 255));
                 if (format != PEL_FORMAT_R8_UNORM) bytes.push_back(uint8_t(bits >> 8));
             }
-            const std::vector<float> e = lit(s, 1, 0, [&](Shader& shader) {
+            const auto given = [&](Shader& shader) {
                 const Buffer map(device(), bytes);
                 shader.set(0, PEL_LIGHT_SHADOW_MAP, imageDesc(map, format, mapSize, mapSize));
-            });
-            for (size_t i = 0; i < e.size(); ++i)
-                ASSERT_NEAR(e[i], cosine(s, i), 1e-4) << "format " << format << " cosine " << c << ", " << i;
+            };
+            for (float width : {0.0f, 4.0f}) {
+                const std::vector<float> e = lit(s, 1, 0, given, width);
+                for (size_t i = 0; i < e.size(); ++i)
+                    ASSERT_NEAR(e[i], cosine(s, i), 1e-4)
+                        << "format " << format << " cosine " << c << " width " << width << ", " << i;
+            }
         }
 }
 

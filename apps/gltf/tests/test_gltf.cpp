@@ -116,11 +116,51 @@ TEST(Gltf, NodesMoveTurnScaleAndMirror) {
     EXPECT_EQ(position(s, 5), (std::vector<float>{9, 0, 5}));
 }
 
+// Two joints. The second was bound at (1, 0, 0) and is turned there by a quarter about z. The node of the mesh
+// moves too, which a skin ignores.
+TEST(Gltf, SkinsTakeThePoseOfTheirJoints) {
+    const std::string buffer = squareBuffer() +
+                               gltf::bytesOf<uint8_t>({0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}) +
+                               gltf::bytesOf<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, .5, .5, 0, 0}) +
+                               gltf::bytesOf<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1,
+                                                     1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1});
+    Edits edits = {
+        {"/buffers/0/byteLength", buffer.size()},
+        {"/bufferViews/3", R"({"buffer": 0, "byteOffset": 92, "byteLength": 16})"_json},
+        {"/bufferViews/4", R"({"buffer": 0, "byteOffset": 108, "byteLength": 64})"_json},
+        {"/bufferViews/5", R"({"buffer": 0, "byteOffset": 172, "byteLength": 128})"_json},
+        {"/accessors/3", R"({"bufferView": 3, "componentType": 5121, "count": 4, "type": "VEC4"})"_json},
+        {"/accessors/4", R"({"bufferView": 4, "componentType": 5126, "count": 4, "type": "VEC4"})"_json},
+        {"/accessors/5", R"({"bufferView": 5, "componentType": 5126, "count": 2, "type": "MAT4"})"_json},
+        {"/meshes/0/primitives/0/attributes/JOINTS_0", 3},
+        {"/meshes/0/primitives/0/attributes/WEIGHTS_0", 4},
+        {"/skins", R"([{"joints": [1, 2], "inverseBindMatrices": 5}])"_json},
+        {"/scenes/0/nodes", {0, 1}},
+        {"/nodes", R"([{"mesh": 0, "skin": 0, "translation": [100, 0, 0]},
+                                  {"translation": [0, 0, 7], "children": [2]},
+                                  {"translation": [1, 0, 0], "rotation": [0, 0, 0.70710678, 0.70710678]}])"_json}};
+    const GltfScene s = decoded(square(edits, buffer));
+    EXPECT_TRUE(s.mesh.warnings.empty());
+    const float expected[4][3] = {
+        {0, 0, 7}, {1, 0, 7}, {0, 0, 7}, {0, 0, 7}};  // of (1, 1, 0): turned to (0, 0)
+    for (size_t v = 0; v < 4; ++v)
+        for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(position(s, v)[c], expected[v][c], 1e-6) << v << " " << c;
+    edits.push_back({"/skins/0/joints", {1}});
+    expectError(square(edits, buffer), {"JOINTS_0", "names joint 1 of 1, of vertex 1"});
+    edits.back() = {"/skins/0/joints", {1, 2, 2}};
+    expectError(square(edits, buffer),
+                {"skins[0].inverseBindMatrices", "has 2 elements, but there are 3 joints"});
+    edits.back() = {"/scenes/0/nodes", {0}};
+    expectError(square(edits, buffer), {"skins[0].joints[0]", "outside of the scene"});
+}
+
 TEST(Gltf, WhatIsLeftOutIsSaid) {
     const auto expectSaid = [](const Edits& edits, const char* word) {
         const GltfScene s = decoded(square(edits));
         ASSERT_EQ(s.mesh.warnings.size(), word ? 1u : 0u) << (word ? word : s.mesh.warnings[0]);
-        if (word) EXPECT_NE(s.mesh.warnings[0].find(word), std::string::npos) << s.mesh.warnings[0];
+        if (word) {
+            EXPECT_NE(s.mesh.warnings[0].find(word), std::string::npos) << s.mesh.warnings[0];
+        }
     };
     expectSaid({{"/meshes/0/primitives/0/attributes/COLOR_0", 0}}, "vertex colours");
     const auto of = [](const json& material, const json& sampler = json::object()) {

@@ -30,11 +30,24 @@ struct SharedDevice : Device {
     }
 };
 
-// The shader of a scene on one device, with the outputs that were wanted.
+using Channels = std::map<std::string, std::vector<std::string>>;
+
+void setChannels(io::SceneFile& scene, const Channels& channels) {
+    for (const auto& [key, names] : channels)
+        if (std::ranges::find(io::slotKeys, key, &io::SlotKey::key) == std::end(io::slotKeys))
+            throw py::value_error("channels: there is no image '" + key + "'");
+    for (const io::SlotKey& k : io::slotKeys) {
+        const auto found = channels.find(std::string(k.key));
+        scene.channels[k.slot] = found == channels.end() ? std::vector<std::string>() : found->second;
+    }
+}
+
+// The shader of a scene on one device, with the images and outputs that were wanted.
 struct OnDevice {
     Device device;
     io::LutStore luts;
     std::vector<PelImageSlot> outputs;
+    Channels channels;
     std::optional<io::SceneFrame> frame;
 
     explicit OnDevice(PelDevice shared) : device(SharedDevice(shared)), luts(device) {}
@@ -87,10 +100,10 @@ class Scene {
     bool hasGBuffer() const { return gbuffer_.has_value(); }
     std::string gbufferFile() const { return scene_.gbuffer; }  // that the scene names; may be empty
 
-    // Materials (id, bytes, name of the profile), lights, ambient light, camera, options.
+    // Channels, materials (id, bytes, name of the profile), lights, ambient light, camera, options.
     using Material = std::tuple<uint32_t, std::string, std::string>;
-    using State =
-        std::tuple<std::vector<Material>, std::vector<std::string>, std::string, std::string, std::string>;
+    using State = std::tuple<Channels, std::vector<Material>, std::vector<std::string>, std::string,
+                             std::string, std::string>;
 
     py::dict shade(uintptr_t device, const State& state, const std::vector<std::string>& outputs) {
         const io::SceneFile scene = changed(state);
@@ -106,7 +119,8 @@ class Scene {
         std::vector<std::string> warnings;
         {
             const py::gil_scoped_release free;
-            io::SceneFrame& frame = frameFor(reinterpret_cast<PelDevice>(device), scene, wanted);
+            io::SceneFrame& frame =
+                frameFor(reinterpret_cast<PelDevice>(device), scene, std::get<Channels>(state), wanted);
             frame.shade();
             radiance = frame.radiance();
             for (const PelImageSlot slot : wanted) parts.push_back(frame.output(slot));
@@ -132,6 +146,12 @@ class Scene {
                     "material " + std::to_string(m.id) +
                     " has a profile object, which a scene file cannot hold: set Scene.profiles[" +
                     std::to_string(m.id) + "] to the name or the file of a profile");
+        const PelShaderOptions& o = scene.options;
+        if (o.regionX || o.regionY || o.regionWidth || o.regionHeight)
+            throw py::value_error("a scene file cannot hold the region of options: set it after loading");
+        if (o.invalidColor[0] != 0 || o.invalidColor[1] != 0 || o.invalidColor[2] != 0)
+            throw py::value_error(
+                "options.invalid_color is set, which a scene file cannot hold: set it after loading");
         namespace fs = std::filesystem;
         const fs::path folder = fs::absolute(path).parent_path();
         const auto move = [&](std::string& file) {
@@ -155,8 +175,9 @@ class Scene {
   private:
     // Materials that are not in the file have no profile or texture files.
     io::SceneFile changed(const State& state) const {
-        const auto& [materials, lights, ambient, camera, options] = state;
+        const auto& [channels, materials, lights, ambient, camera, options] = state;
         io::SceneFile scene = scene_;
+        setChannels(scene, channels);
         scene.materials.clear();
         for (const auto& [id, bytes, profile] : materials) {
             const auto known = std::ranges::find(scene_.materials, id, &io::SceneMaterial::id);
@@ -182,16 +203,16 @@ class Scene {
         gbuffer_ = std::move(image);
     }
     // Kept from call to call, so that only changed settings are set again.
-    io::SceneFrame& frameFor(PelDevice device, const io::SceneFile& scene,
+    io::SceneFrame& frameFor(PelDevice device, const io::SceneFile& scene, const Channels& channels,
                              const std::vector<PelImageSlot>& outputs) {
         if (!onDevice_ || onDevice_->device.get() != device) onDevice_.emplace(device);
         OnDevice& on = *onDevice_;
         try {
-            if (on.frame && on.outputs == outputs) {
+            if (on.frame && on.outputs == outputs && on.channels == channels) {
                 on.frame->update(scene, on.luts, scene.options);
             } else {
                 on.frame.reset();
-                on.outputs = outputs;
+                on.outputs = outputs, on.channels = channels;
                 on.frame.emplace(io::prepareFrame(on.device, scene, on.luts, scene.options, outputs));
                 on.frame->show(*gbuffer_, scene);
             }
@@ -215,16 +236,14 @@ class Scene {
 // A scene made by a program: materials with their profile and scattered texture, lights with their shadow
 // map, eyes with the texture and the profile of their iris, surroundings, by names of files. Complete or not
 // at all.
-void writeScene(const std::string& path, const std::map<std::string, std::vector<std::string>>& channels,
+void writeScene(const std::string& path, const Channels& channels,
                 const std::vector<std::tuple<uint32_t, std::string, std::string, std::string>>& materials,
                 const std::vector<std::tuple<std::string, std::string>>& lights,
                 const std::vector<std::tuple<uint32_t, std::string, std::string, std::string>>& eyes,
                 const std::string& ambient, const std::string& camera, const std::string& options,
                 const std::string& environment, const std::vector<float>& axes) {
     io::SceneFile scene;
-    for (const io::SlotKey& k : io::slotKeys)
-        if (const auto found = channels.find(std::string(k.key)); found != channels.end())
-            scene.channels[k.slot] = found->second;
+    setChannels(scene, channels);
     for (const auto& [id, bytes, profile, texture] : materials) {
         io::SceneMaterial& m = scene.materials.emplace_back();
         m.id = id, m.material = structOf<PelMaterial>(bytes), m.profile = profile;

@@ -61,7 +61,7 @@ class Scene(OfThisProcess):
     options : ShaderOptions
         `target_error` and `millimetres_per_unit` among them.
     channels : dict of str to list of str
-        Which channels of the G-buffer feed which image.
+        Which channels of the G-buffer feed which image; an image that is left out is not used.
     """
 
     _instead = "load it there"
@@ -95,18 +95,22 @@ class Scene(OfThisProcess):
 
     def save(self, path: Any) -> None:
         """Writes the current scene, complete or not at all; files are named relative to the new scene file.
+        Options of how a picture is computed, such as `scratch_budget`, `tile_lists` and `count_pixels`, are
+        not part of a scene.
 
         Raises
         ------
         ValueError
-            A material has a profile object, which a file cannot hold: name a profile in `profiles` instead.
+            What a file cannot hold: a profile object of a material (name a profile in `profiles` instead), a
+            region, an `invalid_color`.
         files.FileError
             The file cannot be written.
         """
         self._native.save(str(path), self._state())
 
     def _state(self) -> tuple[Any, ...]:
-        return ([(id, m._data.tobytes(), self.profiles.get(id, "")) for id, m in self.materials.items()],
+        return ({image: list(names) for image, names in self.channels.items()},
+                [(id, m._data.tobytes(), self.profiles.get(id, "")) for id, m in self.materials.items()],
                 [light._data.tobytes() for light in self.lights], self.ambient._data.tobytes(),
                 self.camera._data.tobytes(), self.options._data.tobytes())
 

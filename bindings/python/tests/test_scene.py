@@ -174,6 +174,50 @@ def test_what_is_saved_shades_the_same(folder, device, tmp_path_factory):
         scene.save(folder / "own.toml")
 
 
+def test_channels_can_be_changed(folder, device):
+    scene = pel.load_scene(folder / "scene.toml", ball())
+    first = pel.shade(scene, device).radiance
+    del scene.channels["curvature"]
+    without = pel.shade(scene).radiance
+    scene.channels["normal_shading"] = ["Normal.X", "Normal.Z", "Normal.Y"]
+    other = pel.shade(scene).radiance
+    scene.save(folder / "changed.toml")
+    assert np.array_equal(pel.shade(pel.load_scene(folder / "changed.toml", ball()), device).radiance, other)
+    assert not np.array_equal(other, without) and first.shape == without.shape
+    scene.channels["normals"] = ["Normal.X", "Normal.Y", "Normal.Z"]
+    with pytest.raises(ValueError, match="no image 'normals'"):
+        pel.shade(scene)
+
+
+def test_what_a_file_cannot_hold_is_not_saved(folder):
+    for change in [{"region_width": 8}, {"region_y": 8}, {"invalid_color": (1, 0, 0)}]:
+        scene = pel.load_scene(folder / "scene.toml", ball())
+        for field, value in change.items():
+            setattr(scene.options, field, value)
+        with pytest.raises(ValueError, match="set it after loading"):
+            scene.save(folder / "changed.toml")
+
+
+def test_any_number_is_refused_or_shaded(folder, device):
+    """Fields are checked by the library, so nothing before may trust them."""
+    gbuffer = {name: pixels[::8, ::8] for name, pixels in ball().items()}
+    scene = pel.load_scene(folder / "scene.toml", gbuffer)
+    refused = 0
+    for struct in [scene.materials[1], scene.lights[0], scene.ambient, scene.camera, scene.options]:
+        for field in struct.field_names():
+            value = getattr(struct, field)
+            if not isinstance(value, int):
+                continue
+            for number in (5, 77, 2**31 - 1):
+                try:
+                    setattr(struct, field, number)
+                    assert np.isfinite(pel.shade(scene, device).radiance).all()
+                except (pel.PellucidError, ValueError):
+                    refused += 1
+            setattr(struct, field, value)
+    assert refused > 30
+
+
 def test_errors(folder, device):
     scene = pel.load_scene(folder / "scene.toml", ball())
     scene.materials[1].roughness = -1.0

@@ -1,8 +1,10 @@
 // The scene file of `pellucid shade`: TOML that names the channels of a G-buffer, and describes lights,
 // materials and tables (docs/guide/scene-file.md); the fields are those of pellucid.h.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 
 #include "io/image/image_file.h"
 #include "io/lut/lut_preset.h"
@@ -62,9 +64,14 @@ struct SceneLight {
     std::string shadowMapFile;     // image of depths seen from the light; "": no thickness from this light
     std::string shadowMapChannel;  // its channel; "": the only one
     std::string secondChannel;     // of second moments; "": none
-    // PEL_LIGHT_CASCADE_1 to 3, as many as PelLight.shadowCascades needs
-    std::array<SceneCascade, 3> cascades;
+    std::array<SceneCascade, 3> cascades;  // PEL_LIGHT_CASCADE_1 to 3
     int line = 0;
+
+    // Those of the cascades that PelLight.shadowCascades needs; it may not be checked yet.
+    std::span<const SceneCascade> furtherCascades() const {
+        const size_t wanted = std::max(light.shadowCascades, 1u) - 1;
+        return std::span(cascades).first(std::min(wanted, cascades.size()));
+    }
 };
 
 struct SceneFile {
