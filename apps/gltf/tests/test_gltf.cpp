@@ -116,8 +116,8 @@ TEST(Gltf, NodesMoveTurnScaleAndMirror) {
     EXPECT_EQ(position(s, 5), (std::vector<float>{9, 0, 5}));
 }
 
-// Two joints. The second was bound at (1, 0, 0) and is turned there by a quarter about z. The node of the mesh
-// moves too, which a skin ignores.
+// Two joints. The second was bound at (1, 0, 0) and is turned there by a quarter about z. The node of the
+// mesh moves too, which a skin ignores.
 TEST(Gltf, SkinsTakeThePoseOfTheirJoints) {
     const std::string buffer = squareBuffer() +
                                gltf::bytesOf<uint8_t>({0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}) +
@@ -138,7 +138,8 @@ TEST(Gltf, SkinsTakeThePoseOfTheirJoints) {
         {"/scenes/0/nodes", {0, 1}},
         {"/nodes", R"([{"mesh": 0, "skin": 0, "translation": [100, 0, 0]},
                                   {"translation": [0, 0, 7], "children": [2]},
-                                  {"translation": [1, 0, 0], "rotation": [0, 0, 0.70710678, 0.70710678]}])"_json}};
+                                   {"translation": [1, 0, 0],
+                                   "rotation": [0, 0, 0.70710678, 0.70710678]}])"_json}};
     const GltfScene s = decoded(square(edits, buffer));
     EXPECT_TRUE(s.mesh.warnings.empty());
     const float expected[4][3] = {
