@@ -198,7 +198,16 @@ void apply(CLI::Option& option, Mark mark) {
     if (mark == hidden) option.group("");
 }
 
-void checkOutput(const std::string& path, std::initializer_list<std::string_view> extensions) {
+void keepInputs(const std::string& output, const std::vector<std::string>& inputs) {
+    std::error_code same;  // files that do not exist are not the same
+    for (const std::string& input : inputs)
+        if (!input.empty() && std::filesystem::equivalent(output, input, same))
+            throw UsageError(output + " is one of the files that are read, and would be lost; name another");
+}
+
+void checkOutput(const std::string& path, std::initializer_list<std::string_view> extensions,
+                 const std::vector<std::string>& inputs) {
+    keepInputs(path, inputs);
     try {
         io::requireExtension(path, extensions);
         io::checkWritable(path);

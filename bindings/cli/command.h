@@ -160,8 +160,10 @@ auto subcommand(CLI::App& app, const char* name, const char* what, Function run)
 }
 
 // Before any work, throw UsageError unless the file, of one of these extensions, can be written; or `file` in
-// the folder of -o, which is made if need be.
-void checkOutput(const std::string& path, std::initializer_list<std::string_view> extensions);
+// the folder of -o, which is made if need be. `inputs`: files that are read, which it may not overwrite.
+void checkOutput(const std::string& path, std::initializer_list<std::string_view> extensions,
+                 const std::vector<std::string>& inputs = {});
+void keepInputs(const std::string& output, const std::vector<std::string>& inputs);
 void checkFolder(const std::string& folder, const std::string& file);
 
 // Adds --device, --json and --strict.

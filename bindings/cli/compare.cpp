@@ -18,9 +18,10 @@ struct CompareArguments {
     bool json = false;
 };
 
-// RGB per pixel, linear.
+// RGB per pixel, linear; or per vertex of a mesh, in one row.
 struct Rgb {
     int width = 0, height = 0;
+    bool vertices = false;
     std::vector<float> values;
     // Empty unless the file has them. secondHalf: another estimate of `values`, as noisy.
     std::vector<float> secondHalf, alpha, irradiance, meanCurvature, thickness, meanFreePath;
@@ -31,27 +32,42 @@ std::vector<std::string> layerOf(const std::string& layer) {
     return {layer + ".R", layer + ".G", layer + ".B"};
 }
 
-Rgb readRgb(const std::string& path, const std::string& layer, float scale) {
+// The halves of a walk are read of a `reference`; of another picture, their mean.
+Rgb readRgb(const std::string& path, const std::string& layer, float scale, bool reference) {
     Rgb out;
     const std::string extension = io::extensionOf(path);
     if (extension == "npy") {
         const io::NpyArray array = io::readNpy(path);
-        const auto& s = array.shape;
+        auto s = array.shape;
+        // As `reference` writes them: (vertices, 3), and of a walk (2, vertices, 3).
+        const bool walk = s.size() == 3 && s[0] == 2 && s[2] == 3;
+        out.vertices = walk || (s.size() == 2 && s[1] == 3);
+        if (out.vertices) s = {1, s[walk], 3};
         if (!(s.size() == 2 || (s.size() == 3 && (s[2] == 1 || s[2] == 3))) || s[0] * s[1] == 0)
             throw io::FileError(
-                path, "is not a picture: an array of height x width, or with 1 or 3 channels, is needed");
+                path,
+                "is not a picture: an array of height x width, or with 1 or 3 channels, is needed; or "
+                "of values at vertices, n x 3");
         out.height = int(s[0]), out.width = int(s[1]);
         const size_t channels = s.size() == 3 ? s[2] : 1;
         for (size_t i = 0; i < s[0] * s[1]; ++i)
             for (size_t c = 0; c < 3; ++c)
                 out.values.push_back(array.values[i * channels + (channels == 3 ? c : 0)]);
+        if (walk) {
+            out.secondHalf.assign(array.values.end() - ptrdiff_t(out.values.size()), array.values.end());
+            if (!reference) {
+                for (size_t i = 0; i < out.values.size(); ++i)
+                    out.values[i] = (out.values[i] + out.secondHalf[i]) / 2;
+                out.secondHalf.clear();
+            }
+        }
     } else {
         const io::Image image = io::readImage(path);
         out.width = image.width, out.height = image.height;
         std::vector<std::string> names = layerOf(layer);
         if (layer.empty() && !image.has("R"))
             names.assign(3, image.channels.size() == 1 ? image.channels[0].name : image.has("Y") ? "Y" : "R");
-        if (layer.empty() && image.has("First.R") && image.has("Second.R")) {
+        if (reference && layer.empty() && image.has("First.R") && image.has("Second.R")) {
             names = layerOf("First");
             out.secondHalf = image.interleaved(layerOf("Second"));
         }
@@ -116,11 +132,19 @@ std::vector<uint8_t> subsets(const CompareArguments& a, const Rgb& one, const Rg
     }
     // Visibility comes from the reference's irradiance, else from the host's own shadow.
     const std::vector<float>& irradiance = two.irradiance.empty() ? one.irradiance : two.irradiance;
-    if (!irradiance.empty() && scene.lights.size() == 1)
+    const PelAmbient& ambient = scene.ambient;
+    const bool alone =
+        scene.lights.size() == 1 && std::ranges::all_of(ambient.constant, [](float v) { return v == 0; }) &&
+        std::ranges::all_of(&ambient.sh[0][0], &ambient.sh[0][0] + 27, [](float v) { return v == 0; });
+    if (!irradiance.empty() && alone)
         for (size_t i = 0; i < mask.size(); ++i)
             visible.push_back(irradiance[3 * i] + irradiance[3 * i + 1] + irradiance[3 * i + 2] > 0);
     else if (!light.wideShadow.empty())
         visible = gbuffer.interleaved(std::vector<std::string>{light.wideShadow});
+    else
+        std::fprintf(stderr,
+                     "warning: penumbra is empty: shadows are known of a reference's irradiance by one light "
+                     "alone, without ambient light, or of the light's wide_shadow\n");
     return io::subsetsOf({one.width, one.height, positions, normals, toLight, visible, mask,
                           1 / (a.unit > 0 ? a.unit : scene.options.millimetresPerUnit), two.meanCurvature,
                           two.thickness, two.meanFreePath});
@@ -181,12 +205,13 @@ void runCompare(const CompareArguments& a) {
     if (a.gbuffer.empty() != a.scene.empty())
         throw UsageError(
             "--gbuffer and --scene go together: the scene file names the channels of the G-buffer");
-    if (!a.picture.empty()) checkOutput(a.picture, {"png"});
-    const Rgb one = readRgb(a.a, a.channelsA, a.scaleA);
-    Rgb two = readRgb(a.b, a.channelsB, a.scaleB);
+    if (!a.picture.empty()) checkOutput(a.picture, {"png"}, {a.a, a.b});
+    const Rgb one = readRgb(a.a, a.channelsA, a.scaleA, false);
+    Rgb two = readRgb(a.b, a.channelsB, a.scaleB, true);
     requireSameSize(a.a, one, a.b, two);
+    if (one.vertices && !a.picture.empty()) throw UsageError("--picture: values at vertices make none");
     if (!a.secondHalf.empty()) {
-        const Rgb half = readRgb(a.secondHalf, a.channelsB, a.scaleB);
+        const Rgb half = readRgb(a.secondHalf, a.channelsB, a.scaleB, true);
         requireSameSize(a.b, two, a.secondHalf, half);
         two.secondHalf = half.values;
     }
@@ -219,7 +244,8 @@ void runCompare(const CompareArguments& a) {
     }
     for (size_t i = 0; i < two.secondHalf.size(); ++i)
         two.values[i] = (two.values[i] + two.secondHalf[i]) / 2;
-    if (all.pixels == mask.size()) {  // pixels that do not count would change those around them
+    if (all.pixels == mask.size() &&
+        !one.vertices) {  // pixels that do not count would change those around them
         const double visible = io::flip(one.values, two.values, one.width);
         report["all"]["flip"] = visible;
         if (!a.json) std::printf("%-11s %8zu pixels   FLIP %.5f\n", "all", all.pixels, visible);

@@ -32,7 +32,7 @@ MeshWeldChoice weldChoice(const std::string& text) {
 }
 
 void runCurvature(const CurvatureArguments& a) {
-    checkOutput(a.output, {"npy", "ply"});
+    checkOutput(a.output, {"npy", "ply"}, {a.mesh});
     if (!a.picture.empty()) checkOutput(a.picture, {"png"});
     if (!(a.params.scale >= 0 && std::isfinite(a.params.scale)))
         throw UsageError(io::concat("--scale ", a.params.scale, ": a finite number from 0 on is needed"));

@@ -96,6 +96,10 @@ void addWalkOptions(CLI::App& command, WalkArguments& walk) {
            isOneOf({"index-matched", "fresnel"}), shown, Needs{enabled});
 }
 
+sample::Boundary boundaryOf(const WalkArguments& walk) {
+    return walk.boundary == "fresnel" ? sample::Boundary::Fresnel : sample::Boundary::IndexMatched;
+}
+
 // How one material scatters.
 struct Diffusion {
     Profile profile;
@@ -142,9 +146,7 @@ WalkMedium mediumOf(const WalkArguments& walk, const Diffusion& d, const RgbValu
     RgbValues lengths;
     // The line spread of Burley's profile of length d has a standard deviation of sqrt(7) d.
     for (int c = 0; c < 3; ++c) lengths[c] = d.scale * info.width[c] / std::sqrt(7.0);
-    const sample::Medium medium =
-        burleyMedium(lengths, reflectance,
-                     walk.boundary == "fresnel" ? sample::Boundary::Fresnel : sample::Boundary::IndexMatched);
+    const sample::Medium medium = burleyMedium(lengths, reflectance, boundaryOf(walk));
     return {medium, medium};
 }
 
@@ -245,7 +247,7 @@ ReferenceMesh loadReferenceMesh(const std::string& path, int subdivide,
                                 const std::vector<std::string>& parts) {
     ReferenceMesh out;
     if (io::extensionOf(path) == "obj" && (subdivide > 0 || !parts.empty())) {
-        io::PartedMesh parted = io::loadParts(path, subdivide);
+        io::PartedMesh parted = subdivide > 0 ? io::loadParts(path, subdivide) : io::loadGroups(path);
         out.byMaterial = parts.size() > 1 || (parts.size() == 1 && parts[0].find('=') != std::string::npos &&
                                               parted.part(parts[0]) < 0);
         if (!parts.empty()) out.materials = idsOf(path, parted, parts, out.byMaterial);
@@ -274,8 +276,9 @@ float unitOf(const ReferenceArguments& a, const io::SceneFile& scene) {
     return a.unit > 0 ? a.unit : scene.options.millimetresPerUnit;
 }
 
-Diffusion diffusionOf(const ReferenceArguments& a, const io::SceneFile& scene,
-                      const io::SceneMaterial* material) {
+// Empty for a material without a profile or a curvature table, which reflects light where it arrives.
+std::optional<Diffusion> diffusionOf(const ReferenceArguments& a, const io::SceneFile& scene,
+                                     const io::SceneMaterial* material) {
     Diffusion d;
     std::string name = a.profile;
     d.radius = a.diffusionRadius;
@@ -287,15 +290,12 @@ Diffusion diffusionOf(const ReferenceArguments& a, const io::SceneFile& scene,
             throw UsageError(
                 io::concat("the curvature table of material ", material->id,
                            " is a file, which does not contain its profile; name one with --profile"));
-        if (lut) name = lut->profile;
+        if (!lut) return std::nullopt;
+        name = lut->profile;
     }
-    if (name.empty()) {
-        d.profile = Profile::skin();
-    } else {
-        const io::ProfileFile file = io::findProfile(name);
-        d.profile = file.profile;
-        d.skin = file.skin;
-    }
+    const io::ProfileFile file = io::findProfile(name.empty() ? "skin" : name);
+    d.profile = file.profile;
+    d.skin = file.skin;
     const PelProfileInfo info = d.profile.info();
     d.scale = (d.radius > 0 ? d.radius / info.radius : 1) / d.unit;
     d.narrowest = d.scale * std::min({info.width[0], info.width[1], info.width[2]});
@@ -390,23 +390,27 @@ class Reference {
 
     void vertices() {
         const io::SceneMaterial* material = file_.materials.empty() ? nullptr : &file_.materials[0];
-        const Diffusion d = diffusionOf(a_, file_, material);
-        const sample::WalkBody body(scene_, mesh_.bodyOf(material ? material->id : 1));
-        const size_t count = mesh_.mesh.vertexCount();
-        if (a_.walk.enabled) {
-            const Points points = pointsOf(run_, body, mesh_.mesh.positions);
-            const RgbValues A = reflectanceOf(d, material, {}, {});
-            const sample::WalkedLight light = walked(body, d, points, A, material);
-            const size_t shape[] = {2, count, 3};
-            std::vector<float> halves = light.first;
-            halves.insert(halves.end(), light.second.begin(), light.second.end());
-            for (size_t i = 0; i < halves.size(); ++i) halves[i] = float(halves[i] / A[i % 3]);
-            io::writeNpy(a_.output, shape, halves);
+        const std::optional<Diffusion> d = diffusionOf(a_, file_, material);
+        const sample::WalkBody body(scene_, d && material ? mesh_.bodyOf(material->id) : mesh_.bodyOf(1));
+        const size_t count = mesh_.mesh.vertexCount(), one[] = {count, 3}, both[] = {2, count, 3};
+        if (d && !a_.walk.enabled) {
+            io::writeNpy(a_.output, one,
+                         integrate(run_, a_, *d, lit(*d, body.material()), mesh_.mesh.positions));
         } else {
-            const std::vector<float> S =
-                integrate(run_, a_, d, lit(d, body.material()), mesh_.mesh.positions);
-            const size_t shape[] = {count, 3};
-            io::writeNpy(a_.output, shape, S);
+            const Points points = pointsOf(run_, body, mesh_.mesh.positions);
+            std::vector<float> halves;
+            if (d) {
+                const RgbValues A = reflectanceOf(*d, material, {}, {});
+                const sample::WalkedLight light = walked(body, *d, points, A, material);
+                halves = light.first;
+                halves.insert(halves.end(), light.second.begin(), light.second.end());
+                for (size_t i = 0; i < halves.size(); ++i) halves[i] = float(halves[i] / A[i % 3]);
+            } else {
+                halves = sample::irradianceAt(scene_, lighting_, points.places);
+                if (a_.walk.enabled)
+                    halves.insert(halves.end(), halves.begin(), halves.begin() + ptrdiff_t(3 * count));
+            }
+            io::writeNpy(a_.output, a_.walk.enabled ? std::span<const size_t>(both) : one, halves);
         }
         run_.report["points"] = count;
     }
@@ -450,9 +454,10 @@ class Reference {
         std::vector<float> from;
         for (const size_t pixel : pixels)
             from.insert(from.end(), &positions[3 * pixel], &positions[3 * pixel] + 3);
-        const sample::WalkBody body(scene_, mesh_.bodyOf(material.id));
+        const std::optional<Diffusion> d = diffusionOf(a_, file_, &material);
+        // What does not scatter needs no body of its own.
+        const sample::WalkBody body(scene_, d ? mesh_.bodyOf(material.id) : 0);
         const Points points = pointsOf(run_, body, from);
-        const Diffusion d = diffusionOf(a_, file_, &material);
         const std::vector<float> E = sample::irradianceAt(scene_, lighting_, points.places);
         const auto albedo = [&](size_t value) {
             return albedos.empty() ? material.material.albedo[value % 3] : albedos[value];
@@ -463,13 +468,17 @@ class Reference {
                 layer[components * pixels[k / components] + k % components] = float(valueOf(k));
         };
         store(layers.irradiance, [&](size_t k) { return E[k]; });
-        if (!a_.walk.enabled) {
-            const std::vector<float> S = integrate(run_, a_, d, lit(d, body.material()), points.positions);
+        const auto at = [&](size_t k) { return 3 * pixels[k / 3] + k % 3; };
+        if (!d) {
+            store(layers.surface, [&](size_t k) { return E[k]; });
+            for (auto* half : {&layers.first, &layers.second})
+                if (a_.walk.enabled) store(*half, [&](size_t k) { return E[k] * albedo(at(k)); });
+        } else if (!a_.walk.enabled) {
+            const std::vector<float> S = integrate(run_, a_, *d, lit(*d, body.material()), points.positions);
             store(layers.surface, [&](size_t k) { return S[k]; });
         } else {
-            const RgbValues A = reflectanceOf(d, &material, albedos, pixels);
-            const sample::WalkedLight light = walked(body, d, points, A, &material);
-            const auto at = [&](size_t k) { return 3 * pixels[k / 3] + k % 3; };
+            const RgbValues A = reflectanceOf(*d, &material, albedos, pixels);
+            const sample::WalkedLight light = walked(body, *d, points, A, &material);
             store(layers.surface,
                   [&](size_t k) { return (light.first[k] + light.second[k]) / 2 / A[k % 3]; });
             store(layers.first, [&](size_t k) { return light.first[k] / A[k % 3] * albedo(at(k)); });
@@ -511,10 +520,11 @@ class Reference {
                 for (const size_t pixel : pixels) sum += albedos[3 * pixel + c];
             if (!albedos.empty()) A[c] = sum / double(pixels.size());
             if (!a_.walk.reflectance.empty()) A[c] = a_.walk.reflectance[c];
-            if (!(A[c] > 0 && A[c] < 1))
-                throw InputError(
-                    io::concat("a reflectance of ", A[c],
-                               " has no medium; values between 0 and 1 can be given with --reflectance"));
+            const double most = sample::mostReflectance(boundaryOf(a_.walk));
+            if (!(A[c] > 0 && A[c] < most))
+                throw InputError(io::concat("a reflectance of ", A[c], " has no medium behind the boundary ",
+                                            a_.walk.boundary, "; values between 0 and ", most,
+                                            " can be given with --reflectance"));
         }
         return A;
     }
@@ -541,7 +551,7 @@ class Reference {
 };
 
 void runReference(const ReferenceArguments& a) {
-    checkOutput(a.output, {"exr", "npy"});
+    checkOutput(a.output, {"exr", "npy"}, {a.mesh, a.scene, a.gbuffer, a.profile});
     const bool picture = io::extensionOf(a.output) == "exr";
     if (picture == a.gbuffer.empty())
         throw UsageError(picture ? "-o " + a.output +
@@ -583,8 +593,8 @@ void addReference(CLI::App& app) {
            "Surface per vertex, (n, 3); of a walk both halves, (2, n, 3)",
            required);
     option(command, "--profile", a.profile,
-           "material of the library or profile file (default: that of the material's curvature table, else "
-           "skin)",
+           "material of the library or profile file (default: that of the material, else of its curvature "
+           "table)",
            Word{profileWord});
     option(command, "--diffusion-radius", a.diffusionRadius,
            "scales the profile to this radius, mm; 0: its own", isNotNegative(), shown);

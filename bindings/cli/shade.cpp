@@ -261,9 +261,11 @@ void runShade(ShadeArguments a) {
     io::checkReadable(a.gbuffer);
     const auto files = outputFiles(a, scene);
     std::vector<PelImageSlot> outputs;
+    std::vector<std::string> inputs{a.gbuffer, a.scene};
+    for (const std::string* file : io::filesOf(scene)) inputs.push_back(*file);
+    keepInputs(a.output, inputs);
+    if (!a.picture.empty()) keepInputs(a.picture, inputs);
     const auto place = [](const std::string& file) { return std::filesystem::weakly_canonical(file); };
-    if (place(a.output) == place(a.gbuffer))
-        throw UsageError("-o " + a.output + " is the G-buffer, which would be lost; name another file");
     std::set<std::filesystem::path> distinct{place(a.output), place(a.picture)};
     for (const auto& [slot, file] : files) {
         if (outputs.empty() || outputs.back() != slot) outputs.push_back(slot);
@@ -271,6 +273,7 @@ void runShade(ShadeArguments a) {
         if (!distinct.insert(place(file)).second)
             throw io::FileError(file, "would be written twice; give each output a name of its own");
         io::checkWritable(file);
+        keepInputs(file, inputs);
     }
     if (!picture.empty())
         for (const std::string& part : a.show)

@@ -120,7 +120,7 @@ void skin(const SkinArguments& a) {
 }
 
 void pigments(const SkinArguments& a) {
-    checkOutput(a.output, {"exr"});
+    checkOutput(a.output, {"exr"}, {a.input});
     Progress progress;
     const io::Image image = io::readImage(a.input);
     std::vector<float> albedo = image.interleaved(a.channels);

@@ -326,15 +326,23 @@ struct Fit {
 constexpr Fit indexMatchedFit{1, 0.139, 1.17, {0.6663, 4.7276, -4.9721, 7.2062, -3.3091}};
 constexpr Fit fresnelFit{0.92964, 0.43956, 3.74894, {0.3441, 3.6519, -1.9133, 5.3307, 0}};
 
+const Fit& fitOf(Boundary boundary) {
+    return boundary == Boundary::Fresnel ? fresnelFit : indexMatchedFit;
+}
+
 }  // namespace
+
+double mostReflectance(Boundary boundary) {
+    return 0.999 * fitOf(boundary).F;
+}
 
 Medium burleyMedium(const std::array<double, 3>& burleyLength, const std::array<double, 3>& reflectance,
                     Boundary boundary) {
-    const Fit& fit = boundary == Boundary::Fresnel ? fresnelFit : indexMatchedFit;
+    const Fit& fit = fitOf(boundary);
     Medium medium;
     medium.refractiveIndex = boundary == Boundary::Fresnel ? fresnelIndex : 1;
     for (int i = 0; i < 3; ++i) {
-        const double A = std::clamp(reflectance[i], 0.001, 0.999 * fit.F), p = fit.F * fit.c,
+        const double A = std::clamp(reflectance[i], 0.001, mostReflectance(boundary)), p = fit.F * fit.c,
                      q = fit.F * (1 + fit.c) + A * fit.b;
         const double s = (q - std::sqrt(q * q - 4 * p * (fit.F - A))) / (2 * p);
         medium.albedo[i] = std::clamp(1 - s * s, 0.0, 1.0);

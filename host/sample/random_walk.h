@@ -29,11 +29,13 @@ struct LayeredMedium {
 enum class Boundary { IndexMatched, Fresnel };
 constexpr double fresnelIndex = 1.4;  // of skin; the only one for which burleyMedium has fits
 
+double mostReflectance(Boundary boundary);
+
 // The medium whose half-space reflects `reflectance` of diffuse light, and scatters it like Burley's profile
 // of length `burleyLength`, (exp(-r/d) + exp(-r/3d)) / (8 pi d r). Both are fits to walks of half-spaces
 // (docs/mathematics.md, section 14). Their errors, for a reflectance from 0.07 to 0.95: 0.0021 of the
 // reflectance (0.0001 at 0.8; Fresnel: 0.0024), 0.7 % of the mean free path (Fresnel: 0.9 %). A reflectance
-// of 0 or 1 is moved a little inwards, so that walks scatter and end.
+// of 0, or above mostReflectance, is moved inwards, so that walks scatter and end.
 Medium burleyMedium(const std::array<double, 3>& burleyLength, const std::array<double, 3>& reflectance,
                     Boundary boundary);
 

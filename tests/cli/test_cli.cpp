@@ -75,7 +75,11 @@ const Refusal refusals[] = {
     {"profile fit skin --gaussians 13", 2, "'13' is not a whole number from 1 to 12"},
     {"shade @g.exr -o @o.exr", 2, "--scene"},
     {"shade @g.exr --scene @s.toml -o @no/o.exr", 2, "no folder"},
-    {"shade @g.exr --scene @s.toml -o @./g.exr", 2, "is the G-buffer, which would be lost"},
+    {"shade @g.exr --scene @s.toml -o @./g.exr", 2, "would be lost"},
+    {"shade @g.exr --scene @in.toml -o @in.exr", 2, "in.exr is one of the files that are read"},
+    {"curvature @in.ply -o @in.ply", 2, "would be lost"},
+    {"reference @m.off --scene @s.toml --gbuffer @g.exr -o @g.exr", 2, "would be lost"},
+    {"compare @g.exr @in.png --picture @in.png", 2, "would be lost"},
     {"shade @g.exr --scene @s.toml -o @o.exr --show diffuse", 2, "--picture"},
     {"shade @g.exr --scene @s.toml -o @o.exr --picture @p.exr", 2, ".png"},
     {"shade @g.exr --scene @s.toml -o @o.exr --picture @p.png --show final,nothing", 2, "show"},
@@ -108,6 +112,8 @@ TEST_F(Cli, WrongUseAndBadInputAreRefused) {
     write("text.exr", "no image at all");
     const std::string whole = read(path("g.exr"));
     write("cut.exr", whole.substr(0, whole.size() - 30));
+    for (const char* input : {"in.png", "in.ply", "in.exr"}) write(input, "");
+    write("in.toml", "gbuffer = \"in.exr\"\n" + read(path("s.toml")));
     write("bad.toml", "# a scene\nversion = \"2\"\n");
     write("a.json", "{}");
     write("b.json", "{\"devices\":[{}]}");

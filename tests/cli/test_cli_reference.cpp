@@ -38,6 +38,7 @@ class CliReference : public CommandTest {
         scene_.channels[PEL_SLOT_NORMAL_SHADING] = normals;
         scene_.channels[PEL_SLOT_MATERIAL] = {"Id.X"};
         scene_.materials.resize(1);
+        scene_.materials[0].profile = "skin";
         scene_.lights.resize(1);
         const float toLight[3] = {1, 0, 0};
         std::copy(toLight, toLight + 3, scene_.lights[0].light.toLight);
@@ -181,6 +182,43 @@ TEST_F(CliReference, WalkWritesHalvesForCompare) {
     EXPECT_EQ(report["subsets"]["hollows"]["pixels"].get<size_t>(), 0u);
     EXPECT_EQ(report["subsets"]["thin"]["pixels"].get<size_t>(), 0u);
     EXPECT_NEAR(report["all"]["noise"][0].get<double>(), std::sqrt(difference / count) / 2, 1e-5);
+    // As A, a walk is its mean.
+    Image mean;
+    mean.width = mean.height = side;
+    mean.addInterleaved(shade_files::colorNames, out.interleaved(shade_files::colorNames));
+    pellucid::io::writeExr(path("mean.exr"), mean);
+    EXPECT_LT(reportOf("compare @w.exr @mean.exr")["all"]["rmse_all"].get<double>(), 1e-6);
+}
+
+// In a walk too, and at vertices.
+TEST_F(CliReference, MaterialsWithoutAProfileReflectWhatArrives) {
+    scene_.materials[0].profile = "";
+    pellucid::io::writeScene(path("s.toml"), scene_);
+    done(ofBall + picture + "-o @o.exr");
+    done(ofBall + picture + "--walk -o @w.exr");
+    const Image plain = pellucid::io::readImage(path("o.exr"));
+    EXPECT_EQ(plain.channel("Surface.R").pixels, plain.channel("Irradiance.R").pixels);
+    EXPECT_EQ(pellucid::io::readImage(path("w.exr")).channel("Second.R").pixels, plain.channel("R").pixels);
+    done(ofBall + "-o @v.npy");
+    done(ofBall + "--walk -o @w.npy");
+    const auto once = pellucid::io::readNpy(path("v.npy")), twice = pellucid::io::readNpy(path("w.npy"));
+    EXPECT_EQ(twice.shape, (Shape{2, once.shape[0], 3}));
+    EXPECT_GT(*std::max_element(once.values.begin(), once.values.end()), 0.8f);
+    EXPECT_TRUE(std::equal(once.values.begin(), once.values.end(),
+                           twice.values.end() - ptrdiff_t(once.values.size())));
+}
+
+// The corners of a flat square have normals that lean away from the light.
+TEST_F(CliReference, PartsKeepTheNormalsOfTheirFile) {
+    scene_.materials[0].profile = "";
+    pellucid::io::writeScene(path("s.toml"), scene_);
+    write("leaning.obj",
+          "v 0 0 0\nv 0 9 0\nv 0 9 9\nv 0 0 9\nvn .6 .8 0\ng one\nf 1//1 2//1 3//1 4//1\ng two\nf 4 3 2\n");
+    for (const char* part : {"", "--part one ", "--part 1=one --part 2=two "}) {
+        done("reference @leaning.obj --scene @s.toml -o @v.npy " + std::string(part));
+        const auto light = pellucid::io::readNpy(path("v.npy")).values;
+        for (size_t i = 0; i < 12; ++i) EXPECT_NEAR(light[i], 0.6, 1e-5) << part;
+    }
 }
 
 // How much comes back: tests/sample/test_walk.cpp.
@@ -213,6 +251,9 @@ TEST_F(CliReference, WalkOfTheVerticesAndBodies) {
     refused(walk + "--part 7=one", 3, "has the id 1");
     refused(two + "--walk --samples 4 --profile skin", 3, "has no known medium");
     refused(walk + "--reflectance 0.5 1 0.5", 3, "--reflectance");
+    done(walk + "--reflectance 0.5 0.95 0.5");
+    std::filesystem::remove(path("v.npy"));
+    refused(walk + "--reflectance 0.5 0.95 0.5 --boundary fresnel", 3, "values between 0 and 0.928");
     refused(walk + "--noise 0.1", 2, "--samples");
     refused(two + "--noise 1", 2, "--walk");
 }
@@ -231,8 +272,8 @@ TEST_F(CliReference, InterruptEndsAWalk) {
 }
 
 TEST_F(CliReference, WrongUseIsRefused) {
-    npy("a.npy", {2, 2, 3}, std::vector<float>(12));
-    npy("b.npy", {3, 2, 3}, std::vector<float>(18));
+    npy("a.npy", {3, 2, 3}, std::vector<float>(18));
+    npy("b.npy", {4, 2, 3}, std::vector<float>(24));
     refused(ofBall + "-o @o.exr", 2, "needs --gbuffer");
     refused(ofBall + picture + "-o @o.npy", 2, "goes to an .exr");
     refused("reference @none.off --scene @s.toml -o @o.npy", 3, "none.off");
@@ -244,7 +285,7 @@ TEST_F(CliReference, WrongUseIsRefused) {
     refused("compare @a.npy @a.npy --second-half @none.npy", 3, "none.npy");
     refused("compare @a.npy @a.npy --gbuffer @g.exr", 2, "go together");
     refused("compare @a.npy @a.npy --gbuffer @g.exr --scene @s.toml", 3,
-            "the pictures are 2 wide and 2 high");
+            "the pictures are 2 wide and 3 high");
     for (const bool asWide : {false, true}) {  // one of two sides is the G-buffer's
         const size_t side = gbuffer_.width, high = asWide ? 2 : side, wide = asWide ? side : 2;
         npy("c.npy", {high, wide, 3}, std::vector<float>(3 * high * wide));
@@ -279,6 +320,7 @@ TEST_F(CliReference, Compare) {
         EXPECT_TRUE(penumbra[key].is_null()) << key;
     for (const char* key : {"rmse", "mean", "p99", "max"}) EXPECT_TRUE(penumbra[key][2].is_null()) << key;
     EXPECT_TRUE(contains(done(compare).out, "penumbra           0 pixels   empty"));
+    EXPECT_TRUE(contains(done(compare).err, "without ambient light, or of the light's wide_shadow"));
     EXPECT_FALSE(report["all"].contains("flip")) << "the background does not count";
     EXPECT_NEAR(reportOf("compare @b.exr @a.exr")["all"]["flip"].get<double>(),
                 pellucid::io::flip(values, a.interleaved(shade_files::colorNames), side), 1e-6);
@@ -301,6 +343,23 @@ TEST_F(CliReference, Compare) {
         EXPECT_EQ(result.exitCode, *message ? 1 : 0) << arguments;
         EXPECT_TRUE(contains(result.err, message)) << arguments;
     }
+}
+
+TEST_F(CliReference, CompareValuesAtVertices) {
+    std::vector<float> values(15, 0.5f), halves(30, 0.5f);
+    npy("a.npy", {5, 3}, values);
+    for (size_t i = 0; i < 15; ++i)
+        values[i] += i % 3 == 0 ? 0.1f : 0.0f, halves[i] -= 0.1f, halves[15 + i] += 0.1f;
+    npy("b.npy", {5, 3}, values);
+    npy("walk.npy", {2, 5, 3}, halves);
+    const auto all = reportOf("compare @b.npy @a.npy")["all"];
+    EXPECT_EQ(all["pixels"], 5);
+    EXPECT_NEAR(all["rmse"][0].get<double>(), 0.1, 1e-6);
+    EXPECT_EQ(all["rmse"][1].get<double>(), 0);
+    EXPECT_FALSE(all.contains("flip"));
+    EXPECT_NEAR(reportOf("compare @a.npy @walk.npy")["all"]["noise"][0].get<double>(), 0.1, 1e-6);
+    EXPECT_NEAR(reportOf("compare @walk.npy @a.npy")["all"]["rmse"][0].get<double>(), 0, 1e-6);
+    refused("compare @a.npy @b.npy --picture @d.png", 2, "values at vertices");
 }
 
 // The picture's third part shows the largest difference of a pixel, whichever channel has it.

@@ -154,21 +154,9 @@ class Scene {
                 "options.invalid_color is set, which a scene file cannot hold: set it after loading");
         namespace fs = std::filesystem;
         const fs::path folder = fs::absolute(path).parent_path();
-        const auto move = [&](std::string& file) {
-            if (!file.empty() && fs::exists(file))
-                file = fs::absolute(file).lexically_relative(folder).string();
-        };
-        for (io::SceneLight& l : scene.lights) {
-            move(l.shadowMapFile);
-            for (io::SceneCascade& c : l.cascades) move(c.file);
-        }
-        for (io::SceneMaterial& m : scene.materials) {
-            move(m.profile), move(m.scatteredTexture), move(m.normalMap);
-            for (std::string& level : m.normalMapLevels) move(level);
-        }
-        for (io::SceneLut& l : scene.luts) move(l.file), move(l.profile);
-        for (io::SceneEye& e : scene.eyes) move(e.irisProfile), move(e.irisTexture), move(e.caustics);
-        move(scene.gbuffer), move(scene.ambientCube), move(scene.reflectionCube), move(scene.environment);
+        for (std::string* file : io::filesOf(scene))
+            if (!file->empty() && fs::exists(*file))
+                *file = fs::absolute(*file).lexically_relative(folder).string();
         io::writeScene(path, scene);
     }
 

@@ -20,7 +20,7 @@ struct DoubleTraits : OpenMesh::DefaultTraits {
 using PolyMesh = OpenMesh::PolyMesh_ArrayKernelT<DoubleTraits>;
 
 // The group of each face, in the order of the file.
-std::vector<uint32_t> groupsOf(const std::string& path, const std::string& text,
+std::vector<uint32_t> groupsOf(const std::string& path, const std::string& text, const RawMesh& raw,
                                std::vector<std::string>& names) {
     std::map<std::string, uint32_t> known;
     std::vector<uint32_t> groups;
@@ -32,6 +32,11 @@ std::vector<uint32_t> groupsOf(const std::string& path, const std::string& text,
         if (isNew) names.push_back(current);
         groups.push_back(entry->second);
     }
+    if (raw.leftOut || groups.size() != raw.faces())
+        throw FileError(
+            path,
+            "has faces with coinciding corners, so that its groups cannot be told apart; mend the mesh");
+    if (groups.empty()) throw FileError(path, "has no face; a surface was expected");
     return groups;
 }
 
@@ -155,16 +160,23 @@ PartedMesh loadParts(const std::string& path, int levels) {
     return decodeParts(path, readWholeFile(path), levels);
 }
 
+PartedMesh loadGroups(const std::string& path) {
+    requireExtension(path, {"obj"});
+    const std::string text = readWholeFile(path);
+    const RawMesh raw = readObj(path, text);
+    PartedMesh out;
+    const std::vector<uint32_t> groups = groupsOf(path, text, raw, out.parts);
+    out.mesh = decodeMesh(path, text);
+    for (size_t f = 0; f < groups.size(); ++f)
+        out.partOf.insert(out.partOf.end(), raw.faceStart[f + 1] - raw.faceStart[f] - 2, groups[f]);
+    return out;
+}
+
 PartedMesh decodeParts(const std::string& path, const std::string& text, int levels) {
     const RawMesh raw = readObj(path, text);
     PartedMesh out;
     out.mesh.source = path;
-    const std::vector<uint32_t> groups = groupsOf(path, text, out.parts);
-    if (raw.leftOut || groups.size() != raw.faces())
-        throw FileError(
-            path,
-            "has faces with coinciding corners, so that its groups cannot be told apart; mend the mesh");
-    if (groups.empty()) throw FileError(path, "has no face; a surface was expected");
+    const std::vector<uint32_t> groups = groupsOf(path, text, raw, out.parts);
     const bool mapped = !raw.cornerUvs.empty();
     for (uint32_t part = 0; part < out.parts.size(); ++part) {
         std::vector<FaceCorners> faces;

@@ -18,6 +18,8 @@ struct PartedMesh {
 // into triangles. Texture coordinates are interpolated linearly in each face. Parts share no vertices
 // afterwards. Throws FileError as loadMesh does, and for a part that is not manifold.
 PartedMesh loadParts(const std::string& path, int levels);
+// As loadMesh reads an OBJ file, with its normals and texture coordinates, and the group of each triangle.
+PartedMesh loadGroups(const std::string& path);
 // The same from the bytes of a file; `path` is for messages.
 PartedMesh decodeParts(const std::string& path, const std::string& text, int levels);
 

@@ -148,6 +148,22 @@ void checkEyes(const SceneFile& scene, const TomlReader& channels) {
 
 }  // namespace
 
+std::vector<std::string*> filesOf(SceneFile& scene) {
+    std::vector<std::string*> files{&scene.gbuffer, &scene.ambientCube, &scene.reflectionCube,
+                                    &scene.environment};
+    for (SceneLight& l : scene.lights) {
+        files.push_back(&l.shadowMapFile);
+        for (SceneCascade& c : l.cascades) files.push_back(&c.file);
+    }
+    for (SceneMaterial& m : scene.materials) {
+        files.insert(files.end(), {&m.profile, &m.scatteredTexture, &m.normalMap});
+        for (std::string& level : m.normalMapLevels) files.push_back(&level);
+    }
+    for (SceneLut& l : scene.luts) files.insert(files.end(), {&l.file, &l.profile});
+    for (SceneEye& e : scene.eyes) files.insert(files.end(), {&e.irisProfile, &e.irisTexture, &e.caustics});
+    return files;
+}
+
 const SceneLut* SceneFile::lut(const std::string& name, PelLutKind kind) const {
     for (const SceneLut& l : luts) {
         if (l.name == name && l.info.kind == kind) return &l;

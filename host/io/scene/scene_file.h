@@ -108,6 +108,9 @@ SceneFile readScene(const std::string& path);
 // The same from text. `path` is for messages, and the scene's paths are relative to it.
 SceneFile parseScene(const std::string& path, const std::string& text);
 
+// The files that a scene reads, and names of profiles in place of files; some are "".
+std::vector<std::string*> filesOf(SceneFile& scene);
+
 // Appends planes, one for each component, to the G-buffer as channels "NAME.X" and so on, and names them in
 // the scene for `slot`.
 void addPlanes(SceneFile& scene, Image& gbuffer, PelImageSlot slot, const std::string& name,
