@@ -326,5 +326,7 @@ constexpr double skinReflectance = 0.01, skinAlbedo = 0.01;
 constexpr double skinDistance = 0.05;
 constexpr double skinProfile = 0.01;   // 14 Gaussians against light that falls like 1/d near its entry
 constexpr double skinRoundTrip = 0.5;  // CIEDE2000; a fraction of what can be seen
+// CIEDE2000; the search stops at 0.005, and without oxygen blood and melanin are nearly alike
+constexpr double skinSearch = 0.06;
 constexpr double skinMeasured = 3;     // CIEDE2000; other observers, instruments and people
 }  // namespace tolerance

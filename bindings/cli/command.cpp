@@ -118,13 +118,30 @@ void Progress::operator()(double fraction, const char* what) {
     if (!goesOn(fraction, what)) throw Error(PEL_ERROR_CANCELLED, "interrupted");
 }
 
-Run::Run(const Options& options) : options_(options), device_(options.device), before_(device_.stats()) {
+namespace {
+
+Device opened(const std::string& device, std::vector<std::string>& warnings) {
+    pelSetLogCallback(
+        [](void* user, PelLogLevel level, const char*, const char* line) {
+            if (level == PEL_LOG_WARNING) static_cast<std::vector<std::string>*>(user)->emplace_back(line);
+        },
+        &warnings);
+    const auto silent = [](void*) { pelSetLogCallback(nullptr, nullptr); };
+    const std::unique_ptr<void, decltype(silent)> end(&warnings, silent);
+    return Device(device);
+}
+
+}  // namespace
+
+Run::Run(const Options& options)
+    : options_(options), device_(opened(options.device, ofOpening_)), before_(device_.stats()) {
     device_.setProgress(
         [](void* user, double fraction, const char* what) {
             return int(static_cast<Progress*>(user)->goesOn(fraction, what));
         },
         &progress_);
     report["device"] = device_.info().name;
+    for (const std::string& warning : ofOpening_) warn(warning);
 }
 
 Run::~Run() {

@@ -70,7 +70,8 @@ class Run {
 
   private:
     Options options_;
-    Progress progress_;  // first: the time of opening the device counts
+    Progress progress_;                   // first: the time of opening the device counts
+    std::vector<std::string> ofOpening_;  // warnings
     Device device_;
     PelDeviceStats before_;
     nlohmann::ordered_json warnings_ = nlohmann::ordered_json::array();

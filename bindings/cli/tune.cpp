@@ -20,7 +20,6 @@ nlohmann::ordered_json toJson(const pel::LaunchPolicy& p) {
 
 void show(Run& run) {
     const pel::LaunchRule rule = pel::launchRule(run.device().info());
-    if (!rule.warning.empty()) run.warn(rule.warning);
     run.report["sizes"] = toJson(rule.policy);
     run.report["from"] = rule.file.empty() ? "built in" : rule.file;
     run.finish();

@@ -98,9 +98,10 @@ void checkPoclCache() {
     if (folder.empty() || !fs::exists(folder, error)) return;  // PoCL makes it, or was loaded by the host
     const uint64_t room = roomIn(folder);
     if (room < leastRoom)
-        fail(PEL_ERROR_DEVICE, "PoCL keeps compiled kernels in ", folder.string(), ", which has ", room >> 20,
-             " MiB free; ", leastRoom >> 20,
-             " are needed, because PoCL ends the process when it cannot write. Free some space, or set "
+        fail(PEL_ERROR_DEVICE, "PoCL keeps compiled kernels in ", folder.string(),
+             room ? text(", which has ", room >> 20, " MiB free") : ", which is full or may not be written",
+             "; ", leastRoom >> 20,
+             " MiB are needed, because PoCL ends the process when it cannot write. Free some space, or set "
              "POCL_CACHE_DIR");
 }
 

@@ -88,13 +88,13 @@ LaunchRule launchRule(const PelDeviceInfo& device) {
         std::filesystem::file_size(path, error) > mostTuningBytes || error)
         return ignored("it is not a readable file of at most 1 MiB");
     std::ifstream file(path, std::ios::binary);
-    bool here = false;
+    bool here = false, known = false;
     size_t number = 0;
     for (std::string line; std::getline(file, line);) {
         if (line.ends_with('\r')) line.pop_back();
         if (++number == 1 && line != tuningHeader)
             return ignored(std::string("it does not begin with ") + tuningHeader);
-        if (line.starts_with("device ")) here = line == deviceLine(device);
+        if (line.starts_with("device ")) known |= here = line == deviceLine(device);
         if (!here || !line.starts_with("launch ")) continue;
         const std::string wrong = readSizes(line, device, rule.policy);
         if (!wrong.empty()) return ignored("line " + std::to_string(number) + ": " + wrong);
@@ -103,7 +103,7 @@ LaunchRule launchRule(const PelDeviceInfo& device) {
         return rule;
     }
     if (number == 0) return ignored("it is empty or cannot be read");
-    if (own) return ignored("it has no sizes for this device");
+    if (own || !known) return ignored("it has no sizes for this device");
     return rule;  // the record is only for time budgets
 }
 

@@ -416,6 +416,8 @@ TEST_F(BenchCommand, TuneKeepsWhatIsFasterAndShowsWhatIsInForce) {
     EXPECT_EQ(shown(named).at("sizes"), builtIn.at("sizes"));
     EXPECT_TRUE(contains(shown(named).at("warnings").at(0).get<std::string>(), "does not set launch sizes"));
     EXPECT_EQ(cli("tune --show --strict --device 0", named).exitCode, 3);
+    EXPECT_TRUE(
+        contains(done("lut specular -o @s.npy --size 8x8 --device 0", named).err, "own.txt does not"));
     const auto tuned = reportOf("tune --quick --device 0 -o @tuned.txt");
     EXPECT_EQ(tuned.at("built_in"), builtIn.at("sizes"));
     EXPECT_GE(tuned.at("measured").size(), 8u);

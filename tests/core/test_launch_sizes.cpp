@@ -49,6 +49,7 @@ TEST_F(LaunchSizes, AFileCountsForItsOwnDeviceDriverAndVersion) {
         PelDeviceInfo other = info;
         (other.*change)[0] = 'X';
         EXPECT_EQ(pel::launchRule(other).policy, pel::builtInPolicy(1));
+        EXPECT_TRUE(contains(pel::launchRule(other).warning, "no sizes for this device"));
         EXPECT_NE(pel::launchFile(other), own);
     }
     PelDeviceInfo later = info;

@@ -161,6 +161,15 @@ TEST(Skin, MapsComeBack) {
         EXPECT_LT(pel::deltaE2000(lab(info.albedo), lab(&albedo[3 * i])), tolerance::skinRoundTrip);
         EXPECT_GT(radius[i], 0);
     }
+    // With less oxygen, blood looks like melanin, and several pigments have nearly the same colour.
+    for (const float oxygenation : {0.0f, 0.3f}) {
+        PelSkin pale = skin;
+        pale.oxygenation = oxygenation;
+        for (size_t i = 0; i < n; ++i) melanin[i] *= 0.2f, blood[i] *= 0.2f;
+        pellucid::check(pelSkinAlbedo(&pale, melanin.data(), blood.data(), n, albedo.data(), nullptr));
+        pellucid::check(pelSkinFromAlbedo(&pale, albedo.data(), n, m.data(), b.data(), difference.data()));
+        EXPECT_LT(*std::ranges::max_element(difference), tolerance::skinSearch) << oxygenation;
+    }
     const float green[] = {0.1f, 0.6f, 0.1f}, nothing[] = {NAN, -1, 2};
     pellucid::check(pelSkinFromAlbedo(&skin, green, 1, m.data(), b.data(), difference.data()));
     EXPECT_GT(difference[0], 10);  // no such skin
