@@ -328,5 +328,5 @@ constexpr double skinProfile = 0.01;   // 14 Gaussians against light that falls 
 constexpr double skinRoundTrip = 0.5;  // CIEDE2000; a fraction of what can be seen
 // CIEDE2000; the search stops at 0.005, and without oxygen blood and melanin are nearly alike
 constexpr double skinSearch = 0.06;
-constexpr double skinMeasured = 3;     // CIEDE2000; other observers, instruments and people
+constexpr double skinMeasured = 3;  // CIEDE2000; other observers, instruments and people
 }  // namespace tolerance

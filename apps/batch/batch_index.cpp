@@ -103,7 +103,8 @@ std::string batchIndexName(const std::string& manifestPath) {
 
 std::string batchIndex(const BatchManifest& manifest, const std::string& manifestPath,
                        const std::vector<bool>& there) {
-    size_t missing = manifest.errors.size();
+    size_t missing = 0;
+    for (const BatchError& error : manifest.errors) missing += error.files;
     std::string tables;
     for (size_t i = 0; i < there.size(); ++i) {
         missing += !there[i];

@@ -149,10 +149,11 @@ class Expansion {
         : manifest_(manifest), folder_(std::move(folder)) {}
 
     void add(TomlReader& reader, LutPreset preset) {
-        const Request r = readRequest(reader, preset);
+        Request r = readRequest(reader, preset);
         skins_.insert(r.skins.begin(), r.skins.end());
         reader.finish();  // an unknown key makes the entry an error before any table is taken from it
         refuseTooMany(reader, r);
+        if (r.kind != PEL_LUT_SPECULAR && r.stack <= 1) leaveOutProfiles(reader, r);
         for (const std::string& encoding : r.encodings)
             for (const Size& size : r.sizes) {
                 if (r.kind == PEL_LUT_SPECULAR) {
@@ -175,6 +176,21 @@ class Expansion {
         std::shared_future<Profile> profile;
         std::string key;
     };
+
+    // Reports the profiles that are wrong, so that those beside them still get their tables.
+    void leaveOutProfiles(const TomlReader& reader, Request& r) {
+        const size_t each =
+            r.encodings.size() * r.sizes.size() * r.radii.size() * r.forms.size() * r.axes.size();
+        std::erase_if(r.profiles, [&](const std::string& name) {
+            try {
+                profile(reader, name);
+                return false;
+            } catch (const FileError& e) {
+                manifest_.errors.push_back({e.line(), e.what(), each});
+                return true;
+            }
+        });
+    }
 
     // Checked before expansion: the product of five short lists can exceed the memory.
     void refuseTooMany(const TomlReader& reader, const Request& r) {

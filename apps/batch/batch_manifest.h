@@ -28,6 +28,7 @@ struct BatchEntry {
 struct BatchError {
     int line;
     std::string message;
+    size_t files = 1;  // that are left out
 };
 
 struct BatchManifest {
