@@ -242,9 +242,21 @@ def test_errors(folder, device):
             (lambda: pel.shade(scene, outputs=["gloss"]), ValueError, "no output 'gloss'"),
             (lambda: scene.set_gbuffer({"Position.X": np.zeros((4, 4)), "Position.Y": np.zeros((2, 3))}),
              ValueError, r"Position.Y has the shape \(2, 3\), others have"),
+            (lambda: scene.set_gbuffer({}), ValueError, "no pixels"),
+            (lambda: scene.set_gbuffer({"Position.X": np.zeros((0, 4))}), ValueError, "no pixels"),
             (lambda: pickle.dumps(scene), TypeError, "load it there")]:
         with pytest.raises(error, match=message):
             call()
+    for of, key, value, message in [("materials", -1, pel.Material(), "materials: -1 is not an id"),
+                                    ("materials", "a", pel.Material(), "materials: 'a' is not an id"),
+                                    ("materials", 1, None, r"materials\[1\] is None"),
+                                    ("profiles", 1, None, r"profiles\[1\] is None")]:
+        scene = pel.load_scene(folder / "scene.toml", ball())
+        getattr(scene, of)[key] = value
+        for call in (lambda: pel.shade(scene, device), lambda: scene.save(folder / "no.toml")):
+            with pytest.raises(TypeError, match=message) as said:
+                call()
+            assert "\n" not in str(said.value)
 
 
 COLD = """import sys, time
