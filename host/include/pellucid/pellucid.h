@@ -864,8 +864,8 @@ typedef enum PelImageSlot {
     PEL_SLOT_OUT_DIFFUSE = 16,      /* albedo * (scattered light + ambient) */
     PEL_SLOT_OUT_DEEP_SCATTER = 17, /* albedo * light that came through */
     PEL_SLOT_OUT_SPECULAR = 18,
-    /* length, one component: of the thickness image, or along the first light with a shadow map; 0 without
-     * either */
+    /* length, one component: the thickness image; without one, along the first light with a shadow map, of
+     * materials with thicknessTaps and a deepScatterColor or, by tables, transmission; else 0 */
     PEL_SLOT_OUT_THICKNESS = 19,
     /* RGB, irradiance / pi: all lights and the ambient, shadows sharp; no specular, no albedo. Read by
      * materials that do not scatter by tables (PelMaterial.scattering); not set: made from lights,
