@@ -1486,7 +1486,7 @@ PEL_API PelError pelSurfaceIntegral(PelDevice device, const PelSurfaceIntegralDe
 /* ---- Scattering alone --------------------- */
 
 /* For hosts that light their own frames: takes the irradiance of a picture and returns it scattered under the
- * surface. Keeps memory between frames: 54 bytes a pixel. One thread at a time. */
+ * surface. Keeps memory between frames (PelScatterStats.scratchBytes). One thread at a time. */
 typedef struct PelScatterObject* PelScatter;
 
 typedef struct PelScatterParams {
