@@ -1255,7 +1255,7 @@ typedef struct PelPassStats {
     uint32_t launches;
     double milliseconds; /* of the device; 0 on a queue without profiling */
     uint64_t bytes;      /* of device memory that the pass holds now */
-    uint64_t tiles;      /* of 16 x 16 pixels over which it was launched, over bands; 0: not over tiles */
+    uint64_t tiles;      /* of 128 x 2 pixels over which it was launched, over bands; 0: not over tiles */
     uint64_t execution;  /* which: 1 is the shader's first */
     char name[24];       /* of its kernel file if it has one, such as "irradiance" */
 } PelPassStats;
