@@ -68,6 +68,8 @@ void describe(const PelLutInfo& info, nlohmann::ordered_json& report) {
         report["diffusion_radius"] = info.shadow.diffusionRadius;
         report["width_min"] = info.shadow.widthMin;
         report["width_max"] = info.shadow.widthMax;
+    } else if (info.kind == PEL_LUT_EYE) {
+        report["depth"] = info.eye.depth;
     }
 }
 
@@ -99,7 +101,7 @@ void integrate(LutArguments& arguments, Desc& desc) {
     run.report["encoding"] =
         picture ? "picture: sRGB, to look at; engines need --encoding" : io::lutEncodings[*encoding];
     run.report["width"] = desc.width;
-    run.report["height"] = desc.height;
+    run.report["height"] = rowsOf(desc);
     run.report["texels"] = uint64_t(desc.width) * rowsOf(desc);
     describe(lut.info(), run.report);
     if (encoding == PEL_LUT_FACEWORKS8 && lut.info().kind == PEL_LUT_CURVATURE)

@@ -179,7 +179,13 @@ void warnOfInvalid(Run& run, uint64_t invalid, uint64_t all, const char* they) {
                         they));
 }
 
-// The counters as an object of the report.
+nlohmann::ordered_json byMethod(const uint64_t (&counts)[std::size(io::scatterings)]) {
+    nlohmann::ordered_json methods;
+    for (size_t k = 0; k < std::size(counts); ++k) methods[std::string(io::scatterings[k])] = counts[k];
+    return methods;
+}
+
+// The counters as an object of the report, under the names of pellucid.ShaderStats in Python.
 nlohmann::ordered_json toJson(const PelShaderStats& s) {
     nlohmann::ordered_json features = nlohmann::ordered_json::array();
     for (const auto& [bit, name] : io::featureKeys)
@@ -196,21 +202,32 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
             {"pixels_shadow_lut", s.pixelsShadowLut},
             {"pixels_thickness", s.pixelsThickness},
             {"pixels_specular", s.pixelsSpecular},
+            {"pixels_invalid", s.pixelsInvalid},
+            {"device_milliseconds", s.deviceMilliseconds},
+            {"pixels_wide_shadow", s.pixelsWideShadow},
+            {"bands", s.bands},
+            {"variants", s.variants},
+            {"tiles_partial", s.tilesPartial},
+            {"pixels_shadow_texels", s.pixelsShadowTexels},
+            {"pixels_irradiance", s.pixelsIrradiance},
+            {"pixels_by_scattering", byMethod(s.pixelsByScattering)},
+            {"tiles_by_scattering", byMethod(s.tilesByScattering)},
+            {"pixels_scattered", s.pixelsScattered},
+            {"pixels_kept", s.pixelsKept},
+            {"scatter_taps", s.scatterTaps},
+            {"pixels_by_choice", byMethod(s.pixelsByChoice)},
             {"pixels_eye", s.pixelsEye},
             {"pixels_iris", s.pixelsIris},
             {"pixels_caustic", s.pixelsCaustic},
             {"tiles_eye", s.tilesEye},
-            {"pixels_wide_shadow", s.pixelsWideShadow},
-            {"pixels_shadow_texels", s.pixelsShadowTexels},
-            {"bands", s.bands},
-            {"pixels_invalid", s.pixelsInvalid},
-            {"shade_ms", s.deviceMilliseconds},
-            {"texels_reached", s.texelsReached},
+            {"stands_in", s.standsIn != 0},
             {"taken_target_error", s.takenTargetError},
-            {"taken_half_rate", s.takenHalfRate != 0},
-            {"expected_ms", s.expectedMilliseconds},
+            {"expected_milliseconds", s.expectedMilliseconds},
             {"expected_error", s.expectedError},
-            {"tuned", s.tuned != 0}};
+            {"tuned", s.tuned != 0},
+            {"pixels_history", s.pixelsHistory},
+            {"taken_half_rate", s.takenHalfRate != 0},
+            {"texels_reached", s.texelsReached}};
 }
 
 void reportSize(Run& run, const ShadeArguments& a, const io::Image& gbuffer, uint64_t invalid) {

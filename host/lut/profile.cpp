@@ -67,8 +67,8 @@ Profile::Profile(PelProfileKind profileKind, double radius, std::unique_ptr<Prof
 
 Ref<Profile> Profile::skin() {
     // d'Eon and Luebke, GPU Gems 3, chapter 14: the six-Gaussian fit to a three-layer skin model, with the
-    // sigmas of FaceWorks in mm. (The published variances are the rounded squares, which changes tables by
-    // 3e-5.) As in FaceWorks, the radius of the profile is 2.7 mm, not the widest sigma of 2.722 mm.
+    // sigmas of FaceWorks in mm. (The published variances are the rounded squares, which changes tables by up
+    // to 1.2e-4.) As in FaceWorks, the radius of the profile is 2.7 mm, not the widest sigma of 2.722 mm.
     std::vector<GaussianTerm> terms{
         {0.080 * 0.080, {0.233, 0.455, 0.649}}, {0.220 * 0.220, {0.100, 0.336, 0.344}},
         {0.432 * 0.432, {0.118, 0.198, 0.0}},   {0.753 * 0.753, {0.113, 0.007, 0.007}},

@@ -41,9 +41,12 @@ void checkCurvatureParams(const PelCurvatureParams& params) {
     if (params.quantity < PEL_QUANTITY_ABSOLUTE || params.quantity > PEL_QUANTITY_FRAME)
         invalidArgument("PelCurvatureParams.quantity is ", int(params.quantity),
                         ", which is not a value of PelCurvatureQuantity");
-    if (params.estimator == PEL_CURVATURE_EDGE && params.quantity != PEL_QUANTITY_ABSOLUTE)
-        invalidArgument("the edge estimator measures PEL_QUANTITY_ABSOLUTE only, not quantity ",
-                        int(params.quantity), ": take the tensor or the quadric estimator");
+    if (params.estimator == PEL_CURVATURE_EDGE && params.quantity != PEL_QUANTITY_ABSOLUTE) {
+        constexpr std::pair<const char*, const char*> names[] = {
+            PEL_EACH_QUANTITY(QUANTITY_NUMBER) PEL_EACH_QUANTITY_OF_SEVERAL(QUANTITY_NUMBER)};
+        invalidArgument("the edge estimator measures PEL_QUANTITY_ABSOLUTE only, not ",
+                        names[params.quantity].first, ": take the tensor or the quadric estimator");
+    }
     if (params.smoothingPasses > 1000)
         invalidArgument("PelCurvatureParams.smoothingPasses is ", params.smoothingPasses,
                         "; 0 to 1000 are allowed, typical is 2");

@@ -16,6 +16,7 @@ namespace {
 bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
     uint32_t bits = imageSlot(slot).bits;
     if (slot == PEL_SLOT_DEPTH && state.images[PEL_SLOT_POSITION]) return false;
+    if (slot == PEL_SLOT_THICKNESS && state.images[PEL_SLOT_OUT_THICKNESS]) return true;
     // The geometric normal replaces a missing blurred one.
     if (slot == PEL_SLOT_NORMAL_GEOMETRIC && !state.images[PEL_SLOT_NORMAL_BLURRED])
         bits |= PEL_READ_NORMAL_BLURRED;

@@ -95,7 +95,11 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
             warn("material ", id, " has a curvature table without effect: there is no curvature image");
         if (const std::string idle = withoutEffect(material); !idle.empty())
             warn("material ", id, " has ", idle, " without effect: it scatters by \"",
-                 scatteringName(m.scattering), "\" (docs/guide/methods.md, \"Controls\")");
+                 scatteringName(material.given.scattering), "\"",
+                 m.scattering == material.given.scattering
+                     ? ""
+                     : text(", here \"", scatteringName(m.scattering), "\""),
+                 " (docs/guide/methods.md, \"Controls\")");
         if (scattersByTaps(material) &&
             std::ranges::equal(state.camera.inverseViewProjection, pelCameraDefaults().inverseViewProjection))
             warn("material ", id,

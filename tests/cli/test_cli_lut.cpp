@@ -78,6 +78,9 @@ TEST_F(CliLut, OptionsBecomeDescriptions) {
 TEST_F(CliLut, TablesOfCaustics) {
     const auto made = reportOf("lut eye -o @e.exr --size 32x16x8 --chamber-depth 3.4 --iris-radius 5.5");
     EXPECT_EQ(made["texels"], 32 * 16 * 8);
+    EXPECT_EQ(made["depth"], 8);
+    const io::Image file = io::readImage(path("e.exr"));
+    EXPECT_TRUE(made["width"] == file.width && made["height"] == file.height);
     const Lut lut = io::readLut(device_, path("e.exr"));
     EXPECT_EQ(lut.info().kind, PEL_LUT_EYE);
     EXPECT_EQ(lut.info().eye.depth, 8u);

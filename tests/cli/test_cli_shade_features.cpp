@@ -125,9 +125,8 @@ TEST_F(ShadeFeatures, CurvatureFromThePictureItself) {
 
 // That they add up to the picture: tests/shading/test_shade.cpp.
 TEST_F(ShadeFeatures, PartsOfThePictureAreFiles) {
-    add(PEL_SLOT_THICKNESS, {"Wall.V"}, [](int, int, size_t) { return 3; });
-    std::fill_n(scene_.materials[0].material.deepScatterColor, 3, 0.5f);
-    scene_.outputs[PEL_SLOT_OUT_THICKNESS] = "own name.exr";  // beside the scene
+    add(PEL_SLOT_THICKNESS, {"Wall.V"}, [](int, int, size_t) { return 3; });  // that nothing else reads
+    scene_.outputs[PEL_SLOT_OUT_THICKNESS] = "own name.exr";                  // beside the scene
     shaded("--outputs all --stats");
     const auto report = said_.json();
     ASSERT_EQ(report.at("outputs").size(), 5u);

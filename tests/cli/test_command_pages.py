@@ -24,14 +24,14 @@ class CommandPages(unittest.TestCase):
         subprocess.run([sys.executable, PAGES, COMMAND, "--install", cls.out], check=True)
 
     def completed(self, *words):
-        """What bash offers for the last word."""
+        """The lines that bash offers for the last word."""
         script = (
             'source "$1"; shift; COMP_WORDS=(pellucid "$@"); COMP_CWORD=$#; _pellucid; '
             'printf "%s\\n" "${COMPREPLY[@]}"'
         )
         file = self.out / "share/bash-completion/completions/pellucid"
         command = ["bash", "-c", script, "bash", file, *words]
-        return subprocess.check_output(command, text=True, cwd=self.out).split()
+        return subprocess.check_output(command, text=True, cwd=self.out).split("\n")[:-1]
 
     def test_the_guide_is_up_to_date(self):
         subprocess.run([sys.executable, PAGES, COMMAND, "--check"], check=True)
@@ -46,12 +46,15 @@ class CommandPages(unittest.TestCase):
             ("shade g.exr --scene sh", "share"),
             ("shade g.exr --device ", "cpu gpu accelerator"),
             ("lut shadow --profile skin-d", "skin-dark"),
-            ("demo --size ", ""),
+            ("demo -o out --size ", ""),
             ("demo --height ", ""),
             ("bench --only ", ""),
             ("demo --subdivide ", ""),
+            ("bench -o compare --onl", "--only"),  # the file is no subcommand
         ):
-            self.assertEqual(self.completed(*words.split(" ")), expected.split(), words)
+            self.assertEqual(self.completed(*words.split(" ")), expected.split() or [""], words)
+        with tempfile.NamedTemporaryFile(dir=self.out, prefix="a name ") as file:
+            self.assertEqual(self.completed("curvature", "a"), [Path(file.name).name])
         self.assertIn("--smooth-weights", self.completed("curvature", "m.ply", "--smooth-w"))
         self.assertNotIn("--smooth", self.completed("shade", "--s"))
         self.assertIn("share", self.completed("lut", "shadow", "--profile", ""))

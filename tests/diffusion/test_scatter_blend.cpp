@@ -1,6 +1,7 @@
 // Steps before and after the methods of scattering: albedo before and after, light from behind thin sheets,
 // weights, and accumulation.
 #include "diffusion/scatter_scene.h"
+#include "io/choice_keys.h"
 #include "test.h"
 
 using namespace scatter_scene;
@@ -289,8 +290,9 @@ TEST(ScatterBlend, SaysWhatHasNoEffect) {
             Frame f(stripes(), method);
             field.change(f.material);
             const std::string said = f.shade().warnings;
-            return said.find("without effect") != std::string::npos &&
-                   said.find(field.name) != std::string::npos;
+            const std::string key(pellucid::io::scatterings[method]);
+            return said.find(field.name + (" without effect: it scatters by \"" + key + "\"")) !=
+                   std::string::npos;
         };
         for (PelScattering method : field.without) EXPECT_TRUE(warned(method)) << field.name << int(method);
         for (PelScattering method : field.with) EXPECT_FALSE(warned(method)) << field.name << int(method);

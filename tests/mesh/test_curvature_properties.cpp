@@ -146,7 +146,7 @@ TEST(CurvatureProperties, QuantitiesAreWhatTheyAreOfThePrincipalOnes) {
             }
         }
     for (auto quantity : {PelCurvatureQuantity(9), PEL_QUANTITY_GAUSSIAN})
-        expectRefused(quantity == PEL_QUANTITY_GAUSSIAN ? "edge estimator" : "quantity",
+        expectRefused(quantity == PEL_QUANTITY_GAUSSIAN ? "only, not PEL_QUANTITY_GAUSSIAN:" : "quantity",
                       [&] { valuesOf(mesh, paramsOf(PEL_CURVATURE_EDGE, 0, quantity)); });
 }
 

@@ -94,6 +94,7 @@ class Scene {
             image.channels.push_back(
                 {name, io::ChannelType::Float, {pixels.data(), pixels.data() + pixels.size()}});
         }
+        if (image.pixelCount() == 0) throw py::value_error("the G-buffer has no pixels: it needs channels");
         image.source = "the G-buffer";
         take(std::move(image));
     }

@@ -109,6 +109,13 @@ class Scene(OfThisProcess):
         self._native.save(str(path), self._state())
 
     def _state(self) -> tuple[Any, ...]:
+        for id, material in self.materials.items():
+            if not isinstance(id, (int, np.integer)) or not 0 <= id < 1 << 32:
+                raise TypeError(f"materials: {id!r} is not an id; ids are 1 to 255")
+            if not isinstance(material, Material):
+                raise TypeError(f"materials[{id}] is {material!r}, not a Material")
+            if not isinstance(profile := self.profiles.get(id, ""), str):
+                raise TypeError(f"profiles[{id}] is {profile!r}, not the name or the file of a profile")
         return ({image: list(names) for image, names in self.channels.items()},
                 [(id, m._data.tobytes(), self.profiles.get(id, "")) for id, m in self.materials.items()],
                 [light._data.tobytes() for light in self.lights], self.ambient._data.tobytes(),

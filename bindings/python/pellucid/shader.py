@@ -90,7 +90,8 @@ class Shader(OfThisProcess):
 
     def set_material(self, id: int, material: Optional[Material], curvature_lut: Optional[Lut] = None,
                      shadow_lut: Optional[Lut] = None) -> Shader:
-        """Sets material `id`, 1 to 255; None removes it. No table: no direct scattering, a plain shadow."""
+        """Sets material `id`, 1 to 255; None removes it. Tables that are not given are made from the
+        profile; without one: no direct scattering, a plain shadow."""
         self._handle.set_material(id, None if material is None else Material._bytes_of(material),
                                   None if curvature_lut is None else curvature_lut._handle,
                                   None if shadow_lut is None else shadow_lut._handle)

@@ -1,4 +1,5 @@
 """Scene files from Python: what they hold, and pictures to the bits of the command."""
+import json
 import os
 import pickle
 import subprocess
@@ -68,10 +69,10 @@ def command(folder, scene="scene.toml"):
     program = os.environ.get("PELLUCID_COMMAND")
     if not program:
         pytest.skip("the pellucid command is not built")
-    subprocess.run([program, "shade", "gbuffer.exr", "--scene", scene, "-o", "again.exr"], cwd=folder,
-                   check=True, stdout=subprocess.DEVNULL)
+    said = subprocess.run([program, "shade", "gbuffer.exr", "--scene", scene, "-o", "again.exr", "--stats",
+                           "--json"], cwd=folder, check=True, stdout=subprocess.PIPE).stdout
     image = files.read_image(folder / "again.exr")
-    return np.stack([image[c] for c in "RGB"], -1)
+    return np.stack([image[c] for c in "RGB"], -1), json.loads(said)["stats"]
 
 
 def test_what_a_scene_holds(folder):
@@ -119,7 +120,7 @@ def test_names_have_no_nul(folder):
 def test_the_bits_are_those_of_the_command(folder, device):
     made = pel.shade(pel.load_scene(folder / "scene.toml"), device)
     assert made.radiance.shape == (80, 96, 3) and made.radiance.max() > 0.1
-    assert np.array_equal(made.radiance, command(folder))
+    assert np.array_equal(made.radiance, command(folder)[0])
     assert made._repr_png_().startswith(b"\x89PNG") and "96 x 80" in repr(made)
     made.save(folder / "picture.png")
     assert files.read_image(folder / "picture.png")["R"].shape == (80, 96)
@@ -157,6 +158,12 @@ def test_outputs_and_counters(folder, device):
     assert made.outputs["thickness"].shape == (80, 96)
     assert made.stats.pixels_shaded == (ball()["Id.I"] > 0).sum() and not scene.options.count_pixels
     assert np.allclose(made.outputs["diffuse"] + made.outputs["specular"], made.radiance, atol=1e-5)
+    ours, theirs = made.stats.to_dict(), command(folder)[1]
+    assert set(ours) == set(theirs) - {"passes"}
+    for name in (n for n in ours if n.startswith(("pixels_", "tiles_", "scatter_"))):
+        said = theirs[name]
+        assert ours[name] == (list(said.values()) if isinstance(said, dict) else said), name
+    assert list(theirs["pixels_by_choice"]) == [m.name.lower() for m in pel.Scattering]
 
 
 def test_what_is_saved_shades_the_same(folder, device, tmp_path_factory):
@@ -235,9 +242,21 @@ def test_errors(folder, device):
             (lambda: pel.shade(scene, outputs=["gloss"]), ValueError, "no output 'gloss'"),
             (lambda: scene.set_gbuffer({"Position.X": np.zeros((4, 4)), "Position.Y": np.zeros((2, 3))}),
              ValueError, r"Position.Y has the shape \(2, 3\), others have"),
+            (lambda: scene.set_gbuffer({}), ValueError, "no pixels"),
+            (lambda: scene.set_gbuffer({"Position.X": np.zeros((0, 4))}), ValueError, "no pixels"),
             (lambda: pickle.dumps(scene), TypeError, "load it there")]:
         with pytest.raises(error, match=message):
             call()
+    for of, key, value, message in [("materials", -1, pel.Material(), "materials: -1 is not an id"),
+                                    ("materials", "a", pel.Material(), "materials: 'a' is not an id"),
+                                    ("materials", 1, None, r"materials\[1\] is None"),
+                                    ("profiles", 1, None, r"profiles\[1\] is None")]:
+        scene = pel.load_scene(folder / "scene.toml", ball())
+        getattr(scene, of)[key] = value
+        for call in (lambda: pel.shade(scene, device), lambda: scene.save(folder / "no.toml")):
+            with pytest.raises(TypeError, match=message) as said:
+                call()
+            assert "\n" not in str(said.value)
 
 
 COLD = """import sys, time

@@ -864,8 +864,8 @@ typedef enum PelImageSlot {
     PEL_SLOT_OUT_DIFFUSE = 16,      /* albedo * (scattered light + ambient) */
     PEL_SLOT_OUT_DEEP_SCATTER = 17, /* albedo * light that came through */
     PEL_SLOT_OUT_SPECULAR = 18,
-    /* length, one component: of the thickness image, or along the first light with a shadow map; 0 without
-     * either */
+    /* length, one component: the thickness image; without one, along the first light with a shadow map, of
+     * materials with thicknessTaps and a deepScatterColor or, by tables, transmission; else 0 */
     PEL_SLOT_OUT_THICKNESS = 19,
     /* RGB, irradiance / pi: all lights and the ambient, shadows sharp; no specular, no albedo. Read by
      * materials that do not scatter by tables (PelMaterial.scattering); not set: made from lights,
@@ -1077,8 +1077,9 @@ typedef struct PelMaterial {
     float transmission;
     /* a curved body reflects more than a half-space of its medium, a hollow less: diffuse light is multiplied
      * by max(0, 1 + 1.35 x / (1 + 3 |x|)), x = curvatureGain * mean free path * H, H the mean curvature
-     * (PEL_SLOT_MEAN_CURVATURE). All methods, where there are positions or depth, and the profile is burley
-     * or dipole: other profiles have no known mean free path, and get no gain. 0: no gain; 1 */
+     * (PEL_SLOT_MEAN_CURVATURE). All methods that scatter (by tables: with PEL_SLOT_CURVATURE), where there
+     * are positions, depth or H, and the profile is burley or dipole: other profiles have no known mean free
+     * path, and get no gain. 0: no gain; 1 */
     float curvatureGain;
     /* 0, or 8 to 256. PEL_SCATTERING_SEPARABLE: taps of each of the two filters; 0: 25.
      * PEL_SCATTERING_SCREEN: taps on a disk, placed by the profile; 0: the whole profile. Other methods
@@ -1254,7 +1255,7 @@ typedef struct PelPassStats {
     uint32_t launches;
     double milliseconds; /* of the device; 0 on a queue without profiling */
     uint64_t bytes;      /* of device memory that the pass holds now */
-    uint64_t tiles;      /* of 16 x 16 pixels over which it was launched, over bands; 0: not over tiles */
+    uint64_t tiles;      /* of 128 x 2 pixels over which it was launched, over bands; 0: not over tiles */
     uint64_t execution;  /* which: 1 is the shader's first */
     char name[24];       /* of its kernel file if it has one, such as "irradiance" */
 } PelPassStats;
@@ -1485,7 +1486,7 @@ PEL_API PelError pelSurfaceIntegral(PelDevice device, const PelSurfaceIntegralDe
 /* ---- Scattering alone --------------------- */
 
 /* For hosts that light their own frames: takes the irradiance of a picture and returns it scattered under the
- * surface. Keeps memory between frames: 54 bytes a pixel. One thread at a time. */
+ * surface. Keeps memory between frames (PelScatterStats.scratchBytes). One thread at a time. */
 typedef struct PelScatterObject* PelScatter;
 
 typedef struct PelScatterParams {
