@@ -434,7 +434,7 @@ void skinFromAlbedo(const PelSkin& skin, const float* albedo, size_t count, floa
         // From the nearest of some nodes in L*a*b*, damped Gauss-Newton steps follow the narrow valleys of
         // colours that are nearly alike; then ever smaller steps in eight directions by CIEDE2000. Skin of
         // little oxygen has such a valley along no blood and another beside it.
-        for (const auto [firstRow, lastRow] : {std::pair{0, last}, {0, 0}, {1, last}, {3, last}}) {
+        for (const auto& [firstRow, lastRow] : {std::pair{0, last}, {0, 0}, {1, last}, {3, last}}) {
             double u = 0, v = 0, least = INFINITY, damping = 1;
             for (int y = firstRow; y <= lastRow; y += every)
                 for (int x = 0; x <= last; x += every)

@@ -116,7 +116,8 @@ class Scene(OfThisProcess):
                 raise TypeError(f"materials[{id}] is {material!r}, not a Material")
             if not isinstance(profile := self.profiles.get(id, ""), str):
                 raise TypeError(f"profiles[{id}] is {profile!r}, not the name or the file of a profile")
-        return ({image: list(names) for image, names in self.channels.items()},
+        return ({image: [names] if isinstance(names, str) else list(names)
+                 for image, names in self.channels.items()},
                 [(id, m._data.tobytes(), self.profiles.get(id, "")) for id, m in self.materials.items()],
                 [light._data.tobytes() for light in self.lights], self.ambient._data.tobytes(),
                 self.camera._data.tobytes(), self.options._data.tobytes())

@@ -186,6 +186,9 @@ def test_channels_can_be_changed(folder, device):
     first = pel.shade(scene, device).radiance
     del scene.channels["curvature"]
     without = pel.shade(scene).radiance
+    scene.channels["curvature"] = "Curvature.V"
+    assert np.array_equal(pel.shade(scene).radiance, first)
+    del scene.channels["curvature"]
     scene.channels["normal_shading"] = ["Normal.X", "Normal.Z", "Normal.Y"]
     other = pel.shade(scene).radiance
     scene.save(folder / "changed.toml")
