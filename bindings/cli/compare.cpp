@@ -244,8 +244,8 @@ void runCompare(const CompareArguments& a) {
     }
     for (size_t i = 0; i < two.secondHalf.size(); ++i)
         two.values[i] = (two.values[i] + two.secondHalf[i]) / 2;
-    if (all.pixels == mask.size() &&
-        !one.vertices) {  // pixels that do not count would change those around them
+    // Pixels that do not count would change those around them.
+    if (all.pixels == mask.size() && !one.vertices) {
         const double visible = io::flip(one.values, two.values, one.width);
         report["all"]["flip"] = visible;
         if (!a.json) std::printf("%-11s %8zu pixels   FLIP %.5f\n", "all", all.pixels, visible);

@@ -406,9 +406,9 @@ class Reference {
                 halves.insert(halves.end(), light.second.begin(), light.second.end());
                 for (size_t i = 0; i < halves.size(); ++i) halves[i] = float(halves[i] / A[i % 3]);
             } else {
-                halves = sample::irradianceAt(scene_, lighting_, points.places);
-                if (a_.walk.enabled)
-                    halves.insert(halves.end(), halves.begin(), halves.begin() + ptrdiff_t(3 * count));
+                const std::vector<float> E = sample::irradianceAt(scene_, lighting_, points.places);
+                halves = E;
+                if (a_.walk.enabled) halves.insert(halves.end(), E.begin(), E.end());
             }
             io::writeNpy(a_.output, a_.walk.enabled ? std::span<const size_t>(both) : one, halves);
         }

@@ -248,8 +248,7 @@ void expand(std::string_view name, std::set<std::string_view>& seen, std::string
 std::string kernelSource(std::span<const std::string> names) {
     // Clang warns of vectors wider than the registers in calls, but every function here is inlined. NVIDIA's
     // compiler warns of this line.
-    std::string out =
-        "#ifndef __NV_CL_C_VERSION\n#pragma clang diagnostic ignored \"-Wpsabi\"\n#endif\n";
+    std::string out = "#ifndef __NV_CL_C_VERSION\n#pragma clang diagnostic ignored \"-Wpsabi\"\n#endif\n";
     std::set<std::string_view> seen;
     for (const std::string& name : names)
         if (seen.insert(name).second) expand(name, seen, out);

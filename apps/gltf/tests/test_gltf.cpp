@@ -137,13 +137,11 @@ TEST(Gltf, SkinsTakeThePoseOfTheirJoints) {
         {"/skins", R"([{"joints": [1, 2], "inverseBindMatrices": 5}])"_json},
         {"/scenes/0/nodes", {0, 1}},
         {"/nodes", R"([{"mesh": 0, "skin": 0, "translation": [100, 0, 0]},
-                                  {"translation": [0, 0, 7], "children": [2]},
-                                   {"translation": [1, 0, 0],
-                                   "rotation": [0, 0, 0.70710678, 0.70710678]}])"_json}};
+                       {"translation": [0, 0, 7], "children": [2]},
+                       {"translation": [1, 0, 0], "rotation": [0, 0, 0.70710678, 0.70710678]}])"_json}};
     const GltfScene s = decoded(square(edits, buffer));
     EXPECT_TRUE(s.mesh.warnings.empty());
-    const float expected[4][3] = {
-        {0, 0, 7}, {1, 0, 7}, {0, 0, 7}, {0, 0, 7}};  // of (1, 1, 0): turned to (0, 0)
+    const float expected[4][3] = {{0, 0, 7}, {1, 0, 7}, {0, 0, 7}, {0, 0, 7}};
     for (size_t v = 0; v < 4; ++v)
         for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(position(s, v)[c], expected[v][c], 1e-6) << v << " " << c;
     edits.push_back({"/skins/0/joints", {1}});
