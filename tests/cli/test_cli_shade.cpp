@@ -176,7 +176,8 @@ TEST_F(WarmUp, OfALargeFrameThatScatters) {
 // The JSON reports of commands, without times and properties of the device.
 TEST_F(Shade, ReportsOfCommandsAreThoseThatWereKept) {
     std::filesystem::copy_file(PELLUCID_SOURCE_DIR "/data/heads/head_male.obj", path("m.obj"));
-    const std::regex changes("ms|.*_ms|.*milliseconds|programs_built|device|warnings|passes|launches|bytes.*");
+    const std::regex changes(
+        "ms|.*_ms|.*milliseconds|programs_built|device|warnings|passes|launches|bytes.*");
     const std::function<void(nlohmann::json&)> drop = [&](nlohmann::json& part) {
         for (auto at = part.begin(); at != part.end();)
             if (part.is_object() && std::regex_match(at.key(), changes)) {
