@@ -233,6 +233,14 @@ void checkOutput(const std::string& path, std::initializer_list<std::string_view
     }
 }
 
+bool isLit(const PelAmbient& ambient) {
+    bool lit = false;
+    for (const float v : ambient.constant) lit |= v != 0;
+    for (const auto& row : ambient.sh)
+        for (const float v : row) lit |= v != 0;
+    return lit;
+}
+
 void checkFolder(const std::string& folder, const std::string& file) {
     try {
         std::filesystem::create_directories(folder);

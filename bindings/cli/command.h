@@ -167,6 +167,9 @@ void checkOutput(const std::string& path, std::initializer_list<std::string_view
 void keepInputs(const std::string& output, const std::vector<std::string>& inputs);
 void checkFolder(const std::string& folder, const std::string& file);
 
+// Whether a constant or harmonics give light.
+bool isLit(const PelAmbient& ambient);
+
 // Adds --device, --json and --strict.
 void addRunOptions(CLI::App& command, Run::Options& options);
 

@@ -27,6 +27,13 @@ struct Rgb {
     std::vector<float> secondHalf, alpha, irradiance, meanCurvature, thickness, meanFreePath;
 };
 
+// Of both halves, if there are two.
+void takeMean(Rgb& picture) {
+    for (size_t i = 0; i < picture.secondHalf.size(); ++i)
+        picture.values[i] = (picture.values[i] + picture.secondHalf[i]) / 2;
+    picture.secondHalf.clear();
+}
+
 std::vector<std::string> layerOf(const std::string& layer) {
     if (layer.empty()) return {"R", "G", "B"};
     return {layer + ".R", layer + ".G", layer + ".B"};
@@ -55,11 +62,7 @@ Rgb readRgb(const std::string& path, const std::string& layer, float scale, bool
                 out.values.push_back(array.values[i * channels + (channels == 3 ? c : 0)]);
         if (walk) {
             out.secondHalf.assign(array.values.end() - ptrdiff_t(out.values.size()), array.values.end());
-            if (!reference) {
-                for (size_t i = 0; i < out.values.size(); ++i)
-                    out.values[i] = (out.values[i] + out.secondHalf[i]) / 2;
-                out.secondHalf.clear();
-            }
+            if (!reference) takeMean(out);
         }
     } else {
         const io::Image image = io::readImage(path);
@@ -132,11 +135,7 @@ std::vector<uint8_t> subsets(const CompareArguments& a, const Rgb& one, const Rg
     }
     // Visibility comes from the reference's irradiance, else from the host's own shadow.
     const std::vector<float>& irradiance = two.irradiance.empty() ? one.irradiance : two.irradiance;
-    const PelAmbient& ambient = scene.ambient;
-    const bool alone =
-        scene.lights.size() == 1 && std::ranges::all_of(ambient.constant, [](float v) { return v == 0; }) &&
-        std::ranges::all_of(&ambient.sh[0][0], &ambient.sh[0][0] + 27, [](float v) { return v == 0; });
-    if (!irradiance.empty() && alone)
+    if (!irradiance.empty() && scene.lights.size() == 1 && !isLit(scene.ambient))
         for (size_t i = 0; i < mask.size(); ++i)
             visible.push_back(irradiance[3 * i] + irradiance[3 * i + 1] + irradiance[3 * i + 2] > 0);
     else if (!light.wideShadow.empty())
@@ -242,8 +241,7 @@ void runCompare(const CompareArguments& a) {
             if (!a.json) print(name, d);
         }
     }
-    for (size_t i = 0; i < two.secondHalf.size(); ++i)
-        two.values[i] = (two.values[i] + two.secondHalf[i]) / 2;
+    takeMean(two);
     // Pixels that do not count would change those around them.
     if (all.pixels == mask.size() && !one.vertices) {
         const double visible = io::flip(one.values, two.values, one.width);

@@ -57,11 +57,8 @@ sample::Lighting lightingOf(const io::SceneFile& scene, const std::string& file)
         for (int c = 0; c < 3; ++c) light.color[c] = l.light.color[c];
         lighting.lights.push_back(light);
     }
-    bool ambient = false;
-    for (float v : scene.ambient.constant) ambient = ambient || v != 0;
-    for (const auto& row : scene.ambient.sh)
-        for (float v : row) ambient = ambient || v != 0;
-    if (ambient) lighting.ambient = [a = scene.ambient](sample::Vec3 n) { return ambientAlong(a, n); };
+    if (isLit(scene.ambient))
+        lighting.ambient = [a = scene.ambient](sample::Vec3 n) { return ambientAlong(a, n); };
     return lighting;
 }
 

@@ -415,6 +415,77 @@ std::vector<float> skinTable(const PelSkin& skin, int oxygenations) {
     return table;
 }
 
+namespace {
+
+double inside(double x) {
+    return std::clamp(x, 0.0, 1.0);
+}
+
+double squaredDistance(const Lab& a, const Lab& b) {
+    return std::pow(a[0] - b[0], 2) + std::pow(a[1] - b[1], 2) + std::pow(a[2] - b[2], 2);
+}
+
+// A place in the maps, and how far its colour is from the wanted one.
+struct Match {
+    double u = 0, v = 0, difference = INFINITY;
+};
+
+// The nearest of every second node of some rows, by the squared distance in L*a*b*.
+Match nearestNode(const std::vector<Lab>& table, const Lab& lab, int firstRow, int lastRow) {
+    constexpr int last = Maps::side - 1, every = 2;
+    Match match;
+    for (int y = firstRow; y <= lastRow; y += every)
+        for (int x = 0; x <= last; x += every)
+            if (const double e = squaredDistance(table[size_t(y) * Maps::side + x], lab);
+                e < match.difference)
+                match = {double(x) / last, double(y) / last, e};
+    return match;
+}
+
+// Damped Gauss-Newton steps in L*a*b*, which follow narrow valleys of colours that are nearly alike.
+void followValley(const std::vector<Lab>& table, const Lab& lab, Match& match) {
+    constexpr double slopeStep = 0.25 / (Maps::side - 1);
+    double damping = 1;
+    for (int k = 0; k < 24; ++k) {
+        const auto [u, v, least] = match;
+        const double u0 = inside(u - slopeStep), u1 = inside(u + slopeStep), v0 = inside(v - slopeStep),
+                     v1 = inside(v + slopeStep);
+        const Lab at = between(table, u, v), left = between(table, u0, v), right = between(table, u1, v),
+                  low = between(table, u, v0), high = between(table, u, v1);
+        double uu = damping, uv = 0, vv = damping, toU = 0, toV = 0;
+        for (int c = 0; c < 3; ++c) {
+            const double byU = (right[c] - left[c]) / (u1 - u0), byV = (high[c] - low[c]) / (v1 - v0),
+                         off = lab[c] - at[c];
+            uu += byU * byU, uv += byU * byV, vv += byV * byV, toU += byU * off, toV += byV * off;
+        }
+        const double area = uu * vv - uv * uv, x = inside(u + (vv * toU - uv * toV) / area),
+                     y = inside(v + (uu * toV - uv * toU) / area),
+                     e = squaredDistance(between(table, x, y), lab);
+        // Less damping would leave nothing of `area` where both slopes have one direction.
+        if (e < least)
+            match = {x, y, e}, damping = std::max(damping / 10, 1e-6);
+        else
+            damping *= 10;
+    }
+}
+
+// Ever smaller steps in eight directions, by CIEDE2000.
+void refine(const std::vector<Lab>& table, const Lab& lab, Match& match) {
+    match.difference = INFINITY;
+    for (double step = 1.0 / (Maps::side - 1); step > 1e-4; step /= 2)
+        for (bool moved = true; moved;) {
+            moved = false;
+            const Match from = match;
+            for (int d = 0; d < 9; ++d) {
+                const double x = inside(from.u + (d % 3 - 1) * step), y = inside(from.v + (d / 3 - 1) * step),
+                             e = deltaE2000(lab, between(table, x, y));
+                if (e < match.difference) match = {x, y, e}, moved = true;
+            }
+        }
+}
+
+}  // namespace
+
 void skinFromAlbedo(const PelSkin& skin, const float* albedo, size_t count, float* melanin, float* blood,
                     float* difference) {
     const auto maps = Maps::of(skin);
@@ -423,62 +494,21 @@ void skinFromAlbedo(const PelSkin& skin, const float* albedo, size_t count, floa
         for (int c = 0; c < 3; ++c) wanted[c] = std::clamp(albedo[3 * i + c], 0.0f, 1.0f);
         for (double& value : wanted) value = std::isnan(value) ? 0 : value;
         const Lab lab = labFromLinear(wanted);
-        const auto squared = [&](const Lab& other) {
-            return std::pow(other[0] - lab[0], 2) + std::pow(other[1] - lab[1], 2) +
-                   std::pow(other[2] - lab[2], 2);
-        };
-        const auto inside = [](double x) { return std::clamp(x, 0.0, 1.0); };
-        constexpr int last = Maps::side - 1, every = 2;
-        constexpr double slopeStep = 0.25 / last, alike = 0.005;
-        double bestU = 0, bestV = 0, best = INFINITY;
-        // From the nearest of some nodes in L*a*b*, damped Gauss-Newton steps follow the narrow valleys of
-        // colours that are nearly alike; then ever smaller steps in eight directions by CIEDE2000. Skin of
-        // little oxygen has such a valley along no blood and another beside it.
+        // Skin of little oxygen has a valley of colours that are nearly alike along no blood, and another
+        // beside it, so that the nearest node may belong to the wrong one.
+        constexpr int last = Maps::side - 1;
+        Match best;
         for (const auto& [firstRow, lastRow] : {std::pair{0, last}, {0, 0}, {1, last}, {3, last}}) {
-            double u = 0, v = 0, least = INFINITY, damping = 1;
-            for (int y = firstRow; y <= lastRow; y += every)
-                for (int x = 0; x <= last; x += every)
-                    if (const double e = squared(maps->lab[size_t(y) * Maps::side + x]); e < least)
-                        least = e, u = double(x) / last, v = double(y) / last;
-            for (int k = 0; k < 24; ++k) {
-                const auto at = between(maps->lab, u, v);
-                const double u0 = inside(u - slopeStep), u1 = inside(u + slopeStep),
-                             v0 = inside(v - slopeStep), v1 = inside(v + slopeStep);
-                const auto left = between(maps->lab, u0, v), right = between(maps->lab, u1, v),
-                           low = between(maps->lab, u, v0), high = between(maps->lab, u, v1);
-                double uu = damping, uv = 0, vv = damping, toU = 0, toV = 0;
-                for (int c = 0; c < 3; ++c) {
-                    const double byU = (right[c] - left[c]) / (u1 - u0), byV = (high[c] - low[c]) / (v1 - v0),
-                                 off = lab[c] - at[c];
-                    uu += byU * byU, uv += byU * byV, vv += byV * byV, toU += byU * off, toV += byV * off;
-                }
-                const double area = uu * vv - uv * uv, x = inside(u + (vv * toU - uv * toV) / area),
-                             y = inside(v + (uu * toV - uv * toU) / area),
-                             e = squared(between(maps->lab, x, y));
-                if (e < least)
-                    least = e, u = x, v = y, damping /= 10;
-                else
-                    damping *= 10;
-            }
-            least = INFINITY;
-            for (double step = 1.0 / last; step > 1e-4; step /= 2)
-                for (bool moved = true; moved;) {
-                    moved = false;
-                    const double fromU = u, fromV = v;
-                    for (int d = 0; d < 9; ++d) {
-                        const double x = inside(fromU + (d % 3 - 1) * step),
-                                     y = inside(fromV + (d / 3 - 1) * step),
-                                     e = deltaE2000(lab, between(maps->lab, x, y));
-                        if (e < least) least = e, u = x, v = y, moved = true;
-                    }
-                }
-            if (least < best) best = least, bestU = u, bestV = v;
-            if (best < alike) break;
+            Match match = nearestNode(maps->lab, lab, firstRow, lastRow);
+            followValley(maps->lab, lab, match);
+            refine(maps->lab, lab, match);
+            if (match.difference < best.difference) best = match;
+            if (best.difference < 0.005) break;
         }
-        const PelSkin found = Maps::at(skin, bestU, bestV);
+        const PelSkin found = Maps::at(skin, best.u, best.v);
         melanin[i] = found.melanin;
         blood[i] = found.blood;
-        if (difference) difference[i] = float(best);
+        if (difference) difference[i] = float(best.difference);
     };
     inParts(count, partsOf(count, 1024), [&](size_t, size_t i, size_t end) {
         // Pictures of 8 bits repeat their colours: the last pixel of each hash.
