@@ -14,6 +14,7 @@ import pickle
 import sys
 import threading
 import time
+from collections.abc import Callable
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from typing import Any
 
@@ -61,10 +62,11 @@ class Dispatcher:
     """One batch on one cluster; `run` does it."""
 
     def __init__(self, client: Any, manifest: Manifest, store: Store, *, progress: bool, timeout: float,
-                 jobs: int, patience: float) -> None:
+                 jobs: int, patience: float, check: Callable[[], None]) -> None:
+        """`check` raises what should end the batch early."""
         self._client, self._manifest, self._store = client, manifest, store
         self._spoken, self._bar_of_all = progress, progress_bar() if progress else None
-        self._timeout, self._jobs, self._patience = timeout, jobs, patience
+        self._timeout, self._jobs, self._patience, self._check = timeout, jobs, patience, check
         self._open = set(range(len(manifest)))  # unfinished entries
         self._there = [False] * len(manifest)
         self._attempts: dict[int, int] = {}
@@ -104,6 +106,7 @@ class Dispatcher:
         return self.summary
 
     def _make_all(self) -> None:
+        self._check()
         packed = pickle.dumps(self._manifest)
         self._name = f"pellucid-{hashlib.sha256(packed).hexdigest()}"
         # The scheduler keeps it; each worker asks once.
@@ -117,6 +120,7 @@ class Dispatcher:
         looked = time.monotonic()
         with ThreadPoolExecutor(8) as readers:
             while self._open or self._written_late(readers):
+                self._check()
                 if time.monotonic() - looked > LOOK_SECONDS:
                     self._look()
                     looked = time.monotonic()
@@ -140,6 +144,7 @@ class Dispatcher:
         end = time.monotonic() + LATEST_SECONDS
         with contextlib.suppress(NoWorker):
             while self._garbled & self._present and time.monotonic() < end:
+                self._check()
                 time.sleep(0.1)
                 self._look()
         self._garbled.clear()

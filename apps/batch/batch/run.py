@@ -3,7 +3,9 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import multiprocessing.resource_tracker
 import os
+import signal
 from collections.abc import Iterator, Sequence
 from typing import Any, Optional
 
@@ -34,17 +36,24 @@ def _local_client(count: Optional[int], selectors: Sequence[str], timeout: float
     if not selectors and os.environ.get("PELLUCID_DEVICE"):
         chosen = [os.environ["PELLUCID_DEVICE"]]
     here = {"host": "127.0.0.1"}  # anyone who can connect to a Dask port can execute code
-    worker = {**here, "nthreads": 1, "memory_limit": 0, "silence_logs": logging.CRITICAL,
-              "preload": ["pellucid.batch.interrupt"]}
+    worker = {**here, "nthreads": 1, "memory_limit": 0, "silence_logs": logging.CRITICAL}
     workers = {i: {"cls": distributed.Nanny,
                    "options": {**worker, "env": {"PELLUCID_DEVICE": chosen[i % len(chosen)]}}}
                for i in range(count or len(chosen))}
     scheduler = {"cls": distributed.Scheduler,
                  "options": {**here, "port": 0, "dashboard": False, "dashboard_address": "127.0.0.1:0"}}
     with dask.config.set({"distributed.admin.system-monitor.interval": "10s",
-                          "distributed.scheduler.worker-ttl": f"{timeout:g}s"}), distributed.SpecCluster(
-            workers=workers, scheduler=scheduler, silence_logs=logging.CRITICAL) as cluster:
-        with distributed.Client(cluster) as client:
+                          "distributed.scheduler.worker-ttl": f"{timeout:g}s"}):
+        # Inherited by Dask's threads and the processes that they start: Ctrl-C is for this process, which
+        # ends them. (Starting the tracker would unblock it in the thread that does.)
+        multiprocessing.resource_tracker.ensure_running()
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            cluster = distributed.SpecCluster(workers=workers, scheduler=scheduler,
+                                              silence_logs=logging.CRITICAL)
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        with cluster, distributed.Client(cluster) as client:
             yield client
 
 
@@ -116,6 +125,7 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
     except StoreError as e:
         raise BatchError(str(e)) from e
     from .dispatch import Dispatcher
+    from .interrupt import held_interrupts
 
     if isinstance(scheduler, distributed.Client):
         connection: Any = contextlib.nullcontext(scheduler)
@@ -123,6 +133,6 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
         connection = _local_client(workers, device, timeout)
     else:
         connection = _connected(scheduler)
-    with connection as client:
+    with held_interrupts() as check, connection as client:
         return Dispatcher(client, manifest, store, progress=progress, timeout=timeout, jobs=jobs,
-                          patience=patience).run()
+                          patience=patience, check=check).run()

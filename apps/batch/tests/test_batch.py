@@ -22,7 +22,7 @@ distributed = pytest.importorskip("distributed",
 cloudpickle = pytest.importorskip("cloudpickle")
 batch = pytest.importorskip("pellucid.batch", reason="the package was built without toml++")
 
-from pellucid.batch import __main__, store  # noqa: E402
+from pellucid.batch import __main__, dispatch, store  # noqa: E402
 from pellucid.batch.run import _local_client  # noqa: E402
 
 cloudpickle.register_pickle_by_value(sys.modules[__name__])  # workers cannot import a test
@@ -249,18 +249,48 @@ def test_nobody_else_reaches_the_processes_of_this_machine(client):
     assert set(found) == {"0100007F"}
 
 
-def test_ctrl_c_ends_it_quietly(tmp_path):
+@pytest.mark.parametrize("when", ["processes start", "tables are made"])
+def test_ctrl_c_ends_it_quietly(tmp_path, when):
     (tmp_path / "m.toml").write_text(grid(4000))  # more than there is time for
     process = subprocess.Popen([sys.executable, "-m", "pellucid.batch", "m.toml", "--out", "out", "--workers",
                                 "2"], cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True,
                                preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
-    while not (tmp_path / "out").exists() or not any((tmp_path / "out").iterdir()):
+
+    def is_time():
+        if when == "tables are made":
+            return (tmp_path / "out").exists() and any((tmp_path / "out").iterdir())
+        children = [Path(f"/proc/{process.pid}/task/{t.name}/children").read_text().split()
+                    for t in Path(f"/proc/{process.pid}/task").iterdir()]
+        return sum(map(len, children)) >= 2  # one of them is Python's tracker of resources
+
+    while not is_time():
         assert process.poll() is None
         time.sleep(0.02)
+    if when == "processes start":
+        time.sleep(0.5)  # they import modules
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers as well
     error = process.communicate(timeout=120)[1]
-    assert process.returncode == 4 and "interrupted; the same command goes on from here" in error, error
+    assert process.returncode == 4 and error.endswith("interrupted; the same command goes on from here\n"), error
     assert "Traceback" not in error
+
+
+def test_ctrl_c_in_a_finalizer_ends_it(client, manifest, tmp_path, monkeypatch):
+    class Interrupted:
+        def __del__(self):
+            signal.raise_signal(signal.SIGINT)
+
+    def handle(*arguments, handle=dispatch.Dispatcher._handle):
+        Interrupted()
+        handle(*arguments)
+
+    monkeypatch.setattr(dispatch.Dispatcher, "_handle", handle)
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)  # tests may run with it ignored
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            batch.run(manifest, tmp_path / "out", scheduler=client)
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, handler)
 
 
 def test_bad_entries_are_reported_and_the_others_made(tmp_path):
