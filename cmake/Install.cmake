@@ -15,10 +15,11 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/kernels/lib ${PROJECT_SOURCE_DIR}/kernel
 if(TARGET pellucid_cli AND NOT SKBUILD)  # a wheel has a place of its own for it
   set_target_properties(pellucid_cli PROPERTIES INSTALL_RPATH "${PELLUCID_ORIGIN}/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS pellucid_cli COMPONENT command)
-  install(TARGETS pellucid_capture LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/pellucid COMPONENT command)
-  if(TARGET pellucid_pictures)
-    install(TARGETS pellucid_pictures LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/pellucid COMPONENT command)
-  endif()
+  foreach(module pellucid_capture pellucid_pictures pellucid_measurements)
+    if(TARGET ${module})
+      install(TARGETS ${module} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/pellucid COMPONENT command)
+    endif()
+  endforeach()
   # Manual pages and completions, made from the command that was built; a command for another machine cannot be asked.
   find_package(Python3 COMPONENTS Interpreter)
   if(Python3_FOUND AND NOT CMAKE_CROSSCOMPILING)

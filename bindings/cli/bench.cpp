@@ -6,8 +6,7 @@
 #include "command.h"
 #include "io/atomic_file.h"
 #include "io/input_file.h"
-#include "measure/measure.h"
-#include "measure/report.h"
+#include "measurements.h"
 #include "system/process.h"
 
 namespace pellucid::cli {
@@ -45,7 +44,8 @@ double numberOf(const std::string& text, const std::string& unit, const char* op
 
 void writePage(const std::string& path, const Json& reports) {
     io::writeWholeFile(
-        path, bench::pageOf(io::readWholeFile(dataFolder() + "/bench/page.html", io::textLimit), reports));
+        path,
+        measurements().pageOf(io::readWholeFile(dataFolder() + "/bench/page.html", io::textLimit), reports));
 }
 
 std::atomic<bool> stopped{false};
@@ -96,25 +96,25 @@ void measureWithEvents(const BenchArguments& a) {
     request.event = tell;
     Json report = Json::object();
     if (a.events == "first")
-        bench::measureFirst(request);
+        measurements().measureFirst(request);
     else
-        report = a.events == "methods"     ? bench::measureMethods(request)
-                 : a.events == "stability" ? bench::measureStability(request)
-                                           : bench::measureCases(request);
+        report = a.events == "methods"     ? measurements().measureMethods(request)
+                 : a.events == "stability" ? measurements().measureStability(request)
+                                           : measurements().measureCases(request);
     tell({{"report", report}});
     std::fclose(out);
 }
 
 void makeTruth(const BenchArguments& a) {
     std::signal(SIGINT, [](int) { stopped = true; });
-    bench::makeTruth(
+    measurements().makeTruth(
         Device(a.devices.empty() ? "" : a.devices[0]), a.truth, dataFolder() + "/heads/head_female.obj",
         [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); },
         [] { return stopped.load(); });
     pel::system::setVariable("PELLUCID_MATH_WIDTH", "1");
     bench::Request request = requestOf(a, a.devices.empty() ? "" : a.devices[0]);
     request.event = [](const Json&) {};
-    bench::keepPictures(request, a.truth);
+    measurements().keepPictures(request, a.truth);
 }
 
 // Prints the findings of --first-gpu; the page has the rest.
@@ -158,7 +158,8 @@ void measure(const BenchArguments& a) {
     if (!a.truth.empty()) return makeTruth(a);
     if (!a.events.empty()) return measureWithEvents(a);
     if (a.firstUse) {
-        std::cout << jsonText(bench::firstUse(a.devices.empty() ? "" : a.devices[0]), -1) << std::endl;
+        std::cout << jsonText(measurements().firstUse(a.devices.empty() ? "" : a.devices[0]), -1)
+                  << std::endl;
         return;
     }
     const std::string folder = a.output.empty() && a.firstGpu ? "pellucid-first-gpu" : a.output;
@@ -177,7 +178,7 @@ void measure(const BenchArguments& a) {
         std::signal(signal, SIG_DFL);
     });
     const auto start = std::chrono::steady_clock::now();
-    Json report = {{"host", bench::describeHost()},
+    Json report = {{"host", measurements().describeHost()},
                    {"quick", a.quick},
                    {"limit_s", requestOf(a, "").limitSeconds},
                    {"devices", Json::array()}};
@@ -191,7 +192,7 @@ void measure(const BenchArguments& a) {
             std::fprintf(stderr, "device %s: %s\n", selector.c_str(), text.c_str());
         };
         request.cancelled = [] { return stopped.load(); };
-        report["devices"].push_back(bench::measureDevice(request));
+        report["devices"].push_back(measurements().measureDevice(request));
         Json& d = report["devices"].back();
         for (const std::string& word : a.only)
             if (request.stability <= 0 && std::ranges::none_of(d.at("operations"), [&](const Json& e) {
@@ -199,9 +200,9 @@ void measure(const BenchArguments& a) {
                 }))
                 throw UsageError("--only " + word +
                                  ": no operation has that in its name; a report without --only names all");
-        bench::summarize(d, budgets, a.errors);
+        measurements().summarize(d, budgets, a.errors);
         if (a.firstGpu) {
-            bench::judgeFirst(
+            measurements().judgeFirst(
                 d, Json::parse(io::readWholeFile(dataFolder() + "/bench/warps.json", io::textLimit)));
             for (const Json& name : d.at("first_gpu").at("out")) out += "\n  " + name.get<std::string>();
         }
@@ -213,7 +214,7 @@ void measure(const BenchArguments& a) {
     }
     io::writeWholeFile(jsonPath, jsonText(report, 1) + "\n");
     std::string tuning;
-    for (const Json& d : report["devices"]) tuning += bench::tuningText(d);
+    for (const Json& d : report["devices"]) tuning += measurements().tuningText(d);
     if (!tuning.empty())
         io::writeWholeFile(folder + "/tuning.txt",
                            std::string(pel::tuningHeader) +
@@ -282,7 +283,7 @@ void measure(const BenchArguments& a) {
 // A report, or the folder that `pellucid bench -o` wrote it into.
 Json readReport(std::string path) {
     if (std::filesystem::is_directory(path)) path += "/bench.json";
-    Json report = bench::parseReport(io::readWholeFile(path, io::textLimit));
+    Json report = measurements().parseReport(io::readWholeFile(path, io::textLimit));
     if (report.is_discarded()) throw InputError(path + ": not a report of `pellucid bench` (its bench.json)");
     return report;
 }
@@ -301,7 +302,7 @@ void compare(const BenchArguments& a) {
     for (size_t i = 1; i < reports.size(); ++i) {
         Json result;
         try {
-            result = bench::compareReports(reports[0], reports[i]);
+            result = measurements().compareReports(reports[0], reports[i]);
         } catch (const nlohmann::json::exception& e) {
             throw InputError(a.reports[0] + " or " + a.reports[i] + ": incomplete report: " + e.what());
         }
@@ -324,7 +325,7 @@ void compare(const BenchArguments& a) {
         results.push_back(result);
         if (!a.json)
             std::cout << a.reports[i] << " against " << a.reports[0] << "\n"
-                      << bench::describeComparison(result) << std::flush;
+                      << measurements().describeComparison(result) << std::flush;
     }
     if (a.json) printJson(results.size() == 1 ? results[0] : Json{{"comparisons", results}});
     if (!a.output.empty()) {

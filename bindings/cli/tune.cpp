@@ -2,7 +2,7 @@
 
 #include "command.h"
 #include "io/atomic_file.h"
-#include "measure/measure.h"
+#include "measurements.h"
 
 namespace pellucid::cli {
 namespace {
@@ -39,8 +39,8 @@ void tune(const TuneArguments& a) {
         io::checkWritable(path);
     }
     const bench::Tuned tuned =
-        bench::tuneLaunches(run.device(), a.run.device, a.quick,
-                            [&](double fraction, const char* what) { run.progress(fraction, what); });
+        measurements().tuneLaunches(run.device(), a.run.device, a.quick,
+                                    [&](double fraction, const char* what) { run.progress(fraction, what); });
     const pel::LaunchPolicy builtIn = pel::builtInPolicy(info.mathWidth);
     run.report["built_in"] = toJson(builtIn);
     run.report["sizes"] = toJson(tuned.sizes);

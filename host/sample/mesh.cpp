@@ -1,14 +1,11 @@
 #include "sample/mesh.h"
 
 #include <algorithm>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
 namespace pellucid::sample {
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 void addVertex(Mesh& mesh, Vec3 position, Vec3 normal, double u, double v, double curvature) {
     for (double x : {position.x, position.y, position.z}) mesh.positions.push_back(float(x));

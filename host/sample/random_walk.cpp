@@ -5,12 +5,10 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
-#include <numbers>
 
 namespace pellucid::sample {
 namespace {
 
-constexpr double pi = std::numbers::pi;
 // Russian roulette: half of the walks end each time their weight falls below `faint`. Smaller values make
 // walks longer, larger ones make results noisier. Variance times steps is smallest between 0.5 and 0.7.
 constexpr double faint = 0.5;

@@ -1,11 +1,8 @@
 #include "sample/sky.h"
 
 #include <algorithm>
-#include <numbers>
 
 namespace pellucid::sample {
-
-constexpr double pi = std::numbers::pi;
 
 Rgb Sky::radiance(Vec3 direction) const {
     const double height = dot(direction, up), towards = std::max(0.0, dot(direction, normalize(lamp)));

@@ -2,8 +2,11 @@
 #pragma once
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace pellucid::sample {
+
+constexpr double pi = std::numbers::pi;
 
 struct Vec3 {
     double x = 0, y = 0, z = 0;

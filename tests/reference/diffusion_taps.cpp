@@ -5,7 +5,7 @@
 namespace reference {
 namespace {
 
-constexpr double mostGain = 8, leastCosine = 0.25, alike = 16;
+constexpr double mostGain = 8, leastViewCosine = 0.25, alike = 16;
 
 // A rising function as a table, with its inverse by bisection.
 class Rising {
@@ -51,7 +51,7 @@ std::vector<Surface> surfaces(const ScatterPicture& s) {
                 const Vec3 step = shorterStep(s, x, y, dx, dy).value_or(Vec3{});
                 here.pixel = std::max(here.pixel, std::hypot(step.x, step.y));
             }
-            here.area = std::min(surfaceArea(s, x, y), here.pixel * here.pixel / leastCosine);
+            here.area = std::min(surfaceArea(s, x, y), here.pixel * here.pixel / leastViewCosine);
         }
     return all;
 }

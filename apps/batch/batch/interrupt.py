@@ -10,8 +10,8 @@ from typing import Any
 
 @contextlib.contextmanager
 def held_interrupts() -> Iterator[Callable[[], None]]:
-    """Yields a function that raises KeyboardInterrupt where Ctrl-C was pressed. Raised by the signal, it could
-    end in a finalizer or a callback of Dask, where Python prints and drops it, or leave a cluster half
+    """Yields a function that raises KeyboardInterrupt where Ctrl-C was pressed. Raised by the signal, it
+    could end in a finalizer or a callback of Dask, where Python prints and drops it, or leave a cluster half
     started. A second Ctrl-C is raised at once. On another thread, or with a handler of the caller's: does
     nothing."""
     pressed = False
