@@ -293,9 +293,10 @@ constexpr double scatterManyTaps = 6e-3;  // 256 taps on a disk against every pi
 // the share of light from within a pixel is interpolated in a table: 4e-6 and 8e-5 measured
 constexpr double historyRms = 1e-5;
 constexpr double historyMost = 2e-4;
-constexpr double textureEdge = 1e-2;      // Gaussians sampled at half a sigma, of a step one texel wide
-constexpr double texturePlane = 4.5e-3;   // the narrowest Gaussians are below a texel there
-constexpr double textureSphere = 1.3e-3;  // texels along u and v stand for distances
+constexpr double textureEdge = 1e-2;         // Gaussians sampled at half a sigma, of a step one texel wide
+constexpr double textureDensities = 1.2e-2;  // a sample stands for the texels up to halfway to the next
+constexpr double texturePlane = 4.5e-3;      // the narrowest Gaussians are below a texel there
+constexpr double textureSphere = 1.3e-3;     // texels along u and v stand for distances
 // depths are floats over 300 texels' lengths; differences of them count three times
 constexpr double sharpShadow = 2e-3;
 

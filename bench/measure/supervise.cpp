@@ -10,6 +10,7 @@
 
 #include "io/shortest.h"
 #include "measure.h"
+#include "temporary_folder.h"
 #include "timing.h"
 
 namespace pellucid::bench {
@@ -151,20 +152,12 @@ Json measureApart(const Request& request, const char* part) {
 // "first_use" and "warm_start" of a report: runs the command with an empty cache of every known driver, then
 // with the cache that this run has filled.
 void measureFirstUse(const Request& request, Json& report) {
-    struct Cache {
-        std::filesystem::path folder =
-            std::filesystem::temp_directory_path() / ("pellucid-bench-" + std::to_string(::getpid()));
-        Cache() { std::filesystem::create_directories(folder); }
-        ~Cache() {
-            std::error_code ignored;
-            std::filesystem::remove_all(folder, ignored);
-        }
-    } cache;
+    const TemporaryFolder cache("pellucid-bench-");
     std::vector<std::string> environment;
     for (const char* variable :
          {"POCL_CACHE_DIR", "CUDA_CACHE_PATH", "MESA_SHADER_CACHE_DIR", "NEO_CACHE_DIR", "cl_cache_dir",
           "AMD_COMGR_CACHE_DIR", "PELLUCID_CACHE_DIR"})
-        environment.push_back(variable + ("=" + cache.folder.string()));
+        environment.push_back(variable + ("=" + cache.path()));
     for (const char* key : {"first_use", "warm_start"}) {
         Again child(request, {"--first-use"}, environment, false);
         const auto said = child.next(request.limitSeconds);

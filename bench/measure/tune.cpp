@@ -2,7 +2,7 @@
 
 #include "diffusion/lit_scenes.h"
 #include "measure.h"
-#include "system/process.h"
+#include "temporary_folder.h"
 #include "timing.h"
 
 namespace pellucid::bench {
@@ -173,25 +173,19 @@ class Tuner {
     // While one lives, devices that are opened take these sizes.
     class Temporary {
       public:
-        explicit Temporary(const std::string& text)
-            : folder_(pel::system::makeTemporaryFolder(std::filesystem::temp_directory_path().string(),
-                                                       "pellucid-tune-")) {
+        explicit Temporary(const std::string& text) {
             if (const char* const named = std::getenv(variable)) before_ = named;
-            const std::string file = folder_ + "/tuning.txt";
-            if (folder_.empty() || !(std::ofstream(file, std::ios::binary) << text))
-                throw std::runtime_error("no file can be made in the folder for temporary files");
+            const std::string file = folder_.path() + "/tuning.txt";
+            if (!(std::ofstream(file, std::ios::binary) << text))
+                throw std::runtime_error(file + " cannot be written");
             pel::system::setVariable(variable, file.c_str());
         }
-        ~Temporary() {
-            pel::system::setVariable(variable, before_ ? before_->c_str() : nullptr);
-            std::error_code ignored;
-            std::filesystem::remove_all(folder_, ignored);
-        }
+        ~Temporary() { pel::system::setVariable(variable, before_ ? before_->c_str() : nullptr); }
         Temporary(const Temporary&) = delete;
 
       private:
         static constexpr const char* variable = "PELLUCID_TUNING";
-        std::string folder_;
+        TemporaryFolder folder_{"pellucid-tune-"};
         std::optional<std::string> before_;
     };
 

@@ -93,6 +93,10 @@ bool readNumber(const std::string& text, float& number) {
     return CLI::detail::lexical_cast(text, number);
 }
 
+bool wasInterrupted() {
+    return interrupted;
+}
+
 Progress::Progress() : start_(std::chrono::steady_clock::now()) {
     std::signal(SIGINT, onInterrupt);
 }

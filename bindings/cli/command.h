@@ -43,6 +43,9 @@ class Progress {
     bool shown_ = false;
 };
 
+// Whether Ctrl-C was pressed since a Progress began.
+bool wasInterrupted();
+
 // One run of a subcommand: opens the device, shows progress on stderr, prints the report at the end.
 class Run {
   public:

@@ -93,6 +93,7 @@ void integrate(LutArguments& arguments, Desc& desc) {
     }
     Run run(arguments.run);
     const Lut lut(run.device(), desc);
+    run.progress(0.9, "table");  // ends here after Ctrl-C
     run.report["output"] = arguments.output;
     if (picture)
         writeTablePicture(arguments.output, lut, desc.width, rowsOf(desc));

@@ -76,6 +76,8 @@ int main(int argc, char** argv) {
     } catch (const io::FileError& e) {
         return fail(exitBadInput, e.what());
     } catch (const Error& e) {
+        // Compilers inside a driver notice Ctrl-C too, and fail.
+        if (wasInterrupted()) return fail(exitNoDevice, "interrupted");
         // Arguments that the library refuses are wrong use. All its other errors come from the device.
         const bool use = e.code() == PEL_ERROR_INVALID_ARGUMENT || e.code() == PEL_ERROR_INVALID_STATE;
         return fail(use ? exitWrongUse : exitNoDevice, e.what());

@@ -75,8 +75,7 @@ void show(const ProfileArguments& a) {
 
 // Six decades of R and P against distance up to four radii, with a logarithmic vertical axis.
 void plot(const ProfileArguments& a) {
-    if (io::requireExtension(a.output, {"png"}).empty()) return;
-    io::checkWritable(a.output);
+    checkOutput(a.output, {"png"});
     const io::ProfileFile file = io::findProfile(a.name);
     constexpr int width = 900, height = 560, left = 70, top = 40, right = 20, bottom = 60;
     constexpr double decades = 6;
@@ -118,10 +117,7 @@ void plot(const ProfileArguments& a) {
 }
 
 void fit(const ProfileArguments& a) {
-    if (!a.output.empty()) {
-        io::requireExtension(a.output, {"toml"});
-        io::checkWritable(a.output);
-    }
+    if (!a.output.empty()) checkOutput(a.output, {"toml"});
     const io::ProfileFile file = io::findProfile(a.name);
     const io::ProfileFit best = io::fitGaussians(file.profile, a.gaussians);
     nlohmann::ordered_json report{{"name", file.name}, {"gaussians", nlohmann::ordered_json::array()}};

@@ -21,7 +21,8 @@ class BuildNotice {
               std::unique_lock lock(mutex_);
               if (!changed_.wait_for(lock, stop, std::chrono::seconds(1), [] { return false; }) &&
                   !stop.stop_requested())
-                  std::fputs("building this scene's kernels; they are kept for later runs\n", stderr);
+                  std::fputs("building this scene's kernels; later runs take them from a cache folder\n",
+                             stderr);
           }) {}
 
   private:

@@ -2,27 +2,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace pel {
 namespace {
 
 constexpr int samples = 96;
 
-// Non-negative weights for which the sum of the columns is nearest to `wanted`, by coordinate descent.
+// Non-negative weights for which the sum of the columns is nearest to `wanted`, by coordinate descent on the
+// normal equations. Neighbouring Gaussians are nearly parallel, so that it takes many rounds.
 std::vector<double> fitWeights(const std::vector<std::vector<double>>& columns,
                                const std::vector<double>& wanted) {
-    std::vector<double> weights(columns.size(), 1.0 / double(columns.size())), left = wanted;
-    for (size_t k = 0; k < columns.size(); ++k)
-        for (size_t i = 0; i < left.size(); ++i) left[i] -= weights[k] * columns[k][i];
-    for (int round = 0; round < 400; ++round)
-        for (size_t k = 0; k < columns.size(); ++k) {
-            double along = 0, length = 0;
-            for (size_t i = 0; i < left.size(); ++i)
-                along += columns[k][i] * left[i], length += columns[k][i] * columns[k][i];
-            const double next = length > 0 ? std::max(0.0, weights[k] + along / length) : 0;
-            for (size_t i = 0; i < left.size(); ++i) left[i] += (weights[k] - next) * columns[k][i];
+    const size_t count = columns.size();
+    const auto product = [](const std::vector<double>& a, const std::vector<double>& b) {
+        return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+    };
+    std::vector<double> weights(count, 1.0 / double(count)), gram, right;
+    for (const std::vector<double>& column : columns) {
+        right.push_back(product(column, wanted));
+        for (const std::vector<double>& other : columns) gram.push_back(product(column, other));
+    }
+    double change = 1;
+    for (int round = 0; round < 4000 && change > 1e-9; ++round) {
+        change = 0;
+        for (size_t k = 0; k < count; ++k) {
+            double left = right[k];
+            for (size_t j = 0; j < count; ++j) left -= gram[k * count + j] * weights[j];
+            const double length = gram[k * count + k],
+                         next = length > 0 ? std::max(0.0, weights[k] + left / length) : 0;
+            change = std::max(change, std::abs(next - weights[k]));
             weights[k] = next;
         }
+    }
     return weights;
 }
 

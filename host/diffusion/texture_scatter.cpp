@@ -138,9 +138,14 @@ void TextureScatter::checkSize(const ImageView& view, const char* name) const {
 
 void TextureScatter::setPositions(const VertexView& positions) {
     events_.clear();
-    if (!stretch_) stretch_ = device_->allocate(texels() * texelBytes);
-    launch(program("diffusion/texture_map.cl", {}, {}, {}), "texture_stretch", texels(), frameMemory_,
-           indices_, uvs_, islands_, positions.memory, positions.layout, owners_, stretch_);
+    const cl::Program map = program("diffusion/texture_map.cl", {}, {}, {});
+    if (!stretch_) {
+        stretch_ = device_->allocate(texels() * texelBytes);
+        device_->fill(stretch_.get(), 0, texels() * texelBytes, 0);
+        launch(map, "texture_edges", width_ + height_, frameMemory_, islands_, owners_, stretch_);
+    }
+    launch(map, "texture_stretch", texels(), frameMemory_, indices_, uvs_, positions.memory, positions.layout,
+           owners_, stretch_);
     placed_ = true;
 }
 

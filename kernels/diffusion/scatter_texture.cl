@@ -10,7 +10,7 @@
 #include "lib/diffusion/usable_light.clh"
 #include "lib/image/image.clh"
 
-#define MIN_SIGMA 0.8f  // texels; narrower Gaussians are three taps with their variance
+#define MIN_SIGMA 0.8f  // texels; narrower Gaussians are three samples with their variance
 #define FARTHEST 3.0f   // sigmas
 #define PAD 2           // texels
 
@@ -36,7 +36,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_lig
     if (y >= frame->height) return;
     const size_t at = (size_t)y * frame->width + x;
     float4 result = (float4)(0.0f);
-    if (stretch[at].w > 0.0f) {
+    if (as_uint(stretch[at].w)) {
         const Vec3w e = loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y));
         const Vec3w l = mul3(e, albedoAt(frame, albedo, x, y, frame->before));
         if (usableLight(l) && finite3(albedoAt(frame, albedo, x, y, frame->after)))
@@ -47,36 +47,54 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_lig
     light[at] = result;
 }
 
-// `step`: texels from one sample to the next along the filter; `place` of `count`: index of the texel along
-// it.
-static inline float4 blurTexel(__global const float4* stretch, __global const float4* light, size_t at,
-                               long step, int place, int count, bool down, float variance,
-                               float blurredBefore) {
-    const float4 own = stretch[at], here = light[at];
-    const float size = down ? own.y : own.x;
-    if (!(here.w > 0.0f) || !(size > 0.0f)) return here;
-    const float sigma2 = variance / (size * size);  // texels^2
-    const bool narrow = sigma2 < MIN_SIGMA * MIN_SIGMA;
-    const float sigma = sqrt(sigma2);
-    // Samples lie at most half a sigma apart, and no further than the previous blur smooths.
-    const int stride = narrow ? 1 : max((int)fmin(0.5f * sigma, blurredBefore / size), 1);
-    const int taps = narrow ? 1 : (int)fmin(FARTHEST * sigma / (float)stride + 0.5f, (float)(count / stride));
-    const float centre = narrow ? 1.0f - sigma2 : 1.0f, perVariance = 0.5f / variance;
-    float4 sum = centre * size * here;
-    for (int side = -1; side <= 1; side += 2) {
-        float distance = 0.0f, before = size;
-        for (int k = 1; k <= taps; ++k) {
-            const int offset = side * k * stride;
-            if (place + offset < 0 || place + offset >= count) break;
-            const size_t there = (size_t)((long)at + offset * step);
-            const float4 s = stretch[there];
-            if (as_uint(s.z) != as_uint(own.z) || !(s.w > 0.0f)) break;  // the surface ends here
-            const float length = down ? s.y : s.x;
-            distance += 0.5f * (before + length) * (float)stride;
-            before = length;
-            const float weight = narrow ? 0.5f * sigma2 : exp(-distance * distance * perVariance);
-            sum += weight * length * light[there];
+static inline float lengthOf(float4 stretch, bool down) {
+    return down ? stretch.y : stretch.x;
+}
+
+// The light on one side of a texel, `available` texels of the same island: the sum of light times a Gaussian
+// of the distance on the surface, over lengths of texels. `step`: from one texel to the next.
+static inline float4 lightOfSide(__global const float4* stretch, __global const float4* light, size_t at,
+                                 long step, int available, bool down, float variance, float spacing) {
+    const float perVariance = 0.5f / variance, farthest = FARTHEST * sqrt(variance);
+    float4 sum = (float4)(0.0f), weighted = light[at];  // of the last sample
+    float distance = 0.0f, length = lengthOf(stretch[at], down);
+    while (available > 0 && distance < farthest) {
+        int stride = length > 0.0f ? (int)clamp(spacing / length, 1.0f, (float)available) : 1;
+        float there = lengthOf(stretch[(size_t)((long)at + stride * step)], down);
+        if (stride > 1 && there * (float)stride > 2.0f * spacing) {  // coarser from somewhere between
+            stride = (int)fmax(spacing / there, 1.0f);
+            there = lengthOf(stretch[(size_t)((long)at + stride * step)], down);
         }
+        at = (size_t)((long)at + stride * step), available -= stride;
+        distance += 0.5f * (length + there) * (float)stride;
+        const float4 next = exp(-distance * distance * perVariance) * light[at];
+        sum += 0.5f * (float)stride * (length * weighted + there * next);
+        length = there, weighted = next;
+    }
+    return available > 0 ? sum : sum + 0.5f * length * weighted;  // to the edge of the last texel
+}
+
+// One texel after a blur by `variance`, on top of one of width `before`.
+static inline float4 blurTexel(__global const float4* stretch, __global const float4* light, size_t at,
+                               long step, bool down, float variance, float before) {
+    const float4 own = stretch[at], here = light[at];
+    const float size = lengthOf(own, down);
+    if (!(here.w > 0.0f) || !(size > 0.0f)) return here;
+    const uint run = as_uint(down ? own.w : own.z) & ~PEL_TEXEL_COVERED;
+    const int preceding = (int)(run & 0xffff), following = (int)(run >> 16);
+    const size_t last = preceding ? (size_t)((long)at - step) : at,
+                 next = following ? (size_t)((long)at + step) : at;
+    const float toLast = 0.5f * (size + lengthOf(stretch[last], down)),
+                toNext = 0.5f * (size + lengthOf(stretch[next], down));
+    float4 sum;
+    if (variance < MIN_SIGMA * MIN_SIGMA * toLast * toNext) {
+        const float4 change = (light[last] - here) / toLast + (light[next] - here) / toNext;
+        sum = here + variance / (toLast + toNext) * change;
+    } else {
+        // Samples lie at most half a sigma apart, and no further than the previous blur smooths.
+        const float spacing = fmin(0.5f * sqrt(variance), before);
+        sum = lightOfSide(stretch, light, at, -step, preceding, down, variance, spacing) +
+              lightOfSide(stretch, light, at, step, following, down, variance, spacing);
     }
     return sum.w > 0.0f ? (float4)(sum.xyz / sum.w, 1.0f) : (float4)(0.0f);
 }
@@ -97,9 +115,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_blu
             const uint x = left + item % PEL_TEXTURE_TILE, y = top + item / PEL_TEXTURE_TILE;
             if (x >= frame->width || y >= frame->height) continue;
             const size_t at = (size_t)y * frame->width + x;
-            const float4 b = blurTexel(stretch, light, at, down ? (long)frame->width : 1, (int)(down ? y : x),
-                                       (int)(down ? frame->height : frame->width), down, blur->variance,
-                                       sqrt(blur->before));
+            const float4 b = blurTexel(stretch, light, at, down ? (long)frame->width : 1, down,
+                                       blur->variance, sqrt(blur->before));
             blurred[at] = b;
             if (down)
                 result[at] = blur->first ? weight * b : (float4)(result[at].xyz + weight.xyz * b.xyz, b.w);

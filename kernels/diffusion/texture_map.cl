@@ -2,8 +2,9 @@
 //
 // texture_owner: 1 + the last triangle that holds the centre of each texel, borders included; one work-item
 // is one triangle. texture_tiles: flags of tiles with such a texel; one work-item is one tile.
-// texture_stretch: length of a texel along u and v, and its island; texture_draw: values of vertices; one
-// work-item is one texel. Lengths are in the unit of positions.
+// texture_edges: how far the island of each texel extends along its row and column, into the third and fourth
+// number of its stretch; one work-item is one row or column. texture_stretch: length of a texel along u and
+// v; texture_draw: values of vertices; one work-item is one texel. Lengths are in the unit of positions.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/texels.clh"
 #include "lib/image/image.clh"
@@ -46,14 +47,35 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_til
     atomic_add(&counters[PEL_COUNT_TEXELS_COVERED], covered);
 }
 
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_edges(
+    __global const PelTextureFrame* restrict frame, __global const uint* restrict islands,
+    __global const uint* restrict owners, __global uint* bits) {
+    const uint line = itemOfFolded();
+    if (line >= frame->height + frame->width) return;
+    const bool down = line >= frame->height;
+    const uint count = down ? frame->height : frame->width;
+    const size_t first = down ? line - frame->height : (size_t)line * frame->width,
+                 step = down ? frame->width : 1;
+    uint begin = 0, island = 0;  // of the present run; 0: no island
+    for (uint k = 0; k <= count; ++k) {
+        const uint owner = k < count ? owners[first + k * step] : 0, here = owner ? islands[owner - 1] : 0;
+        if (here == island) continue;
+        for (uint i = begin; island && i < k; ++i) {
+            const uint run = PEL_TEXEL_COVERED | (i - begin) | (k - 1 - i) << 16;
+            // Alone, for another work-item writes the number beside it.
+            bits[(first + i * step) * 4 + (down ? 3 : 2)] = run;
+        }
+        begin = k, island = here;
+    }
+}
+
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_stretch(
     __global const PelTextureFrame* restrict frame, __global const uint* restrict indices,
-    __global const float* restrict uvs, __global const uint* restrict islands,
-    __global const float* restrict positions, VertexLayout layout, __global const uint* restrict owners,
-    __global float4* stretch) {
+    __global const float* restrict uvs, __global const float* restrict positions, VertexLayout layout,
+    __global const uint* restrict owners, __global float4* stretch) {
     const size_t texel = itemOfFolded();
     if (texel >= (size_t)frame->width * frame->height) return;
-    float4 result = (float4)(0.0f);
+    float2 result = (float2)(0.0f);
     const uint owner = owners[texel];
     if (owner) {
         const UvTriangle t = uvTriangle(frame, indices, uvs, owner - 1);
@@ -62,12 +84,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_str
                      c = vertexLoad3(positions, layout, v.z) - a;
         const float per = 1.0f / t.twice;
         const float3 alongU = (b * t.ac.y - c * t.ab.y) * per, alongV = (c * t.ab.x - b * t.ac.x) * per;
-        result.x = length(alongU), result.y = length(alongV);
-        result.z = as_float(islands[owner - 1]);
-        if (!isfinite(result.x) || !isfinite(result.y)) result.xy = 0.0f;
-        result.w = 1.0f;
+        result = (float2)(length(alongU), length(alongV));
+        if (!isfinite(result.x) || !isfinite(result.y)) result = 0.0f;
     }
-    stretch[texel] = result;
+    stretch[texel].xy = result;
 }
 
 __constant int2 beside[8] = {(int2)(-1, 0),  (int2)(1, 0),  (int2)(0, -1), (int2)(0, 1),

@@ -5,6 +5,10 @@
 
 #define PEL_TEXTURE_TILE 16  // texels along a side
 
+// Per texel: lengths along u and v, and bits along u and v. Bits: how many texels of the same island precede
+// it without a gap, and (<< 16) how many follow; 0 without this flag: no triangle covers it.
+#define PEL_TEXEL_COVERED 0x8000u
+
 typedef struct PelTextureFrame {
     PelUint32 width;  // texels
     PelUint32 height;

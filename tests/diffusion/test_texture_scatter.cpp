@@ -91,6 +91,67 @@ TEST(TextureScatter, WidthsAreLengthsOnTheSurface) {
         }
 }
 
+// The same at a place where texels become three times as long, along either axis.
+TEST(TextureScatter, TexelsOfSeveralLengthsInOneIsland) {
+    const double variances[] = {0.05, 0.5, 4};
+    std::vector<PelGaussian> gaussians;
+    for (double v : variances) gaussians.push_back({float(v), {1, 1, 1}});
+    const Profile profile = Profile::gaussians(gaussians);
+    for (int axis : {0, 1}) {
+        const auto pair = [axis](float along, float across) {
+            return axis ? std::array{across, along} : std::array{along, across};
+        };
+        Mesh m;
+        const float places[] = {0, 20, 40}, us[] = {0, 0.75f, 1};
+        for (int i = 0; i < 3; ++i)
+            for (float across : {0.0f, 1.0f}) {
+                const auto p = pair(places[i], 40 * across), uv = pair(us[i], across);
+                m.positions.insert(m.positions.end(), {p[0], p[1], 0});
+                m.uvs.insert(m.uvs.end(), {uv[0], uv[1]});
+            }
+        m.triangles = {0, 1, 2, 1, 2, 3, 2, 3, 4, 3, 4, 5};
+        const auto size = pair(512, 32);
+        Texture t(m, uint32_t(size[0]), uint32_t(size[1]));
+        const auto positions = t.draw(m.positions);
+        std::vector<float> e;
+        for (size_t i = 0; i < t.texels(); ++i)
+            e.insert(e.end(), 3, positions[3 * i + axis] < 20 ? 0.0f : 1.0f);
+        const auto s = t.run(e, profile);
+        double worst = 0;
+        for (size_t i = 0; i < t.texels(); ++i) {
+            const double d = positions[3 * i + axis] - 20;
+            double expected = 0;
+            for (double v : variances) expected += std::erfc(-d / std::sqrt(2 * v)) / 6;
+            if (std::abs(d) < 10) worst = std::max(worst, std::abs(s[3 * i] - expected));
+        }
+        EXPECT_LT(worst, tolerance::textureDensities) << "axis " << axis;
+    }
+}
+
+// Two arms of one island, a texel apart in the texture and far away on the surface: no light crosses.
+TEST(TextureScatter, LightDoesNotCrossASlit) {
+    Mesh m;
+    const auto vertex = [&](float x, float y, float u, float v) {
+        m.positions.insert(m.positions.end(), {x, y, 0}), m.uvs.insert(m.uvs.end(), {u, v});
+    };
+    constexpr float texel = 1 / 128.0f;
+    const float sides[] = {0, 64 * texel, 65 * texel, 1};  // of the arms in the texture
+    const float places[] = {0, 10, 110, 120};              // mm
+    for (float y : {0.0f, 0.1f, 1.0f})
+        for (int i = 0; i < 4; ++i) vertex(places[i], 20 * y, sides[i], y);
+    const auto quad = [&](uint32_t a) {
+        for (uint32_t v : {a, a + 1, a + 4, a + 1, a + 5, a + 4}) m.triangles.push_back(v);
+    };
+    quad(0), quad(1), quad(2), quad(4), quad(6);  // a bridge between the arms
+    Texture t(m, 128, 128);
+    std::vector<float> e;
+    for (size_t i = 0; i < t.texels(); ++i) e.insert(e.end(), 3, i % 128 < 64 ? 1.0f : 0.0f);
+    const auto s = t.run(e, Profile::skin());
+    for (size_t y = 100; y < 128; ++y)  // away from the bridge
+        for (size_t x : {60, 61, 62, 63, 65, 66, 67, 68})
+            ASSERT_NEAR(s[3 * (128 * y + x)], x < 64 ? 1 : 0, 1e-5) << x << " " << y;
+}
+
 TEST(TextureScatter, VariancesAddToTheProfile) {
     Texture t(plate(16, 16), 48, 48);
     Picture p(48, 48);

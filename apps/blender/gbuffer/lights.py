@@ -6,6 +6,7 @@ import os
 import bpy
 from mathutils import Matrix, Vector
 
+from . import file_names
 from .fault import warn
 from .passes import look, render_exr
 
@@ -68,24 +69,13 @@ def add(scene, lamps, name, data, matrix):
     lamps.append(Lamp(name, data, matrix))
 
 
-def file_name(name, taken):
-    """A unique file name for a shadow map: instances share a name, and names may differ only in signs."""
-    stem = "shadow_" + "".join(c if c.isalnum() else "_" for c in name)
-    number, file = 1, stem + ".exr"
-    while file.lower() in taken:  # some disks know no letter case
-        number += 1
-        file = f"{stem}_{number}.exr"
-    taken.add(file.lower())
-    return file
-
-
 def render_shadow_map(scene, lamp, bounds, options, taken):
     """Depths seen from a sun, a spot or the centre of an area, 0 near to 1 far; 1 where nothing is. `taken`:
     other lights' files."""
     if lamp.kind == "POINT":
         warn(f"light '{lamp.name}' is a point light: no shadow map is rendered for it")
         return
-    lamp.map_file = file_name(lamp.name, taken)
+    lamp.map_file = file_names.unique("shadow", lamp.name, ".exr", taken)
     camera = bpy.data.objects.new("pellucid shadow", bpy.data.cameras.new("pellucid shadow"))
     scene.collection.objects.link(camera)
     rotation = lamp.matrix.to_3x3().normalized()

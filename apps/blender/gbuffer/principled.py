@@ -1,7 +1,6 @@
 """Reads scattering and gloss from a material's shader, as keys of [[material]] and a profile."""
 
 import math
-import re
 
 from .fault import Fault, warn
 
@@ -90,11 +89,6 @@ class Surface:
         if preset != AUTO:
             return preset
         return "own" if self.scattering else PLAIN
-
-
-def file_name(name):
-    """Of the profile that is made for a material."""
-    return "profile_" + (re.sub(r"[^A-Za-z0-9_-]", "_", name) or "_") + ".toml"
 
 
 def profile_text(surface, unit):

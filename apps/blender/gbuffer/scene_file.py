@@ -3,7 +3,7 @@
 import json
 import os
 
-from . import principled
+from . import file_names, principled
 from .fault import warn
 from .passes import MATERIAL_CHANNEL
 
@@ -25,8 +25,8 @@ def comment(name):
     return "# " + "".join(c if c.isprintable() else " " for c in name)
 
 
-def keys_of(surface, preset, unit, folder, extents):
-    """Of [[material]], by what was chosen for it."""
+def keys_of(surface, preset, unit, folder, taken, extents):
+    """Of [[material]], by what was chosen for it. `taken`: other materials' profile files in `folder`."""
     if preset == principled.EYE:
         keys = dict(EYES)
     elif preset == principled.PLAIN:
@@ -36,7 +36,7 @@ def keys_of(surface, preset, unit, folder, extents):
     else:
         name = preset
         if preset == "own":
-            name = principled.file_name(surface.name)
+            name = file_names.unique("profile", surface.name, ".toml", taken)
             with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
                 file.write(principled.profile_text(surface, unit))
         keys = {"profile": name, "scattering": "auto",
@@ -104,11 +104,12 @@ def write(path, unit, camera, lamps, sky, materials, eyes, curvature, fallback):
                 lines += ['projection = "perspective"', "depth_a = " + value(lamp.depth_a),
                           "depth_b = " + value(lamp.depth_b)]
     extents = [lamp.extent for lamp in lamps if lamp.map_file and lamp.kind == "SUN"]
+    taken = set()
     for id_, material, surface in materials:
         if material.name in of_eyes:
             lines += ["", "[[eye]]", f"material = {id_}",
                       *(f"{key} = {value(v)}" for key, v in of_eyes[material.name].items())]
-        keys = keys_of(surface, chosen[id_], unit, os.path.dirname(path), extents)
+        keys = keys_of(surface, chosen[id_], unit, os.path.dirname(path), taken, extents)
         keys.update({key: own for key, own in principled.custom_keys(material, "pellucid_").items()
                      if key != "preset" and not key.startswith("eye")})
         lines += ["", "[[material]]  " + comment(material.name), f"id = {id_}"]

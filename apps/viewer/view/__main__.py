@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import ipaddress
 import logging
 import socket
@@ -147,8 +148,9 @@ def main() -> int:
 
         app.on_startup(lambda: webbrowser.open(address(a.host, port, keys.key)))
     logging.getLogger("nicegui").setLevel(logging.ERROR)  # it warns of each slow propagation of bindings
-    ui.run(host=a.host, port=port, show=False, reload=False, show_welcome_message=False, dark=True,
-           ws_per_message_deflate=False)  # JPEG files do not become smaller
+    with contextlib.suppress(KeyboardInterrupt):  # the way to end it, which uvicorn raises once more
+        ui.run(host=a.host, port=port, show=False, reload=False, show_welcome_message=False, dark=True,
+               ws_per_message_deflate=False)  # JPEG files do not become smaller
     return 0
 
 
