@@ -24,19 +24,18 @@ std::string compareOne(Json& out, const Json& before, const Json& after, double 
     constexpr double minChange = 0.05, standardErrors = 4, errorGrowth = 1.5, errorStep = 1e-7,
                      flipGrowth = 0.1;
     if (after.contains("failed")) return before.contains("failed") ? "not compared" : "fails";
+    const bool timed = before.contains("median_ms") || after.contains("median_ms");  // clips are not
     const double ratio = value(after, "median_ms") / value(before, "median_ms");
     // The old run failed, or one of the reports has no times.
-    if (before.contains("failed") || !(ratio > 0) || std::isinf(ratio)) return "not compared";
-    out["old_ms"] = value(before, "median_ms");
-    out["new_ms"] = value(after, "median_ms");
+    if (before.contains("failed") || (timed && (!(ratio > 0) || std::isinf(ratio)))) return "not compared";
+    if (timed) out["old_ms"] = value(before, "median_ms"), out["new_ms"] = value(after, "median_ms");
     // Times and errors of different sizes cannot be compared.
     for (const char* key : {"items", "what"})
         if (before.value(key, Json()) != after.value(key, Json())) return "other size";
     const double noise =
         std::max({std::log1p(minChange),
                   standardErrors * std::hypot(relativeError(before), relativeError(after)), machine});
-    out["ratio"] = ratio;
-    out["noise"] = std::expm1(noise);
+    if (timed) out["ratio"] = ratio, out["noise"] = std::expm1(noise);
     const char* error = before.contains("error_max") ? "error_max" : "error_rms";
     const double oldError = value(before, error), newError = value(after, error);
     if (std::isfinite(oldError)) {
@@ -50,6 +49,7 @@ std::string compareOne(Json& out, const Json& before, const Json& after, double 
         out["old_error"] = oldFlip, out["new_error"] = newFlip;
         return "less accurate";
     }
+    if (!timed) return std::isfinite(oldError) ? "same" : "not compared";
     return std::log(ratio) > noise ? "slower" : std::log(ratio) < -noise ? "faster" : "same";
 }
 

@@ -4,6 +4,7 @@
 #include "measure/power.h"
 #include "measure/report.h"
 #include "measure/scenes.h"
+#include "measure/temporary_folder.h"
 
 using Json = nlohmann::ordered_json;
 
@@ -115,9 +116,13 @@ TEST(BenchPower, IsThatBetweenTwoStepsOfACounter) {
 }
 
 TEST_F(BenchCommand, MeasuresTimeShareAndError) {
+    // A folder that somebody else could have made for the process of this number is left alone.
     const auto said = reportOf(
         "bench --quick --limit 600 --only table-sh --only shade-plain --only shade-no --only curvature-edge "
-        "--powercap @none -o @out");
+        "--powercap @none -o @out",
+        "mkdir -p @tmp/pellucid-bench-$$; TMPDIR=@tmp exec env");
+    const auto left = std::filesystem::directory_iterator(path("tmp"));
+    EXPECT_EQ(std::distance(begin(left), end(left)), 1);
     expectReport(said);
     EXPECT_EQ(said.at("report"), path("out") + "/bench.json");
     const auto report = nlohmann::json::parse(read(path("out/bench.json")));
@@ -154,6 +159,26 @@ TEST_F(BenchCommand, MeasuresTimeShareAndError) {
         "copy arithmetic curvature-edge curvature-edge-smoothed table-shadow shade-plain shade-no-skin ");
     // A report is the same as itself.
     EXPECT_EQ(reportOf("bench compare @out/bench.json @out/bench.json").at("same"), 5);
+}
+
+TEST(BenchTemporaryFolder, IsForThisUserAndRemoved) {
+    std::string path;
+    {
+        const pellucid::bench::TemporaryFolder folder("pellucid-test-");
+        path = folder.path();
+        EXPECT_EQ(std::filesystem::status(path).permissions(), std::filesystem::perms::owner_all);
+    }
+    EXPECT_FALSE(std::filesystem::exists(path));
+    const char* const before = std::getenv("TMPDIR");
+    const std::string kept = before ? before : "";
+    ::setenv("TMPDIR", "/none", 1);
+    try {
+        const pellucid::bench::TemporaryFolder folder("pellucid-test-");
+        FAIL() << folder.path();
+    } catch (const std::runtime_error& e) {
+        EXPECT_TRUE(std::string(e.what()).find("TMPDIR") != std::string::npos) << e.what();
+    }
+    before ? ::setenv("TMPDIR", kept.c_str(), 1) : ::unsetenv("TMPDIR");
 }
 
 // The scene, its truth, the methods on it, and what follows of them.
@@ -519,6 +544,15 @@ TEST_F(BenchCommand, ComparesOnlyWhatIsComparable) {
         write("b.json", worse.dump());
         refused("bench compare @a.json @b.json", 3, "all operations have other sizes");
     }
+    // A clip has errors alone.
+    const auto clip = [&edited](double error) {
+        return edited([error](Json& d) {
+            d[0]["operations"][0].erase("median_ms");
+            d[0]["operations"][0]["error_max"] = error;
+        });
+    };
+    for (const auto& [error, verdict] : {std::pair{1e-3, "same"}, {2e-3, "less accurate"}})
+        EXPECT_EQ(compared(clip(1e-3), clip(error))["devices"][0]["operations"][0]["verdict"], verdict);
     // Two devices, one in each report. Their difference in bandwidth does not count as noise.
     const Json other = edited([](Json& d) {
         d[0]["name"] = "E", d[0]["copy_bytes_per_second"] = 4e10;

@@ -178,3 +178,19 @@ TEST_F(CliLut, TheSearchForPigmentsShowsProgressAndCanBeInterrupted) {
     EXPECT_TRUE(contains(read(path("out.txt")), "interrupted"));
     EXPECT_FALSE(std::filesystem::exists(path("m.exr")));
 }
+
+// While its kernels are compiled. Clang inside a driver sees Ctrl-C as well, and may fail instead.
+TEST_F(CliLut, ATableCanBeInterrupted) {
+    for (const char* later : {"0", "0.5"}) {
+        const std::string command =
+            filled(std::string("POCL_CACHE_DIR=@cache") + later +
+                   " PELLUCID_CACHE_DIR=off " PELLUCID_COMMAND
+                   " lut curvature --profile jade -o @t.exr 2>@err.txt & while [ ! -e "
+                   "@cache" +
+                   later + " ]; do sleep 0.01; done; sleep " + later + "; kill -INT $!; wait $!");
+        const int status = std::system(command.c_str());
+        EXPECT_EQ(WEXITSTATUS(status), 4) << later;
+        EXPECT_EQ(read(path("err.txt")), "pellucid: interrupted\n") << later;
+        EXPECT_FALSE(std::filesystem::exists(path("t.exr"))) << later;
+    }
+}

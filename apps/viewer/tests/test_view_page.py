@@ -5,6 +5,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -92,7 +93,8 @@ def address(tmp_path_factory, lost):
     environment["XDG_CONFIG_HOME"] = str(folder / "config")
     process = subprocess.Popen([sys.executable, "-c", PROGRAM, str(lost), "--no-browser", "--port", str(port),
                                 "--subdivide", "1", "--look", str(folder / "look.json")],
-                               stdout=log.open("w"), stderr=subprocess.STDOUT, env=environment, cwd=folder)
+                               stdout=log.open("w"), stderr=subprocess.STDOUT, env=environment, cwd=folder,
+                               preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
     try:
         found = wait_for(lambda: process.poll() is not None
                          or re.search(r"http://\S+token=\S+", log.read_text()), "the address")
@@ -102,8 +104,10 @@ def address(tmp_path_factory, lost):
         url = found.group(0)
         wait_for(lambda: refused(url.split("?")[0]), "the server")
         yield url
+        process.send_signal(signal.SIGINT)  # Ctrl-C, the way to end it
+        assert process.wait(PATIENCE) == 0 and "Traceback" not in log.read_text(), log.read_text()
     finally:
-        process.terminate()
+        process.kill()
         process.wait(PATIENCE)
 
 
