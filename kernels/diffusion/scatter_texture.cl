@@ -12,7 +12,8 @@
 
 #define MIN_SIGMA 0.8f  // texels; narrower Gaussians are three samples with their variance
 #define FARTHEST 3.0f   // sigmas
-#define PAD 2           // texels
+#define LARGEST_STRIDE 16384.0f
+#define PAD 2  // texels
 
 static inline Vec3w power3(Vec3w a, float power) {
     if (power == 1.0f) return a;
@@ -55,23 +56,28 @@ static inline float lengthOf(float4 stretch, bool down) {
 // of the distance on the surface, over lengths of texels. `step`: from one texel to the next.
 static inline float4 lightOfSide(__global const float4* stretch, __global const float4* light, size_t at,
                                  long step, int available, bool down, float variance, float spacing) {
-    const float perVariance = 0.5f / variance, farthest = FARTHEST * sqrt(variance);
+    const float perVariance = 0.5f / variance, farthest = FARTHEST * sqrt(variance) - 0.5f * spacing;
     float4 sum = (float4)(0.0f), weighted = light[at];  // of the last sample
-    float distance = 0.0f, length = lengthOf(stretch[at], down);
+    float distance = 0.0f, length = lengthOf(stretch[at], down), strideLength = 0.0f;
+    int before = 0, stride = 0;  // texels: of the last step; of one for texels of strideLength
     while (available > 0 && distance < farthest) {
-        int stride = length > 0.0f ? (int)clamp(spacing / length, 1.0f, (float)available) : 1;
-        float there = lengthOf(stretch[(size_t)((long)at + stride * step)], down);
-        if (stride > 1 && there * (float)stride > 2.0f * spacing) {  // coarser from somewhere between
-            stride = (int)fmax(spacing / there, 1.0f);
-            there = lengthOf(stretch[(size_t)((long)at + stride * step)], down);
+        if (length != strideLength)
+            strideLength = length,
+            stride = length > 0.0f ? (int)clamp(spacing / length, 1.0f, LARGEST_STRIDE) : 1;
+        int texels = min(stride, available);
+        float there = lengthOf(stretch[(size_t)((long)at + texels * step)], down);
+        if (texels > 1 && there * (float)texels > 2.0f * spacing) {  // coarser from somewhere between
+            texels = (int)fmax(spacing / there, 1.0f);
+            there = lengthOf(stretch[(size_t)((long)at + texels * step)], down);
         }
-        at = (size_t)((long)at + stride * step), available -= stride;
-        distance += 0.5f * (length + there) * (float)stride;
-        const float4 next = exp(-distance * distance * perVariance) * light[at];
-        sum += 0.5f * (float)stride * (length * weighted + there * next);
-        length = there, weighted = next;
+        at = (size_t)((long)at + texels * step), available -= texels;
+        // Each sample stands for half of the texels to its neighbours.
+        sum += 0.5f * (float)(before + texels) * length * weighted;
+        distance += 0.5f * (length + there) * (float)texels;
+        weighted = exp(-distance * distance * perVariance) * light[at];
+        length = there, before = texels;
     }
-    return available > 0 ? sum : sum + 0.5f * length * weighted;  // to the edge of the last texel
+    return sum + 0.5f * (float)(available > 0 ? before : before + 1) * length * weighted;
 }
 
 // One texel after a blur by `variance`, on top of one of width `before`.
