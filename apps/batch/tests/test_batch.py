@@ -17,10 +17,10 @@ import pytest
 
 import pellucid as pel
 
-psutil = pytest.importorskip("psutil")  # which distributed needs
 distributed = pytest.importorskip("distributed",
                                   reason="distributed is not installed: pip install pellucid[batch]")
 cloudpickle = pytest.importorskip("cloudpickle")
+psutil = pytest.importorskip("psutil")  # as distributed does
 batch = pytest.importorskip("pellucid.batch", reason="the package was built without toml++")
 
 from pellucid.batch import __main__, dispatch, store  # noqa: E402
