@@ -36,7 +36,8 @@ def _local_client(count: Optional[int], selectors: Sequence[str], timeout: float
     if not selectors and os.environ.get("PELLUCID_DEVICE"):
         chosen = [os.environ["PELLUCID_DEVICE"]]
     here = {"host": "127.0.0.1"}  # anyone who can connect to a Dask port can execute code
-    worker = {**here, "nthreads": 1, "memory_limit": 0, "silence_logs": logging.CRITICAL}
+    quiet = logging.CRITICAL + 1  # connections that break while it closes are critical to Dask
+    worker = {**here, "nthreads": 1, "memory_limit": 0, "silence_logs": quiet}
     workers = {i: {"cls": distributed.Nanny,
                    "options": {**worker, "env": {"PELLUCID_DEVICE": chosen[i % len(chosen)]}}}
                for i in range(count or len(chosen))}
@@ -49,8 +50,7 @@ def _local_client(count: Optional[int], selectors: Sequence[str], timeout: float
         multiprocessing.resource_tracker.ensure_running()
         before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
-            cluster = distributed.SpecCluster(workers=workers, scheduler=scheduler,
-                                              silence_logs=logging.CRITICAL)
+            cluster = distributed.SpecCluster(workers=workers, scheduler=scheduler, silence_logs=quiet)
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
         with cluster, distributed.Client(cluster) as client:
