@@ -1,26 +1,19 @@
 #include "measurements.h"
 
-#include <cstring>
-
 #include "command.h"
-#include "system/process.h"
+#include "system/module.h"
 
 namespace pellucid::cli {
 
 const bench::Measurements& measurements() {
-    static const auto& loaded = []() -> const bench::Measurements& {
-        std::string why;
-        if (void* const module =
-                pel::system::openBeside(reinterpret_cast<const void*>(&pelVersion), PELLUCID_MEASURE, why)) {
-            const auto* found = static_cast<const bench::Measurements*>(
-                pel::system::symbolIn(module, "pellucidMeasurements"));
-            if (found && std::strcmp(found->version, PELLUCID_VERSION) == 0) return *found;
-            why = "it belongs to another version of pellucid";
-        }
+    static std::string why;
+    static const auto* const loaded = pel::system::tableOfModule<bench::Measurements>(
+        reinterpret_cast<const void*>(&pelVersion), PELLUCID_MEASURE, "pellucidMeasurements",
+        PELLUCID_VERSION, why);
+    if (!loaded)
         throw UsageError("bench and tune need " PELLUCID_MEASURE ", which cannot be loaded (" + why +
                          "); in a source tree ./run build makes it");
-    }();
-    return loaded;
+    return *loaded;
 }
 
 }  // namespace pellucid::cli
