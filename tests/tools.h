@@ -28,6 +28,12 @@
 #include <thread>
 #include <type_traits>
 
+// Where tests run that name no device.
+inline const pellucid::Device& device() {
+    static const pellucid::Device device("");
+    return device;
+}
+
 // Smaller meshes, tables and images where every instruction is interpreted: ./run check oclgrind sets
 // PELLUCID_TEST_SMALL.
 inline bool testsAreSmall() {

@@ -29,10 +29,10 @@ Body wholeHead(const std::string& file) {
     return head(file, "head", 3);
 }
 // `size` mm a side round the vertex that is nearest to `at`.
-std::function<Body(const std::string&)> partOfHead(const char* name, Vec3 at, double size) {
+std::function<Body(const std::string&)> partOfHead(const char* name, sample::Vec3 at, double size) {
     return [=](const std::string& file) {
         return closeUp(
-            wholeHead(file), name, [=](Vec3 p) { return -length(p - at); }, size);
+            wholeHead(file), name, [=](sample::Vec3 p) { return -length(p - at); }, size);
     };
 }
 

@@ -91,10 +91,6 @@ inline void keepWorst(double& worst, double e) {
     if (std::isnan(e) || e > worst) worst = e;
 }
 
-inline const Device& device() {
-    return shade_test::device();
-}
-
 // body(i) for i below count, on all cores.
 void inParallel(size_t count, const std::function<void(size_t)>& body);
 

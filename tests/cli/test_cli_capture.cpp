@@ -294,16 +294,16 @@ TEST_F(Capture, RepeatsScatteringAlone) {
     }
 
     // Into an image that holds something, after a warm-up and a refused call, which are no frames.
-    scene::Scatter scatter(scene::device());
+    scene::Scatter scatter(device());
     std::vector<float> sum;
     p.params.accumulate = 1;
     capturing("captures", [&] {
-        const auto image = scene::imageOf(scene::device(), p.irradiance, p.width, p.height),
-                   places = scene::imageOf(scene::device(), p.positions, p.width, p.height);
-        const Buffer result(scene::device(), p.irradiance);
+        const auto image = scene::imageOf(device(), p.irradiance, p.width, p.height),
+                   places = scene::imageOf(device(), p.positions, p.width, p.height);
+        const Buffer result(device(), p.irradiance);
         const PelImageDesc out = imageDesc(result, PEL_FORMAT_RGB32F, p.width, p.height);
         scatter.setMaterial(1, all[0]);
-        scatter.warmUp(scene::device(), p.params, image, places, nullptr, nullptr, out);
+        scatter.warmUp(device(), p.params, image, places, nullptr, nullptr, out);
         EXPECT_THROW(scatter.execute(p.params, image, nullptr, nullptr, nullptr, out), pellucid::Error);
         EXPECT_FALSE(fs::exists(path("captures")));
         pellucid::check(pelSetName(scatter.get(), "head"));

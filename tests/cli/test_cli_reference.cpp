@@ -5,7 +5,6 @@
 
 namespace {
 
-using pellucid::io::Image;
 using Shape = std::vector<size_t>;
 
 class CliReference : public CommandTest {
@@ -56,7 +55,7 @@ class CliReference : public CommandTest {
     void npy(const std::string& name, const Shape& shape, const std::vector<float>& values) const {
         pellucid::io::writeNpy(path(name), shape, values);
     }
-    Image gbuffer_;
+    pellucid::io::Image gbuffer_;
     pellucid::io::SceneFile scene_;
 };
 
@@ -71,7 +70,7 @@ TEST_F(CliReference, PixelsOfABall) {
     expectReport(report);
     EXPECT_LT(report["points_off_mesh"].get<double>(), 1);
     EXPECT_EQ(report["points"], std::ranges::count(given("Id.X"), 1.0f));
-    const Image out = pellucid::io::readImage(path("o.exr"));
+    const pellucid::io::Image out = pellucid::io::readImage(path("o.exr"));
     for (size_t i = 0; i < out.pixelCount(); ++i) {
         const float light = out.channel("Irradiance.R").pixels[i];
         EXPECT_NEAR(light, std::max(0.0f, given("P.X")[i] / float(radius)), given("Id.X")[i] ? 0.1 : 0);
@@ -89,7 +88,7 @@ TEST_F(CliReference, VerticesUnitAndProfile) {
     EXPECT_EQ(values.shape[1], 3u);
     // A ball of 10 cm hardly scatters.
     done(ofBall + picture + fine + "--unit-mm 10 -o @o.exr");
-    const Image wide = pellucid::io::readImage(path("o.exr"));
+    const pellucid::io::Image wide = pellucid::io::readImage(path("o.exr"));
     for (size_t i = 0; i < wide.pixelCount(); ++i) {
         if (given("P.X")[i] < 2) continue;
         EXPECT_NEAR(wide.channel("Surface.B").pixels[i], wide.channel("Irradiance.B").pixels[i],
@@ -110,7 +109,7 @@ TEST_F(CliReference, AmbientLightIsThatOfItsHarmonics) {
     for (int i = 0; i < 9; ++i) ambient.sh[i][0] = 0.1f * float(i + 1), ambient.sh[i][1] = i == 1;
     pellucid::io::writeScene(path("s.toml"), scene_);
     done(ofBall + picture + fine + "-o @o.exr");
-    const Image out = pellucid::io::readImage(path("o.exr"));
+    const pellucid::io::Image out = pellucid::io::readImage(path("o.exr"));
     for (size_t i = 0; i < out.pixelCount(); ++i) {
         if (!given("Id.X")[i]) continue;
         const double x = given("N.X")[i], y = given("N.Y")[i], z = given("N.Z")[i], pi = std::numbers::pi,
@@ -162,7 +161,7 @@ TEST_F(CliReference, WalkWritesHalvesForCompare) {
     const auto medium = reportOf(walk + "@w.exr", "OMP_NUM_THREADS=3")["media"][0];
     EXPECT_NEAR(medium["mean_free_path"][1].get<double>(), 1.087 * 0.5, 0.01);
     EXPECT_NEAR(medium["single_scattering_albedo"][2].get<double>(), 0.99055, 1e-4);
-    const Image out = pellucid::io::readImage(path("w.exr"));
+    const pellucid::io::Image out = pellucid::io::readImage(path("w.exr"));
     double difference = 0;
     int count = 0;
     for (size_t i = 0; i < out.pixelCount(); ++i) {
@@ -183,7 +182,7 @@ TEST_F(CliReference, WalkWritesHalvesForCompare) {
     EXPECT_EQ(report["subsets"]["thin"]["pixels"].get<size_t>(), 0u);
     EXPECT_NEAR(report["all"]["noise"][0].get<double>(), std::sqrt(difference / count) / 2, 1e-5);
     // As A, a walk is its mean.
-    Image mean;
+    pellucid::io::Image mean;
     mean.width = mean.height = side;
     mean.addInterleaved(shade_files::colorNames, out.interleaved(shade_files::colorNames));
     pellucid::io::writeExr(path("mean.exr"), mean);
@@ -196,7 +195,7 @@ TEST_F(CliReference, MaterialsWithoutAProfileReflectWhatArrives) {
     pellucid::io::writeScene(path("s.toml"), scene_);
     done(ofBall + picture + "-o @o.exr");
     done(ofBall + picture + "--walk -o @w.exr");
-    const Image plain = pellucid::io::readImage(path("o.exr"));
+    const pellucid::io::Image plain = pellucid::io::readImage(path("o.exr"));
     EXPECT_EQ(plain.channel("Surface.R").pixels, plain.channel("Irradiance.R").pixels);
     EXPECT_EQ(pellucid::io::readImage(path("w.exr")).channel("Second.R").pixels, plain.channel("R").pixels);
     done(ofBall + "-o @v.npy");
@@ -295,7 +294,7 @@ TEST_F(CliReference, WrongUseIsRefused) {
 }
 
 TEST_F(CliReference, Compare) {
-    Image a;
+    pellucid::io::Image a;
     a.width = a.height = side;
     std::vector<float> values(3 * side * side, 0.5f);
     a.addInterleaved(shade_files::colorNames, values);
@@ -372,7 +371,7 @@ TEST_F(CliReference, ComparePaintsTheLargestChannel) {
         for (size_t i = 0; i < size * size / 2; ++i) values[3 * i + c] += 0.1f;
         npy("other.npy", {size, size, 3}, values);
         done("compare @grey.npy @other.npy --picture @d.png");
-        const Image sheet = pellucid::io::readImage(path("d.png"));
+        const pellucid::io::Image sheet = pellucid::io::readImage(path("d.png"));
         std::vector<float> column;
         for (size_t y = 0; y < size_t(sheet.height); ++y)
             for (const auto& channel : sheet.channels)

@@ -15,11 +15,6 @@ struct Kind {
     std::function<std::function<bool()>(Handle)> hold;
 };
 
-inline const pellucid::Device& device() {
-    static const pellucid::Device device("");
-    return device;
-}
-
 inline const pellucid::MeshTopology& triangle() {
     static const pellucid::MeshTopology mesh = [] {
         static const uint32_t indices[3] = {0, 1, 2};

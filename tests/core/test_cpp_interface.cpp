@@ -3,7 +3,6 @@
 #include "shading/shader_ready.h"
 
 using namespace pellucid;
-using shade_test::device;
 using shade_test::Ready;
 
 namespace {

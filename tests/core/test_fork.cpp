@@ -76,14 +76,13 @@ TEST(Fork, InTheMiddleOfThings) {
                 }
         });
     for (int i = 0; i < 20; ++i)
-        EXPECT_EQ(
-            inFork([&] {
-                uint32_t count = 0;
-                pelSetErrorCallback([](void*, PelError, const char*) {}, nullptr);
-                return saysSo(pelDeviceCount(&count)) && saysSo(pelDeviceFinish(handles::device().get())) ? 0
-                                                                                                          : 1;
-            }),
-            0);
+        EXPECT_EQ(inFork([&] {
+                      uint32_t count = 0;
+                      pelSetErrorCallback([](void*, PelError, const char*) {}, nullptr);
+                      return saysSo(pelDeviceCount(&count)) && saysSo(pelDeviceFinish(device().get())) ? 0
+                                                                                                       : 1;
+                  }),
+                  0);
     done = true;
     threads.clear();
     pelSetErrorCallback(nullptr, nullptr);

@@ -2,7 +2,7 @@
 // by many threads. Each use is an error that names the mistake, and no object is damaged.
 #include "core/handle_kinds.h"
 
-using handles::Handle;
+using AnyHandle = handles::Handle;
 using handles::Kind;
 using handles::kinds;
 using pellucid::check;
@@ -42,7 +42,7 @@ class EachKind : public testing::TestWithParam<size_t> {
 };
 
 TEST_P(EachKind, ReleasedTwiceIsAnError) {
-    const Handle made = kind().create(), other = kind().create();
+    const AnyHandle made = kind().create(), other = kind().create();
     kind().release(made);
     Heard heard;
     for (int i = 0; i < 3; ++i) {
@@ -60,7 +60,7 @@ TEST_P(EachKind, ReleasedTwiceIsAnError) {
 
 // The library holds references of its own. However often the caller releases, these stay.
 TEST_P(EachKind, InternalHoldersKeepTheirs) {
-    const Handle made = kind().create();
+    const AnyHandle made = kind().create();
     const std::function<bool()> works = kind().hold(made);
     for (int i = 0; i < 5; ++i) kind().release(made);
     EXPECT_TRUE(works());
@@ -69,22 +69,22 @@ TEST_P(EachKind, InternalHoldersKeepTheirs) {
 }
 
 TEST_P(EachKind, NoHandleIsGivenOutTwice) {
-    std::set<Handle> seen;
+    std::set<AnyHandle> seen;
     for (int i = 0; i < 300; ++i) {
-        const Handle made = kind().create();
+        const AnyHandle made = kind().create();
         EXPECT_TRUE(seen.insert(made).second);
         kind().release(made);
     }
-    const Handle alive = kind().create();
-    for (const Handle old : seen) EXPECT_EQ(kind().use(old), PEL_ERROR_INVALID_ARGUMENT);
-    for (const Handle old : seen) kind().release(old);
+    const AnyHandle alive = kind().create();
+    for (const AnyHandle old : seen) EXPECT_EQ(kind().use(old), PEL_ERROR_INVALID_ARGUMENT);
+    for (const AnyHandle old : seen) kind().release(old);
     EXPECT_EQ(kind().use(alive), PEL_SUCCESS);
     kind().release(alive);
 }
 
 TEST_P(EachKind, OtherTypesAreNamed) {
     for (const Kind& other : kinds()) {
-        const Handle made = other.create();
+        const AnyHandle made = other.create();
         Heard heard;
         if (other.name != kind().name) {
             EXPECT_EQ(kind().use(made), PEL_ERROR_INVALID_ARGUMENT);
@@ -101,7 +101,7 @@ TEST_P(EachKind, OtherTypesAreNamed) {
 }
 
 TEST_P(EachKind, InventedOnesAreRefused) {
-    const Handle made = kind().create();
+    const AnyHandle made = kind().create();
     const auto value = reinterpret_cast<uintptr_t>(made);
     std::vector<uintptr_t> invented{
         1, 2, 7, 8, 4096, UINTPTR_MAX, UINTPTR_MAX >> 1, reinterpret_cast<uintptr_t>(&value)};
@@ -115,11 +115,11 @@ TEST_P(EachKind, InventedOnesAreRefused) {
     for (int i = 0; i < 1000; ++i)
         invented.push_back(value ^ (uintptr_t(random()) >> random() % 60 << random() % 60));
     std::erase_if(invented,
-                  [](uintptr_t v) { return v == 0 || handles::isLive(reinterpret_cast<Handle>(v)); });
+                  [](uintptr_t v) { return v == 0 || handles::isLive(reinterpret_cast<AnyHandle>(v)); });
     ASSERT_GT(invented.size(), 2000u);
     Heard heard;
     for (const uintptr_t v : invented) {
-        const auto forged = reinterpret_cast<Handle>(v);
+        const auto forged = reinterpret_cast<AnyHandle>(v);
         ASSERT_EQ(kind().use(forged), PEL_ERROR_INVALID_ARGUMENT) << std::hex << v;
         kind().retain(forged);
         kind().release(forged);

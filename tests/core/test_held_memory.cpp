@@ -128,8 +128,8 @@ TEST(HeldMemory, OfALiveMesh) {
         pairOf(tessellate(reference::torusSurface(3, 1), 128, 64, reference::Tessellation::irregular).mesh)
             .mesh;
     const uint32_t n = mesh.vertices();
-    const MeshTopology topology(fixture::device(), topologyDesc(mesh));
-    const Buffer positions(fixture::device(), mesh.positions), result(fixture::device(), n * sizeof(float));
+    const MeshTopology topology(device(), topologyDesc(mesh));
+    const Buffer positions(device(), mesh.positions), result(device(), n * sizeof(float));
     for (const PelCurvatureEstimator estimator :
          {PEL_CURVATURE_QUADRIC, PEL_CURVATURE_TENSOR, PEL_CURVATURE_EDGE}) {
         PelCurvatureParams params = pelCurvatureParamsDefaults();

@@ -8,11 +8,6 @@ namespace {
 constexpr uint32_t width = 37, height = 13, pixels = width * height;
 constexpr uint64_t imageBytes = 3ull * pixels * sizeof(float), row = width * 12ull;
 
-const Device& device() {
-    static const Device device("");
-    return device;
-}
-
 PelImageDesc rgb(const Buffer& buffer, uint64_t offset) {
     return imageDesc(buffer, PEL_FORMAT_RGB32F, width, height, offset);
 }

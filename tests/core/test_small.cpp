@@ -8,8 +8,6 @@ using namespace pellucid;
 
 namespace {
 
-using fixture::device;
-
 struct SmallMesh {
     fixture::Pair both = fixture::pairOf(
         reference::tessellate(reference::torusSurface(30, 10), 11, 7, reference::Tessellation::irregular)

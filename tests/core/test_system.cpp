@@ -128,7 +128,7 @@ TEST_F(System, InputsAreFiles) {
 
 TEST_F(System, ProcessesKnowThemselves) {
     EXPECT_TRUE(fs::exists(host::programFile()));
-    EXPECT_EQ(fs::path(host::programFile()).stem(), "test_system");
+    EXPECT_TRUE(fs::equivalent(host::programFile(), testing::internal::GetArgvs().front()));
     const auto count = [] { return std::ranges::count(host::environment(), "PELLUCID_TEST=a b"); };
     host::setVariable("PELLUCID_TEST", "a b");
     EXPECT_EQ(count(), 1);

@@ -6,19 +6,19 @@ namespace {
 
 using namespace pellucid;
 
-constexpr int threadCount = 4;
+constexpr int callers = 4;
 
-void onThreads(const std::function<void(int)>& work) {
+void together(const std::function<void(int)>& work) {
     std::vector<std::jthread> threads;
-    for (int t = 0; t < threadCount; ++t) threads.emplace_back([&work, t] { work(t); });
+    for (int t = 0; t < callers; ++t) threads.emplace_back([&work, t] { work(t); });
 }
 
 TEST(Threads, OneTopologyAndOneLiveMesh) {
     const fixture::Mesh mesh = fixture::torus(24, 16);
     const uint32_t n = mesh.vertices();
-    const MeshTopology topology(fixture::device(), fixture::topologyDesc(mesh));
-    const Buffer positions(fixture::device(), mesh.positions), normals(fixture::device(), mesh.normals),
-        uvs(fixture::device(), mesh.uvs);
+    const MeshTopology topology(device(), fixture::topologyDesc(mesh));
+    const Buffer positions(device(), mesh.positions), normals(device(), mesh.normals),
+        uvs(device(), mesh.uvs);
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     params.smoothingRadius = 0.1f;
     const std::vector<float> right = fixture::curvature(mesh, fixture::topologyDesc(mesh), params).values;
@@ -26,8 +26,8 @@ TEST(Threads, OneTopologyAndOneLiveMesh) {
     const LiveMesh live(topology, params);
     const std::vector<char> saved = topology.save();
     std::atomic<int> wrong{0};
-    onThreads([&](int t) {
-        const Buffer out(fixture::device(), n * sizeof(float));
+    together([&](int t) {
+        const Buffer out(device(), n * sizeof(float));
         const PelVertexView p = vertexView(positions, n), normal = vertexView(normals, n),
                             o = vertexView(out, n);
         for (int i = 0; i < 5; ++i) {
@@ -49,14 +49,14 @@ TEST(Threads, OneProfileAndOneTable) {
     PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.width = desc.height = 16;
     desc.profile = profile.get();
-    const Lut table(fixture::device(), desc);
+    const Lut table(device(), desc);
     const std::vector<float> right = table.read<float>(PEL_LUT_FLOAT);
     std::atomic<int> wrong{0};
-    onThreads([&](int t) {
+    together([&](int t) {
         for (int i = 0; i < 10; ++i) {
             if (t == 0) profile.setName(i % 2 ? "cheek" : "a name much longer than cheek");
             wrong += !names.contains(profile.info().name);
-            const Lut own(fixture::device(), desc);
+            const Lut own(device(), desc);
             wrong += !names.contains(own.info().profile);
             wrong += own.read<float>(PEL_LUT_FLOAT) != right || table.read<float>(PEL_LUT_FLOAT) != right;
         }
@@ -70,7 +70,7 @@ TEST(Threads, OneBufferAndOneDevice) {
     const Buffer own(device, memory), host = Buffer::fromHost(device, memory.data(), 4096);
     std::atomic<int> wrong{0};
     std::atomic<uint64_t> told{0};
-    onThreads([&](int t) {
+    together([&](int t) {
         std::vector<Event> events;
         for (int i = 0; i < 20; ++i) {
             const auto* mapped = static_cast<const uint32_t*>(host.map());
@@ -101,7 +101,7 @@ TEST(Threads, OneBufferAndOneDevice) {
 TEST(Threads, Errors) {
     static std::atomic<int> heard{0};
     std::atomic<int> wrong{0};
-    onThreads([&](int t) {
+    together([&](int t) {
         const std::string name = "no such device " + std::to_string(t);
         for (int i = 0; i < 20; ++i) {
             if (t == 0)

@@ -8,7 +8,6 @@
 
 namespace lit_scenes {
 
-using pellucid::sample::Vec3;
 namespace sample = pellucid::sample;
 namespace io = pellucid::io;
 
@@ -54,7 +53,7 @@ inline Body relief(int cells, double half = 15, double (*height)(double, double)
     Body body{"relief", {}, {{0, 1, 0}, {0, 0, 1}}};
     sample::Mesh& mesh = body.mesh;
     const float floor = -12;
-    const auto add = [&](Vec3 p, Vec3 n) {
+    const auto add = [&](sample::Vec3 p, sample::Vec3 n) {
         for (double v : {p.x, p.y, p.z}) mesh.positions.push_back(float(v));
         for (double v : {n.x, n.y, n.z}) mesh.normals.push_back(float(v));
         return uint32_t(mesh.positions.size() / 3 - 1);
@@ -65,23 +64,25 @@ inline Body relief(int cells, double half = 15, double (*height)(double, double)
     const int n = cells + 1;
     for (int k = 0; k < n * n; ++k) {
         const double x = half * (2.0 * (k % n) / cells - 1), y = half * (2.0 * (k / n) / cells - 1), e = 1e-4;
-        add({x, y, height(x, y)}, normalize(Vec3{-(height(x + e, y) - height(x - e, y)) / (2 * e),
-                                                 -(height(x, y + e) - height(x, y - e)) / (2 * e), 1}));
+        add({x, y, height(x, y)},
+            normalize(sample::Vec3{-(height(x + e, y) - height(x - e, y)) / (2 * e),
+                                   -(height(x, y + e) - height(x, y - e)) / (2 * e), 1}));
     }
     for (int j = 0; j < cells; ++j)
         for (int i = 0; i < cells; ++i) {
             const auto a = uint32_t(j * n + i), b = a + uint32_t(n);
             quad(b, a, a + 1, b + 1);
         }
-    const auto rim = [&](int k, bool low, Vec3 normal) {  // counter-clockwise round the square, from above
+    const auto rim = [&](int k, bool low,
+                         sample::Vec3 normal) {  // counter-clockwise round the square, from above
         const int side = k / cells % 4, i = k % cells;
         const int v = side == 0 ? i : side == 1 ? i * n + cells : side == 2 ? n * n - 1 - i : (cells - i) * n;
         const float* p = &mesh.positions[3 * size_t(v)];
         return add({p[0], p[1], low ? floor : p[2]}, normal);
     };
-    const Vec3 outward[] = {{0, -1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}}, down{0, 0, -1};
+    const sample::Vec3 outward[] = {{0, -1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}}, down{0, 0, -1};
     for (int k = 0; k < 4 * cells; ++k) {
-        const Vec3 out = outward[k / cells];
+        const sample::Vec3 out = outward[k / cells];
         const uint32_t a = rim(k, true, out), b = rim(k + 1, true, out), c = rim(k + 1, false, out);
         quad(a, b, c, rim(k, false, out));
     }
@@ -123,21 +124,21 @@ inline Body twoBalls(double radius, int rings) {
 }
 
 // The vertex with the largest value.
-inline Vec3 foremostOf(const Body& body, const std::function<double(Vec3)>& value) {
-    Vec3 best{};
+inline sample::Vec3 foremostOf(const Body& body, const std::function<double(sample::Vec3)>& value) {
+    sample::Vec3 best{};
     for (size_t v = 0; 3 * v < body.mesh.positions.size(); ++v) {
         const float* p = &body.mesh.positions[3 * v];
-        const Vec3 at{p[0], p[1], p[2]};
+        const sample::Vec3 at{p[0], p[1], p[2]};
         if (v == 0 || value(at) > value(best)) best = at;
     }
     return best;
 }
 
 // The part of a body round one of its vertices, `size` mm a side.
-inline Body closeUp(Body body, const std::string& name, const std::function<double(Vec3)>& foremost,
+inline Body closeUp(Body body, const std::string& name, const std::function<double(sample::Vec3)>& foremost,
                     double size) {
-    const Vec3 best = foremostOf(body, foremost);
-    const Vec3 half = Vec3{1, 1, 1} * (size / 2);
+    const sample::Vec3 best = foremostOf(body, foremost);
+    const sample::Vec3 half = sample::Vec3{1, 1, 1} * (size / 2);
     body.focus = sample::Bounds();
     body.focus.add(best - half);
     body.focus.add(best + half);

@@ -18,8 +18,8 @@ using pellucid::Profile;
 struct LitScene {
     double unit = 1;
     int width = 0, height = 0;
-    Vec3 toLight;  // of the first light
-    Vec3 eye;
+    sample::Vec3 toLight;  // of the first light
+    sample::Vec3 eye;
     sample::Matrix4 viewProjection;
     sample::Lighting lighting;
     double ambient = 0;
@@ -50,7 +50,7 @@ struct SceneRequest {
 inline scatter_scene::Lamp lampOf(const sample::SurfaceLight& light, const sample::ShadowMap& map) {
     scatter_scene::Lamp lamp;
     const bool directional = light.type == sample::SurfaceLight::Type::Directional;
-    const Vec3 place = directional ? light.toLight : light.position;
+    const sample::Vec3 place = directional ? light.toLight : light.position;
     const double at[] = {place.x, place.y, place.z};
     lamp.light.type = directional ? PEL_LIGHT_DIRECTIONAL : PEL_LIGHT_POINT;
     std::copy_n(at, 3, directional ? lamp.light.toLight : lamp.light.position);
@@ -91,7 +91,8 @@ class Stage {
         shown_ = scene_->bounds();
         if (!body.focus.empty()) {
             shown_ = sample::Bounds();
-            for (const Vec3& corner : {body.focus.low, body.focus.high}) shown_.add(corner * (1 / unit));
+            for (const sample::Vec3& corner : {body.focus.low, body.focus.high})
+                shown_.add(corner * (1 / unit));
         }
     }
 
@@ -112,7 +113,7 @@ class Stage {
         s.lighting.lights = request.more;
         s.lighting.lights.insert(s.lighting.lights.begin(), {.toLight = s.toLight});
         s.ambient = request.ambient;
-        if (s.ambient > 0) s.lighting.ambient = [a = s.ambient](Vec3) { return std::array{a, a, a}; };
+        if (s.ambient > 0) s.lighting.ambient = [a = s.ambient](sample::Vec3) { return std::array{a, a, a}; };
         s.lamps = lampsOf(s.lighting, request.mapSize);
         const size_t pixels = size_t(s.width) * s.height;
         std::vector<size_t> where;
@@ -197,7 +198,7 @@ class Stage {
     sample::ShadowMap mapOf(const sample::SurfaceLight& light, int size) const {
         if (light.type == sample::SurfaceLight::Type::Directional)
             return renderShadowMap(*scene_, sample::DirectionalLight{light.toLight}, size, 1 / unit_);
-        const Vec3 way = shown_.centre() - light.position;
+        const sample::Vec3 way = shown_.centre() - light.position;
         return renderShadowMap(*scene_, sample::SpotLight{light.position, normalize(way), 60}, size);
     }
 
@@ -265,7 +266,7 @@ inline std::vector<float> motionBetween(const LitScene& before, const LitScene& 
     for (int y = 0; y < now.height; ++y)
         for (int x = 0; x < now.width; ++x) {
             const float* p = &now.positions[3 * (size_t(y) * size_t(now.width) + size_t(x))];
-            const Vec3 clip = before.viewProjection.project({p[0], p[1], p[2]});
+            const sample::Vec3 clip = before.viewProjection.project({p[0], p[1], p[2]});
             motion.push_back(float((clip.x + 1) / 2 * now.width - 0.5 - x));
             motion.push_back(float((1 - clip.y) / 2 * now.height - 0.5 - y));
         }
@@ -278,7 +279,8 @@ inline std::vector<float> thicknessOf(const Stage& stage, const LitScene& s) {
     for (size_t i = 0; i < thickness.size(); ++i) {
         if (!s.covered[i]) continue;
         const float *p = &s.positions[3 * i], *n = &s.normals[3 * i];
-        const Vec3 inwards{-n[0], -n[1], -n[2]}, from = Vec3{p[0], p[1], p[2]} + inwards * 1e-2;
+        const sample::Vec3 inwards{-n[0], -n[1], -n[2]},
+            from = sample::Vec3{p[0], p[1], p[2]} + inwards * 1e-2;
         thickness[i] = float(stage.scene().intersect({from, inwards}).distance);
     }
     return thickness;

@@ -16,10 +16,8 @@ using reference::Vec3;
 constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-inline const Device& device() {
-    static const Device device("");
-    return device;
-}
+constexpr PelScattering screen = PEL_SCATTERING_SCREEN, separable = PEL_SCATTERING_SEPARABLE,
+                        byLight = PEL_SCATTERING_LIGHT, byAuto = PEL_SCATTERING_AUTO;
 
 // --- pictures ---
 
@@ -284,7 +282,7 @@ struct Frame {
             normals[i] = radius > 0 ? normals[i] / float(radius) : float(i % 3 == 2);
     }
     Shown shade() const {
-        ShownImages shown(scatter_scene::device(), 1, 1);
+        ShownImages shown(device(), 1, 1);
         return shade(shown);
     }
     // The next frame of the same shader.

@@ -142,12 +142,12 @@ const Body& wholeHead(const char* name) {
 
 const Body& nose() {
     static const Body body = closeUp(
-        wholeHead("female"), "nose", [](Vec3 p) { return p.z - 10 * std::abs(p.x); }, 45);
+        wholeHead("female"), "nose", [](sample::Vec3 p) { return p.z - 10 * std::abs(p.x); }, 45);
     return body;
 }
 const Body& ear() {
     static const Body body = closeUp(
-        wholeHead("male"), "ear", [](Vec3 p) { return p.x; }, 70);
+        wholeHead("male"), "ear", [](sample::Vec3 p) { return p.x; }, 70);
     return body;
 }
 
@@ -189,15 +189,16 @@ TEST(AutoAgainstLambert, NoseEarAndLeaf) {
 }
 TEST(AutoAgainstLambert, TwoLightsAndAmbient) {
     SceneRequest request = requestOf(96, 4);
-    request.more = {{.toLight = sample::normalize(Vec3{-0.8, 0.3, 0.2}), .color = {0.5, 0.5, 0.5}}};
+    request.more = {{.toLight = sample::normalize(sample::Vec3{-0.8, 0.3, 0.2}), .color = {0.5, 0.5, 0.5}}};
     request.ambient = 0.2;
     compareBody(wholeHead("female"), "two lights", request);
 }
 TEST(AutoAgainstLambert, PointLightAtTheCheek) {
     SceneRequest request = requestOf(96, 4, true);
-    const Vec3 at = foremostOf(wholeHead("female"), [](Vec3 p) { return p.z - std::abs(p.x - 35); });
+    const sample::Vec3 at =
+        foremostOf(wholeHead("female"), [](sample::Vec3 p) { return p.z - std::abs(p.x - 35); });
     request.more = {{.type = sample::SurfaceLight::Type::Point,
-                     .position = at + Vec3{25, 10, 40},
+                     .position = at + sample::Vec3{25, 10, 40},
                      .color = {2000, 2000, 2000}}};
     compareBody(wholeHead("female"), "point light", request);
 }

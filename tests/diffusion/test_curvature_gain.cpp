@@ -5,7 +5,6 @@
 #include "npy.h"
 
 using namespace reference_scenes;
-using reference::Vec3;
 
 namespace {
 
@@ -42,11 +41,11 @@ Shown gainsOf(const Surface& surface, uint32_t side, double size, PelScattering 
         for (uint32_t column = 0; column < side; ++column) {
             const double x = (column + 0.5 - 0.5 * side) * size, y = (0.5 * side - row - 0.5) * size,
                          h = 1e-4;
-            const Vec3 n =
-                normalized(Vec3{(surface.height(x - h, y) - surface.height(x + h, y)) / (2 * h),
+            const reference::Vec3 n = normalized(
+                reference::Vec3{(surface.height(x - h, y) - surface.height(x + h, y)) / (2 * h),
                                 (surface.height(x, y - h) - surface.height(x, y + h)) / (2 * h), 1});
             for (int k = 0; k < 3; ++k) normals.push_back(float(n[k]));
-            p.set(p.at(column, row), Vec3{x, y, surface.height(x, y)} / unit, {},
+            p.set(p.at(column, row), reference::Vec3{x, y, surface.height(x, y)} / unit, {},
                   cut && (mirrored ? side - 1 - column : column) < side / 3 ? 0 : 1);
         }
     scatter_scene::Frame f(p, method);
@@ -220,7 +219,7 @@ TEST(CurvatureGain, LightTakesItsWayThroughTheBody) {
             lamp.maps[0].push_back(x < 0 ? 0.5f + float(slope) * x / depth : 1);
         }
         reference::ScatterPicture picture = p.exact();
-        picture.camera = Vec3{0, 0, 60};
+        picture.camera = reference::Vec3{0, 0, 60};
         for (const auto& [gain, method] : {std::pair{0, PEL_SCATTERING_SCREEN},
                                            {1, PEL_SCATTERING_SCREEN},
                                            {0, PEL_SCATTERING_LIGHT},

@@ -8,8 +8,6 @@ using namespace lit_ball;
 
 namespace {
 
-constexpr PelScattering disk = PEL_SCATTERING_SCREEN, separable = PEL_SCATTERING_SEPARABLE;
-
 // A frame of a clip: where pixels were, columns and rows and, as an image of three components, a length.
 struct ClipFrame {
     Frame frame;
@@ -62,7 +60,7 @@ ClipFrame plateFrame(uint32_t index, uint32_t shift, uint8_t plateId, double nea
         const double e = std::fmod(x, 4) < 2 ? 1 : 0.2;
         return Vec3{e, e, e};
     });
-    ClipFrame c = clipFrame(p, disk, 8, index, {});
+    ClipFrame c = clipFrame(p, screen, 8, index, {});
     for (uint32_t y = 8; y < 32; ++y)
         for (uint32_t x = 10 + shift; x < 26 + shift; ++x) {
             const size_t i = p.at(x, y);
@@ -95,10 +93,10 @@ TEST(History, EqualsTheOracle) {
         Vec3 step;
         PelScattering method;
         uint32_t taps;
-    } clips[] = {{movedBall, {2.3, -1.6, 0.8}, disk, 8},  // into the picture
+    } clips[] = {{movedBall, {2.3, -1.6, 0.8}, screen, 8},  // into the picture
                  {movedBall, {2.3, -1.6, 0.8}, separable, 9},
-                 {movedWall, {2.3, -1.6, 0}, disk, 8},
-                 {movedWall, {-1.3, 1.7, 0}, disk, 8}};
+                 {movedWall, {2.3, -1.6, 0}, screen, 8},
+                 {movedWall, {-1.3, 1.7, 0}, screen, 8}};
     for (const auto& [moved, step, method, taps] : clips)
         for (const uint32_t half : {0u, 1u}) {
             ShownImages shown(device(), 1, 1);
@@ -136,13 +134,13 @@ TEST(History, AtRestComesCloserToAllTaps) {
     const uint32_t side = sized(64u, 24u);
     const Picture p = movedBall({}, side);
     for (const uint32_t half : {0u, 1u}) {
-        ClipFrame dense = clipFrame(p, disk, 256, 0, {});
+        ClipFrame dense = clipFrame(p, screen, 256, 0, {});
         dense.frame.options.halfRate = half;
         const std::vector<float> manyTaps = alone(dense);
         ShownImages shown(device(), 1, 1);
         double first = 0, last = 0;
         for (uint32_t k = 0; k < 16; ++k) {
-            ClipFrame c = clipFrame(p, disk, 8, k, {});
+            ClipFrame c = clipFrame(p, screen, 8, k, {});
             c.frame.options.halfRate = half;
             const Shown now = shade(c, shown);
             EXPECT_EQ(now.stats.pixelsHistory, k ? covered(p) : 0);
@@ -159,22 +157,22 @@ TEST(History, GoesOnForHundredsOfFrames) {
     const Picture p = movedBall({}, 16);
     ShownImages shown(device(), 1, 1);
     for (uint32_t k = 0; k < 300; ++k)
-        ASSERT_EQ(shade(clipFrame(p, disk, 8, k, {}), shown).stats.pixelsHistory, k ? covered(p) : 0) << k;
+        ASSERT_EQ(shade(clipFrame(p, screen, 8, k, {}), shown).stats.pixelsHistory, k ? covered(p) : 0) << k;
 }
 
 // Light that a frame does not have around a pixel is not added from earlier frames.
 TEST(History, LightThatWentOutLeavesNoTrail) {
     Picture p = movedBall({}, sized(64u, 24u));
     ShownImages shown(device(), 1, 1);
-    for (uint32_t k = 0; k < 4; ++k) shade(clipFrame(p, disk, 8, k, {}), shown);
+    for (uint32_t k = 0; k < 4; ++k) shade(clipFrame(p, screen, 8, k, {}), shown);
     for (float& e : p.irradiance) e *= 0.3f;
-    const ClipFrame dim = clipFrame(p, disk, 8, 4, {});
+    const ClipFrame dim = clipFrame(p, screen, 8, 4, {});
     const std::vector<float> own = alone(dim), now = shade(dim, shown).light;
     EXPECT_NE(own, now);
     const auto sum = [](const std::vector<float>& v) { return std::accumulate(v.begin(), v.end(), 0.0); };
     EXPECT_NEAR(sum(now) / sum(own), 1, 0.02);  // 0.3 of the light of the frames before
     std::ranges::fill(p.irradiance, 0.0f);
-    const Shown dark = shade(clipFrame(p, disk, 8, 5, {}), shown);
+    const Shown dark = shade(clipFrame(p, screen, 8, 5, {}), shown);
     EXPECT_EQ(dark.light, p.irradiance);
     EXPECT_EQ(dark.stats.pixelsHistory, covered(p));
 }
@@ -213,7 +211,7 @@ TEST(History, BeginsAnew) {
         std::function<void(ClipFrame&)> change;
         bool between = false;  // a frame without a history comes first
     } cases[] = {{"a cut", [](ClipFrame& c) { c.frame.options.historyCut = 7; }},
-                 {"another size", [&](ClipFrame& c) { c = clipFrame(other, disk, 8, 3, {}); }},
+                 {"another size", [&](ClipFrame& c) { c = clipFrame(other, screen, 8, 3, {}); }},
                  {"a frame without a history", [](ClipFrame&) {}, true},
                  {"surfaces that came from far away",
                   [](ClipFrame& c) {
@@ -224,8 +222,8 @@ TEST(History, BeginsAnew) {
                   }}};
     for (const auto& one : cases) {
         ShownImages shown(device(), 1, 1);
-        for (uint32_t k = 0; k < 3; ++k) shade(clipFrame(p, disk, 8, k, {}), shown);
-        ClipFrame c = clipFrame(p, disk, 8, 3, {});
+        for (uint32_t k = 0; k < 3; ++k) shade(clipFrame(p, screen, 8, k, {}), shown);
+        ClipFrame c = clipFrame(p, screen, 8, 3, {});
         one.change(c);
         if (one.between) {
             ClipFrame without = c;
@@ -245,12 +243,12 @@ TEST(History, SameFramesGiveTheSameBits) {
     const Picture p = movedBall({}, 40);
     ShownImages one(device(), 1, 1), two(device(), 1, 1);
     for (uint32_t k = 0; k < 4; ++k) {
-        const ClipFrame c = clipFrame(p, k % 2 ? separable : disk, 9, 0, {0.2, 0.1, 0});
+        const ClipFrame c = clipFrame(p, k % 2 ? separable : screen, 9, 0, {0.2, 0.1, 0});
         const Shown a = shade(c, one), b = shade(c, two);
         EXPECT_EQ(a.light, b.light) << k;
         EXPECT_EQ(a.stats.pixelsHistory, b.stats.pixelsHistory) << k;
     }
-    const ClipFrame c = clipFrame(p, disk, 9, 0, {0.2, 0.1, 0});
+    const ClipFrame c = clipFrame(p, screen, 9, 0, {0.2, 0.1, 0});
     shade(c, one), shade(c, two);
     one.shader.execute();
     EXPECT_EQ(one.out.readAll<float>(), shade(c, two).light);
@@ -276,7 +274,7 @@ TEST(History, FollowsTheCamera) {
     uint32_t k = 0;
     for (const auto& [camera, goesOn] : frames) {
         shown.shader.set(camera);
-        EXPECT_EQ(shade(clipFrame(p, disk, 8, k, {}), shown).stats.pixelsHistory,
+        EXPECT_EQ(shade(clipFrame(p, screen, 8, k, {}), shown).stats.pixelsHistory,
                   k && goesOn ? p.pixels() : 0)
             << k;
         ++k;
@@ -287,8 +285,8 @@ TEST(History, BadMotionAndLightAreThePixelsOwn) {
     const Picture p = movedBall({}, 40);
     constexpr double bad[] = {notANumber, infinity, -infinity, 1e30, -1e30};
     ShownImages shown(device(), 1, 1);
-    shade(clipFrame(p, disk, 8, 0, {}), shown);
-    ClipFrame c = clipFrame(p, disk, 8, 1, {0.25, 0, 0});
+    shade(clipFrame(p, screen, 8, 0, {}), shown);
+    ClipFrame c = clipFrame(p, screen, 8, 1, {0.25, 0, 0});
     for (size_t i = 0; i < p.pixels(); i += 3) c.motion[i][int(i / 3 % 3)] = bad[i / 9 % 5];
     const std::vector<float> own = alone(c), now = shade(c, shown).light;
     size_t kept = 0, blended = 0;
@@ -307,8 +305,8 @@ TEST(History, BadMotionAndLightAreThePixelsOwn) {
     Picture broken = p;
     const size_t one = p.at(20, 20);
     broken.irradiance[3 * one] = notANumber;
-    shade(clipFrame(broken, disk, 8, 2, {}), shown);
-    const Shown after = shade(clipFrame(p, disk, 8, 3, {}), shown);
+    shade(clipFrame(broken, screen, 8, 2, {}), shown);
+    const Shown after = shade(clipFrame(p, screen, 8, 3, {}), shown);
     EXPECT_EQ(after.stats.pixelsHistory, covered(p) - 1);
     EXPECT_EQ(after.stats.pixelsInvalid, 0u);
     EXPECT_TRUE(std::ranges::all_of(after.light, [](float v) { return std::isfinite(v); }));
@@ -317,7 +315,7 @@ TEST(History, BadMotionAndLightAreThePixelsOwn) {
 TEST(History, IsCheckedAndCounted) {
     const Picture p = movedBall({}, 40);
     ShownImages shown(device(), 1, 1);
-    const ClipFrame c = clipFrame(p, disk, 8, 0, {});
+    const ClipFrame c = clipFrame(p, screen, 8, 0, {});
     shade(c, shown);
     const auto bytes = [&] {
         uint64_t held = 0;

@@ -53,7 +53,7 @@ void addOccluder(LitBall& ball, Form form, Draw& draw) {
 }
 
 // Frames of one structure share their programs, which take most of the time. `behind`: all lights are.
-Frame frameOf(uint32_t structure, uint32_t copy, uint32_t side = 40, bool behind = false) {
+Frame randomFrame(uint32_t structure, uint32_t copy, uint32_t side = 40, bool behind = false) {
     // Choices by `draw` may need another program; what `value` gives does not.
     Draw draw(structure), value(structure + structures * copy + 1);
     constexpr PelScattering methods[] = {
@@ -141,7 +141,7 @@ TEST(KeptResults, OfFramesWithFieldsAtRandom) {
     KeptSums kept("frames.dat");
     const Device oneLane = lanes::deviceOf(1);  // as GPUs have
     for (uint32_t index = 0; index < structures * copies; ++index) {
-        const Frame f = frameOf(index % structures, index / structures);
+        const Frame f = randomFrame(index % structures, index / structures);
         const Shown shown = f.shade();
         // Other widths leave other tiles alone.
         kept.expect(shown.light,
@@ -165,7 +165,7 @@ TEST(KeptResults, WorkOfFramesWithFieldsAtRandom) {
     KeptSums kept(workFile(device())), narrowKept("work_one_lane.dat");
     for (uint32_t index = 0; index < 3 * structures; ++index)
         for (const float error : {0.004f, 0.05f}) {
-            Frame f = frameOf(index % structures, index / structures, 200, index >= 2 * structures);
+            Frame f = randomFrame(index % structures, index / structures, 200, index >= 2 * structures);
             f.options.targetError = error;
             if (index / structures == 1) f.profile = Profile::burleyDistance({0.12f, 0.06f, 0.03f});
             const std::string what = "frame " + std::to_string(index) + ", error " + std::to_string(error);

@@ -10,8 +10,6 @@ using namespace lit_ball;
 
 namespace {
 
-constexpr PelScattering byLight = PEL_SCATTERING_LIGHT, byAuto = PEL_SCATTERING_AUTO;
-
 reference::MappedLight exactLight(const LitBall& ball) {
     const PelLight& l = ball.light;
     reference::MappedLight light;
@@ -321,7 +319,7 @@ TEST(LightSpace, ThroughABallIsTheSurfaceIntegralForEveryFormOfMap) {
                                 surfaceIntegral(ball, known ? *medium : *skin, p.place(i), 48, directed));
         for (PelScattering method : {byLight, byAuto}) {
             Frame f = frameOf({ball}, p.width, method);
-            ShownImages shown(scatter_scene::device(), 1, 1);
+            ShownImages shown(device(), 1, 1);
             if (known) {
                 f.profile = burley;
                 f.material.curvatureGain = 1;
@@ -407,7 +405,7 @@ TEST(LightSpace, SlabsLetThroughWhatRandomWalksDo) {
             f.profile = Profile::burley(paths, white);
             f.material.curvatureGain = 1;
             f.lamps = {lamp};
-            ShownImages shown(scatter_scene::device(), 1, 1);
+            ShownImages shown(device(), 1, 1);
             shown.shader.set(standingAt({0, 0, 60}));
             const auto middle = [&] { return f.shade(shown).light[3 * (side / 2 * side + side / 2)]; };
             const float light = middle();

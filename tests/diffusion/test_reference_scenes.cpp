@@ -4,6 +4,7 @@
 #include "test.h"
 
 using namespace reference_scenes;
+using scatter_scene::byAuto, scatter_scene::byLight, scatter_scene::screen, scatter_scene::separable;
 
 namespace {
 
@@ -44,9 +45,6 @@ std::vector<Errors> compare(const char* scene, const ReferenceScene& r, const st
     return all;
 }
 
-constexpr PelScattering byAuto = PEL_SCATTERING_AUTO, byLight = PEL_SCATTERING_LIGHT,
-                        byScreen = PEL_SCATTERING_SCREEN, separable = PEL_SCATTERING_SEPARABLE;
-
 }  // namespace
 
 // Taps are as accurate as in other prototypes. With shadows only from the map, blue, which scatters less far
@@ -60,27 +58,26 @@ TEST(ReferenceScenes, Head) {
     for (const auto& [scene, r] : {std::pair{"head", &usual}, {"head, radius x 4", &wide}}) {
         const bool first = r == &usual;
         const Errors lambert = error(*r, r->irradiance), traced = {1e4, 1e4, 1e4};
-        const std::vector<Errors> e =
-            compare(scene, *r,
-                    {{"auto and map", byAuto, 0, true, true,
-                      valuesOf(first ? tolerance::lightHead : tolerance::lightFour)},
-                     {"auto", byAuto, 0, true, false,
-                      first ? Errors{tolerance::headOnScreenRed, tolerance::headOnScreenGreen,
-                                     tolerance::headOnScreenBlue}
-                            : traced},
-                     {"light", byLight, 0, true, true,
-                      valuesOf(first ? tolerance::lightHeadOfLight : tolerance::lightFourOfLight)},
-                     {"auto, shadows of the map",
-                      byAuto,
-                      0,
-                      false,
-                      true,
-                      {lambert[0], lambert[1], std::max(lambert[2], double(tolerance::headByMapBlue))}},
-                     {"separable, 25 taps", separable, 25, true, false,
-                      first ? Errors{43, 16, 10} : Errors{227, 92, 54}},
-                     {"disk, 32 taps", byScreen, 32, true, false,
-                      first ? Errors{41, 14.5, 9.5} : Errors{142, 78, 58}},
-                     {"disk, 256 taps", byScreen, 256, true, false, first ? traced : Errors{130, 75, 56}}});
+        const std::vector<Errors> e = compare(
+            scene, *r,
+            {{"auto and map", byAuto, 0, true, true,
+              valuesOf(first ? tolerance::lightHead : tolerance::lightFour)},
+             {"auto", byAuto, 0, true, false,
+              first ? Errors{tolerance::headOnScreenRed, tolerance::headOnScreenGreen,
+                             tolerance::headOnScreenBlue}
+                    : traced},
+             {"light", byLight, 0, true, true,
+              valuesOf(first ? tolerance::lightHeadOfLight : tolerance::lightFourOfLight)},
+             {"auto, shadows of the map",
+              byAuto,
+              0,
+              false,
+              true,
+              {lambert[0], lambert[1], std::max(lambert[2], double(tolerance::headByMapBlue))}},
+             {"separable, 25 taps", separable, 25, true, false,
+              first ? Errors{43, 16, 10} : Errors{227, 92, 54}},
+             {"disk, 32 taps", screen, 32, true, false, first ? Errors{41, 14.5, 9.5} : Errors{142, 78, 58}},
+             {"disk, 256 taps", screen, 256, true, false, first ? traced : Errors{130, 75, 56}}});
         EXPECT_LT(e[0][0], 0.95 * e[1][0]) << scene << ": much is seen by the light only";
     }
     const Shown shown = shade(Device(""), usual, byAuto, true, false);

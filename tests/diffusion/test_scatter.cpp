@@ -10,7 +10,6 @@ using namespace scatter_scene;
 
 namespace {
 
-constexpr PelScattering separable = PEL_SCATTERING_SEPARABLE, screen = PEL_SCATTERING_SCREEN;
 constexpr std::pair<PelScattering, uint32_t> byTaps[] = {
     {separable, 25}, {separable, 0}, {screen, 8}, {screen, 64}};
 constexpr std::pair<PelScattering, uint32_t> ways[] = {

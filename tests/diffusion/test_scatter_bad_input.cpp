@@ -15,13 +15,13 @@ struct Way {
     uint32_t taps;
     bool gathers;  // from irradiance per pixel
 };
-constexpr Way ways[] = {{"pre-integrated", PEL_SCATTERING_PREINTEGRATED, 0, false},
-                        {"separable", PEL_SCATTERING_SEPARABLE, 0, true},
-                        {"disk", PEL_SCATTERING_SCREEN, 32, true},
-                        {"screen", PEL_SCATTERING_SCREEN, 0, true},
-                        {"light", PEL_SCATTERING_LIGHT, 0, true},
-                        {"texture", PEL_SCATTERING_TEXTURE, 0, false},
-                        {"auto", PEL_SCATTERING_AUTO, 0, true}};
+constexpr Way everyWay[] = {{"pre-integrated", PEL_SCATTERING_PREINTEGRATED, 0, false},
+                            {"separable", PEL_SCATTERING_SEPARABLE, 0, true},
+                            {"disk", PEL_SCATTERING_SCREEN, 32, true},
+                            {"screen", PEL_SCATTERING_SCREEN, 0, true},
+                            {"light", PEL_SCATTERING_LIGHT, 0, true},
+                            {"texture", PEL_SCATTERING_TEXTURE, 0, false},
+                            {"auto", PEL_SCATTERING_AUTO, 0, true}};
 
 constexpr uint32_t texels = 8;  // along a side of the scattered texture
 
@@ -70,7 +70,7 @@ TEST(ScatterBadInput, NoNumberSpreadsNoFurtherThanTheProfile) {
     const double reach = reference::scatterReach(*reference::skinProfile()) * 0.4 / 2.7;
     const size_t bad = p.at(p.width * 5 / 8, p.width / 2);
     size_t component = 0;  // another one each time
-    for (const Way& way : ways) {
+    for (const Way& way : everyWay) {
         const Shown before = shade(clean, way);
         ++component;
         for (const std::string what : {"irradiance", "position", "normal"}) {
@@ -111,7 +111,7 @@ TEST(ScatterBadInput, NoNumberSpreadsNoFurtherThanTheProfile) {
 // A texel of a scattered texture with NaN affects the pixels that read it, and no others.
 TEST(ScatterBadInput, NoNumberInATextureIsThatTexelsOwn) {
     Frame f = frame(32);
-    const Way& texture = ways[5];
+    const Way& texture = everyWay[5];
     const Shown before = shade(f, texture);
     f.texture.assign(3 * texels * texels, 0.5f);
     f.texture[3 * (texels * 3 + 3)] = notANumber;
@@ -129,7 +129,7 @@ TEST(ScatterBadInput, NoNumberInATextureIsThatTexelsOwn) {
 TEST(ScatterBadInput, RadiiFromAMillionthToAMillionPixels) {
     const uint32_t side = sized(48u, 16u);
     const double pixel = 2.2 * lit_ball::radius / side;
-    for (const Way& way : ways) {
+    for (const Way& way : everyWay) {
         Frame f = frame(side);
         for (float pixels : {1e-6f, 1e-3f, 1e3f, 1e6f}) {
             f.material.diffusionRadius = std::max(float(pixels * pixel), 1e-6f);
@@ -149,7 +149,7 @@ TEST(ScatterBadInput, RadiiFromAMillionthToAMillionPixels) {
 
 TEST(ScatterBadInput, PicturesOfOnePixel) {
     const auto light = [](double x, double) { return Vec3{1, 0.5, x}; };
-    for (const Way& way : ways)
+    for (const Way& way : everyWay)
         for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 9u}, {9u, 1u}, {2u, 2u}})
             for (const auto& [mapSide, radius] : {std::pair{1u, 0.4f}, {16u, 1e-6f}, {16u, 1e6f}}) {
                 Frame f = frame(plane(width, height, 0.2, light), mapSide);
@@ -172,7 +172,7 @@ TEST(ScatterBadInput, EveryPixelOfItsOwnId) {
     f.lamps[0].maps.clear();
     f.materials = 255;
     for (size_t i = 0; i < f.picture.pixels(); ++i) f.picture.ids[i] = uint8_t(1 + i % 255);
-    for (const Way& way : ways) {
+    for (const Way& way : everyWay) {
         const Shown lit = shade(f, way);
         expectLight(lit.light, 1.001f, way.name);
         EXPECT_EQ(lit.stats.pixelsInvalid, 0u) << way.name;
@@ -188,7 +188,7 @@ TEST(ScatterBadInput, MapsWithoutTheObject) {
     const Frame clean = frame(sized(40u, 20u));
     Frame without = clean;
     without.lamps[0].maps.clear();
-    for (const Way& way : ways) {
+    for (const Way& way : everyWay) {
         const Shown none = shade(without, way);
         for (int kind = 0; kind < 4; ++kind) {
             Frame f = clean;

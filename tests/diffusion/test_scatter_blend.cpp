@@ -8,9 +8,6 @@ using namespace scatter_scene;
 
 namespace {
 
-constexpr PelScattering separable = PEL_SCATTERING_SEPARABLE, screen = PEL_SCATTERING_SCREEN,
-                        byAuto = PEL_SCATTERING_AUTO;
-
 Picture stripes(bool two = false) {
     Picture p = plane(96, 48, 0.3, [](double x, double) { return Vec3{x > 14 ? 1.0 : 0.1, 0.5, x / 30}; });
     for (size_t i = 0; two && i < p.pixels(); ++i) p.ids[i] = uint8_t(1 + (i % 96 > 48));

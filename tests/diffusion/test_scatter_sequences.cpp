@@ -8,9 +8,6 @@ using pellucid::TextureScatter;
 
 namespace {
 
-constexpr PelScattering screen = PEL_SCATTERING_SCREEN, separable = PEL_SCATTERING_SEPARABLE,
-                        byLight = PEL_SCATTERING_LIGHT, byAuto = PEL_SCATTERING_AUTO;
-
 Profile gaussian(float sigma) {
     return Profile::gaussians({{sigma * sigma, {1, 0.6f, 0.3f}}, {0.04f * sigma * sigma, {0, 0.4f, 0.7f}}});
 }

@@ -10,12 +10,13 @@ const double target = pelScatterParamsDefaults().targetError;
 
 std::vector<Body> bodies() {
     const Body ear = closeUp(
-        head(headFile("head_male"), "male", sized(1, 0)), "ear", [](Vec3 p) { return p.x; }, 70);
+        head(headFile("head_male"), "male", sized(1, 0)), "ear", [](pellucid::sample::Vec3 p) { return p.x; },
+        70);
     return {ball(10, sized(96, 8)), relief(sized(96, 10)),
             head(headFile("head_female"), "female", sized(1, 0)), ear};
 }
 
-constexpr double lightsFrom[] = {0, 70, 150};  // azimuth, degrees: in front, at the side, behind
+constexpr double directions[] = {0, 70, 150};  // azimuth, degrees: in front, at the side, behind
 
 LitScene sceneOf(const Stage& stage, int size, double azimuth) {
     SceneRequest request;
@@ -70,7 +71,7 @@ TEST(ScatterSteady, LeavesOutNoMoreThanTheTargetError) {
     for (const Body& body : bodies()) {
         const Stage stage(device, body, 1);
         for (int size : {sized(96, 16), sized(256, 24), sized(448, 32)})
-            for (double azimuth : lightsFrom) {
+            for (double azimuth : directions) {
                 const LitScene s = sceneOf(stage, size, azimuth);
                 const std::string where = body.name + ", " + std::to_string(size) + " pixels, light from " +
                                           std::to_string(azimuth);
@@ -121,7 +122,7 @@ TEST(ScatterSteady, TilesFadeIn) {
 
 // The contrast of a wave grows by steps of 4 %: it is left as it is, then scattered to a part, then wholly.
 TEST(ScatterSteady, TilesFadeInWithTheirContrast) {
-    scatter_scene::Scatter scatter(scatter_scene::device());
+    scatter_scene::Scatter scatter(device());
     std::vector<double> shares;  // of what scattering changes
     for (double contrast = 0.01; contrast < 1; contrast *= 1.04) {
         scatter_scene::Picture p = scatter_scene::plane(64, 64, 0.3, [&](double x, double) {

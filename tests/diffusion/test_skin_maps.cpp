@@ -9,9 +9,6 @@ using namespace lit_ball;
 
 namespace {
 
-constexpr PelScattering screen = PEL_SCATTERING_SCREEN, byAuto = PEL_SCATTERING_AUTO,
-                        byLight = PEL_SCATTERING_LIGHT;
-
 using Factor = std::function<double(double, double)>;  // of the radius, over shares of the picture
 
 std::vector<float> weightsOf(const Picture& p, const Factor& factor) {
@@ -213,7 +210,7 @@ TEST(SkinMaps, BadInput) {
         f.material.scattering = method;
         for (float v : f.shade().light) ASSERT_TRUE(std::isfinite(v)) << int(method);
     }
-    ShownImages shown(scatter_scene::device(), 32, 32);
+    ShownImages shown(device(), 32, 32);
     expectRefused({"skin", "two components"}, [&] { shown.set(PEL_SLOT_SKIN, std::vector<float>(32 * 32)); });
     shown.set(PEL_SLOT_NORMAL_SHADING, std::vector<float>(3 * 32 * 32, 0.577f));
     shown.shader.set(PEL_SLOT_SKIN, imageOf(shown.device, std::vector<float>(2 * 16 * 16), 16, 16));

@@ -9,12 +9,11 @@ namespace {
 
 using namespace pellucid;
 using reference::LitTriangle;
-using scatter_scene::device;
 using scatter_scene::infinity;
 using scatter_scene::notANumber;
 using scatter_scene::Vec3;
 
-struct Mesh {
+struct LitMesh {
     std::vector<float> positions, irradiance;
     std::vector<uint32_t> indices;
     PelIrradianceAt at = PEL_IRRADIANCE_VERTEX;
@@ -59,10 +58,10 @@ std::vector<float> integrate(PelSurfaceIntegralDesc desc, const std::vector<floa
 }
 
 // A crumpled sheet: `cells` squares a side of `size` long, uneven in height, with light of three colours.
-Mesh sheet(int cells, float size, PelIrradianceAt at = PEL_IRRADIANCE_VERTEX) {
+LitMesh sheet(int cells, float size, PelIrradianceAt at = PEL_IRRADIANCE_VERTEX) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> unit(0, 1);
-    Mesh mesh;
+    LitMesh mesh;
     mesh.at = at;
     for (int y = 0; y <= cells; ++y)
         for (int x = 0; x <= cells; ++x)
@@ -83,7 +82,7 @@ Mesh sheet(int cells, float size, PelIrradianceAt at = PEL_IRRADIANCE_VERTEX) {
 }
 
 // Inside of triangles, at corners, on edges.
-std::vector<float> pointsOn(const Mesh& mesh, int count) {
+std::vector<float> pointsOn(const LitMesh& mesh, int count) {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> unit(0, 1);
     std::vector<float> points;
@@ -102,15 +101,15 @@ std::vector<float> pointsOn(const Mesh& mesh, int count) {
     return points;
 }
 
-std::pair<Mesh, std::vector<float>> inUnit(Mesh mesh, std::vector<float> points, float unit) {
+std::pair<LitMesh, std::vector<float>> inUnit(LitMesh mesh, std::vector<float> points, float unit) {
     for (auto* values : {&mesh.positions, &points})
         for (float& v : *values) v /= unit;
     return {mesh, points};
 }
 
-void expectBruteForce(const PelSurfaceIntegralDesc& desc, const Mesh& mesh, const std::vector<float>& points,
-                      const reference::Profile& profile, reference::Rgb cut, double within,
-                      const char* what) {
+void expectBruteForce(const PelSurfaceIntegralDesc& desc, const LitMesh& mesh,
+                      const std::vector<float>& points, const reference::Profile& profile, reference::Rgb cut,
+                      double within, const char* what) {
     const std::vector<float> found = integrate(desc, points);
     const std::vector<LitTriangle> triangles = mesh.triangles();
     for (size_t i = 0; i < points.size() / 3; ++i) {
@@ -145,7 +144,7 @@ TEST(SurfaceIntegral, EqualsBruteForceForEveryProfile) {
          reference::tableProfile({0, 0.5, 1, 2}, {{1, 2, 0}, {.5, 1, 1}, {.25, .5, .5}, {0, 0, .25}}),
          tolerance::surfaceStep},
     };
-    const Mesh mesh = sheet(6, 1.3f);
+    const LitMesh mesh = sheet(6, 1.3f);
     const std::vector<float> points = pointsOn(mesh, sized(12, 3));
     for (const auto& c : cases) {
         PelSurfaceIntegralDesc desc = mesh.desc();
@@ -162,7 +161,7 @@ TEST(SurfaceIntegral, UnitRadiusCutAndPlaceOfTheLight) {
     const auto truth =
         reference::burleyProfile({path[0], path[1], path[2]}, {albedo[0], albedo[1], albedo[2]});
     for (PelIrradianceAt at : {PEL_IRRADIANCE_VERTEX, PEL_IRRADIANCE_TRIANGLE, PEL_IRRADIANCE_CORNER}) {
-        const Mesh mesh = sheet(4, 0.2f, at);
+        const LitMesh mesh = sheet(4, 0.2f, at);
         const std::vector<float> points = pointsOn(mesh, sized(6, 2));
         PelSurfaceIntegralDesc desc = mesh.desc();
         desc.profile = burley.get();
@@ -179,7 +178,7 @@ TEST(SurfaceIntegral, SphereHasTheClosedForm) {
     const int rings = sized(320, 16);
     const double radius = 10;
     const sample::Mesh sphere = sample::makeSphere(radius, rings, 2 * rings);
-    Mesh mesh{sphere.positions, {}, sphere.triangles};
+    LitMesh mesh{sphere.positions, {}, sphere.triangles};
     for (size_t i = 2; i < mesh.positions.size(); i += 3)
         mesh.irradiance.insert(mesh.irradiance.end(), 3, std::max(0.0f, mesh.positions[i] / float(radius)));
     std::vector<float> points;
@@ -210,7 +209,7 @@ TEST(SurfaceIntegral, SphereHasTheClosedForm) {
 // point.
 TEST(SurfaceIntegral, HierarchyKeepsItsBound) {
     for (float unit : {1.0f, 20.0f, 0.05f}) {
-        const Mesh inMm = sheet(sized(160, 8), 0.25f);
+        const LitMesh inMm = sheet(sized(160, 8), 0.25f);
         const auto [mesh, points] = inUnit(inMm, pointsOn(inMm, 200), unit);
         PelSurfaceIntegralDesc desc = mesh.desc(unit);
         desc.tolerance = 1e-7f;
@@ -229,7 +228,7 @@ TEST(SurfaceIntegral, HierarchyKeepsItsBound) {
 }
 
 TEST(SurfaceIntegral, NothingLitNoPointsAndPointsThatAreNoNumbers) {
-    Mesh mesh = sheet(3, 1);
+    LitMesh mesh = sheet(3, 1);
     const PelSurfaceIntegralDesc pointless = mesh.desc();
     EXPECT_EQ(pelSurfaceIntegral(device().get(), &pointless, nullptr), PEL_SUCCESS);
     const std::vector<float> found = integrate(mesh.desc(), {notANumber, 0, 0, 1, 1, 0, 0, infinity, 0});
@@ -247,27 +246,27 @@ TEST(SurfaceIntegral, NothingLitNoPointsAndPointsThatAreNoNumbers) {
 
 TEST(SurfaceIntegral, BadInputIsRefusedByName) {
     const auto refused = [](const char* message, const auto& corrupt) {
-        Mesh mesh = sheet(2, 1);
+        LitMesh mesh = sheet(2, 1);
         PelSurfaceIntegralDesc desc = mesh.desc();
         corrupt(mesh, desc);
         expectRefused(message, [&] { integrate(desc, {0, 0, 0}); });
     };
     constexpr float nan = notANumber;
-    refused("triangle 1 has vertex 9; the mesh has 9", [](Mesh& m, auto&) { m.indices[4] = 9; });
-    refused("position of vertex 4", [&](Mesh& m, auto&) { m.positions[13] = nan; });
-    refused("irradiance 2 holds -1", [](Mesh& m, auto&) { m.irradiance[6] = -1; });
-    refused("irradiance 0 holds", [&](Mesh& m, auto&) { m.irradiance[0] = nan; });
-    refused("numIndices is 23", [](Mesh&, auto& d) { d.numIndices = 23; });
-    refused("indices is NULL", [](Mesh&, auto& d) { d.indices = nullptr; });
-    refused("positions is NULL", [](Mesh&, auto& d) { d.positions = nullptr; });
-    refused("irradiance is NULL", [](Mesh&, auto& d) { d.irradiance = nullptr; });
-    refused("irradianceAt is 3", [](Mesh&, auto& d) { d.irradianceAt = PelIrradianceAt(3); });
-    refused("tolerance is 0", [](Mesh&, auto& d) { d.tolerance = 0; });
-    refused("diffusionRadius is -1", [](Mesh&, auto& d) { d.diffusionRadius = -1; });
-    refused("millimetresPerUnit is 0", [](Mesh&, auto& d) { d.millimetresPerUnit = 0; });
-    refused("cut is", [&](Mesh&, auto& d) { d.cut[1] = nan; });
-    refused("no red energy within 1e-30", [](Mesh&, auto& d) { d.cut[0] = 1e-30f; });
-    Mesh mesh = sheet(2, 1);
+    refused("triangle 1 has vertex 9; the mesh has 9", [](LitMesh& m, auto&) { m.indices[4] = 9; });
+    refused("position of vertex 4", [&](LitMesh& m, auto&) { m.positions[13] = nan; });
+    refused("irradiance 2 holds -1", [](LitMesh& m, auto&) { m.irradiance[6] = -1; });
+    refused("irradiance 0 holds", [&](LitMesh& m, auto&) { m.irradiance[0] = nan; });
+    refused("numIndices is 23", [](LitMesh&, auto& d) { d.numIndices = 23; });
+    refused("indices is NULL", [](LitMesh&, auto& d) { d.indices = nullptr; });
+    refused("positions is NULL", [](LitMesh&, auto& d) { d.positions = nullptr; });
+    refused("irradiance is NULL", [](LitMesh&, auto& d) { d.irradiance = nullptr; });
+    refused("irradianceAt is 3", [](LitMesh&, auto& d) { d.irradianceAt = PelIrradianceAt(3); });
+    refused("tolerance is 0", [](LitMesh&, auto& d) { d.tolerance = 0; });
+    refused("diffusionRadius is -1", [](LitMesh&, auto& d) { d.diffusionRadius = -1; });
+    refused("millimetresPerUnit is 0", [](LitMesh&, auto& d) { d.millimetresPerUnit = 0; });
+    refused("cut is", [&](LitMesh&, auto& d) { d.cut[1] = nan; });
+    refused("no red energy within 1e-30", [](LitMesh&, auto& d) { d.cut[0] = 1e-30f; });
+    LitMesh mesh = sheet(2, 1);
     PelSurfaceIntegralDesc desc = mesh.desc();
     const Buffer buffer(device(), std::vector<float>(6));
     desc.points = vertexView(buffer, 2);
@@ -276,7 +275,7 @@ TEST(SurfaceIntegral, BadInputIsRefusedByName) {
 }
 
 TEST(SurfaceIntegral, TellsHowFarItIsAndCanBeCancelled) {
-    const Mesh mesh = sheet(4, 1);
+    const LitMesh mesh = sheet(4, 1);
     std::vector<float> points;
     for (int i = 0; i < 40000; ++i) points.insert(points.end(), {0.0001f * float(i), 1, 0});
     struct Told {

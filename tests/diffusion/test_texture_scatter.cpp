@@ -6,23 +6,24 @@
 
 using namespace scatter_scene;
 using pellucid::TextureScatter;
-using pellucid::sample::Mesh;
+using TexturedMesh = pellucid::sample::Mesh;
 
 namespace {
 
-uint32_t verticesOf(const Mesh& m) {
+uint32_t verticesOf(const TexturedMesh& m) {
     return uint32_t(m.positions.size() / 3);
 }
 
 // Adds a rectangle of the plane, in a rectangle of the texture.
-void addPlate(Mesh& m, float x0, float y0, float x1, float y1, float u0, float v0, float u1, float v1) {
+void addPlate(TexturedMesh& m, float x0, float y0, float x1, float y1, float u0, float v0, float u1,
+              float v1) {
     const uint32_t first = verticesOf(m);
     m.positions.insert(m.positions.end(), {x0, y0, 0, x1, y0, 0, x1, y1, 0, x0, y1, 0});
     m.uvs.insert(m.uvs.end(), {u0, v0, u1, v0, u1, v1, u0, v1});
     for (uint32_t v : {0, 1, 2, 0, 2, 3}) m.triangles.push_back(first + v);
 }
-Mesh plate(float width, float height, float u = 1, float v = 1) {
-    Mesh m;
+TexturedMesh plate(float width, float height, float u = 1, float v = 1) {
+    TexturedMesh m;
     addPlate(m, 0, 0, width, height, 0, 0, u, v);
     return m;
 }
@@ -30,7 +31,7 @@ Mesh plate(float width, float height, float u = 1, float v = 1) {
 struct Texture {
     uint32_t width, height;
     TextureScatter scatter;
-    Texture(const Mesh& m, uint32_t w, uint32_t h) : width(w), height(h) {
+    Texture(const TexturedMesh& m, uint32_t w, uint32_t h) : width(w), height(h) {
         PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
         desc.width = w, desc.height = h;
         desc.numVertices = verticesOf(m), desc.numIndices = m.triangles.size();
@@ -67,7 +68,7 @@ Profile oneGaussian(double sigma) {
 
 // A step on a plane whose texture is stretched three times as far along u: an error function of true lengths.
 TEST(TextureScatter, WidthsAreLengthsOnTheSurface) {
-    const Mesh m = plate(36, 12);
+    const TexturedMesh m = plate(36, 12);
     Texture t(m, 120, 120);
     const auto positions = t.draw(m.positions);
     for (int axis : {0, 1})
@@ -101,7 +102,7 @@ TEST(TextureScatter, TexelsOfSeveralLengthsInOneIsland) {
         const auto pair = [axis](float along, float across) {
             return axis ? std::array{across, along} : std::array{along, across};
         };
-        Mesh m;
+        TexturedMesh m;
         const float places[] = {0, 20, 40}, us[] = {0, 0.75f, 1};
         for (int i = 0; i < 3; ++i)
             for (float across : {0.0f, 1.0f}) {
@@ -130,7 +131,7 @@ TEST(TextureScatter, TexelsOfSeveralLengthsInOneIsland) {
 
 // Two arms of one island, a texel apart in the texture and far away on the surface: no light crosses.
 TEST(TextureScatter, LightDoesNotCrossASlit) {
-    Mesh m;
+    TexturedMesh m;
     const auto vertex = [&](float x, float y, float u, float v) {
         m.positions.insert(m.positions.end(), {x, y, 0}), m.uvs.insert(m.uvs.end(), {u, v});
     };
@@ -170,7 +171,7 @@ TEST(TextureScatter, VariancesAddToTheProfile) {
 
 // Against the surface integral over the mesh, a sphere lit from the side.
 TEST(TextureScatter, ASphereIsNearItsSurfaceIntegral) {
-    const Mesh m = pellucid::sample::makeSphere(10, 96, 192);
+    const TexturedMesh m = pellucid::sample::makeSphere(10, 96, 192);
     Texture t(m, 512, 256);
     const Vec3 toLight = normalized(Vec3{0.3, 1, 0.2});
     std::vector<float> lit;
@@ -207,7 +208,7 @@ TEST(TextureScatter, ASphereIsNearItsSurfaceIntegral) {
 }
 
 TEST(TextureScatter, SeamsNeitherDarkenNorLeak) {
-    Mesh m;
+    TexturedMesh m;
     addPlate(m, 0, 0, 10, 10, 0.05f, 0.05f, 0.45f, 0.95f);
     addPlate(m, 50, 0, 60, 10, 0.46f, 0.05f, 0.95f,
              0.95f);  // one texel away in the texture, far away on the surface
@@ -239,7 +240,7 @@ TEST(TextureScatter, SeamsNeitherDarkenNorLeak) {
 }
 
 TEST(TextureScatter, AlbedoBeforeAndAfter) {
-    const Mesh m = plate(10, 10);
+    const TexturedMesh m = plate(10, 10);
     Texture t(m, 40, 40);
     std::vector<float> e, albedo;
     for (size_t i = 0; i < t.texels(); ++i)
@@ -259,7 +260,7 @@ TEST(TextureScatter, AlbedoBeforeAndAfter) {
 }
 
 TEST(TextureScatter, OtherProfilesAreAFewGaussians) {
-    const Mesh m = plate(10, 10);
+    const TexturedMesh m = plate(10, 10);
     Texture t(m, 16, 16);
     const std::vector<float> e(3 * t.texels(), 1.0f);
     const Profile burley = Profile::burleyDistance({1.0f, 0.4f, 0.2f}),
@@ -282,7 +283,7 @@ TEST(TextureScatter, OtherProfilesAreAFewGaussians) {
 }
 
 TEST(TextureScatter, BadInput) {
-    Mesh m;
+    TexturedMesh m;
     addPlate(m, 0, 0, 10, 10, 0.2f, 0.2f, 0.8f, 0.8f);
     PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
     desc.width = desc.height = 16;

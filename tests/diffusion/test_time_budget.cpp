@@ -44,22 +44,19 @@ class TimeBudget : public ::testing::Test {
         ShadeRequest request;
         request.scattering = method, request.targetError = target, request.timeBudget = budget;
         request.halfRate = half;
-        return shoot(scatter_scene::device(), scene, profile_, 1, request);
+        return shoot(device(), scene, profile_, 1, request);
     }
     LitScene scene(double ambient = 0) {
         SceneRequest request;
         request.size = 64, request.mapSize = 128, request.ambient = ambient;
-        return Stage(scatter_scene::device(), ball(10, 60), 1).look(request, profile_);
+        return Stage(device(), ball(10, 60), 1).look(request, profile_);
     }
     const std::string path_ = (std::filesystem::temp_directory_path() /
                                ("pellucid-tuning-" + std::to_string(::getpid()) + ".txt"))
                                   .string(),
-                      device_ = std::string(scatter_scene::device().info().name) + ", " +
-                                scatter_scene::device().info().platform;
+                      device_ = std::string(device().info().name) + ", " + device().info().platform;
     const Profile profile_ = Profile::skin();
 };
-
-}  // namespace
 
 TEST_F(TimeBudget, TakesWhatIsNearestToLightOfWhatFits) {
     writeRecord(device_);
@@ -92,7 +89,7 @@ TEST_F(TimeBudget, TakesWhatIsNearestToLightOfWhatFits) {
     Shot by = shot(lit, PEL_SCATTERING_AUTO, 0.003f, 1e3f);
     const auto& ids = lit.gbuffer.material;
     const auto counts = [&](const auto& values, PelFormat format) {
-        by.shader.set(PEL_SLOT_MATERIAL, imageDesc(pellucid::Buffer(scatter_scene::device(), values), format,
+        by.shader.set(PEL_SLOT_MATERIAL, imageDesc(pellucid::Buffer(device(), values), format,
                                                    uint32_t(lit.width), uint32_t(lit.height)));
         const double before = by.stats.expectedMilliseconds,
                      now = by.shader.commit().stats().expectedMilliseconds;
@@ -173,3 +170,5 @@ TEST_F(TimeBudget, RefusesDamagedRecordsByName) {
         shot(lit, PEL_SCATTERING_AUTO, 0.002f);  // without a budget nobody reads it
     }
 }
+
+}  // namespace

@@ -5,12 +5,12 @@
 namespace {
 
 constexpr int width = 40, height = 32;
-using Picture = std::vector<float>;
+using Pixels = std::vector<float>;
 
 // `change`: of a value, its column and channel.
 template <class Change>
-Picture waves(const Change& change) {
-    Picture rgb;
+Pixels waves(const Change& change) {
+    Pixels rgb;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
             for (int c = 0; c < 3; ++c)
@@ -21,10 +21,10 @@ Picture waves(const Change& change) {
 }  // namespace
 
 TEST(Flip, AsTheAuthorsProgram) {
-    const Picture plain = waves([](double v, int, int) { return v; });
+    const Pixels plain = waves([](double v, int, int) { return v; });
     const struct {
         const char* what;
-        Picture other;
+        Pixels other;
         double mean;  // of flip-evaluator 1.7, evaluate(..., "LDR", inputsRGB=False)
     } rows[] = {
         {"hues", waves([](double v, int, int c) { return v * (1 + 0.1 * (c - 1)); }), 0.1959030},
@@ -37,9 +37,9 @@ TEST(Flip, AsTheAuthorsProgram) {
         EXPECT_NEAR(pellucid::io::flip(row.other, plain, width), row.mean, tolerance::flip) << row.what;
     }
     EXPECT_EQ(pellucid::io::flip(plain, plain, width), 0);
-    Picture broken = plain;
+    Pixels broken = plain;
     broken[100] = NAN;
     EXPECT_TRUE(std::isnan(pellucid::io::flip(plain, broken, width)));
     EXPECT_THROW(pellucid::io::flip(plain, plain, 7), std::invalid_argument);
-    EXPECT_THROW(pellucid::io::flip(plain, Picture(3), 1), std::invalid_argument);
+    EXPECT_THROW(pellucid::io::flip(plain, Pixels(3), 1), std::invalid_argument);
 }

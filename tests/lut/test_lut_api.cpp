@@ -3,14 +3,7 @@
 
 using namespace pellucid;
 
-namespace {
-
-const Device& device() {
-    static const Device device("");
-    return device;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 TEST(LutApi, RefusesWhatMakesNoSense) {
     const auto curvature = [&](const char* field, auto change) {

@@ -6,7 +6,10 @@
 #include "reference/lut.h"
 #include "reference/quadrature.h"
 
+namespace table_integrals {
+
 using namespace reference;
+
 namespace {
 
 const double someU[] = {-1, -0.9, -0.5, -0.1, -1e-3, 0, 1e-3, 0.1, 0.3, 0.7, 0.99, 1};
@@ -115,12 +118,12 @@ TEST(ReferenceProfile, LineSpreadIntegratesToOneAndHasTheRmsWidthOfRadial) {
         const Rgb width = rmsWidth(*profile);
         for (int c = 0; c < 3; ++c) {
             // s = x³ tames the logarithm of the singular profile at the centre.
-            auto moment = [&](int power) {
-                auto borders = profile->lengths();
+            auto moment = [&, &profile = *profile](int power) {
+                auto borders = profile.lengths();
                 for (double& b : borders) b = std::cbrt(b);
                 return 2 * integrate<double>(
                                [&](double x) {
-                                   return std::pow(x, 3 * power) * profile->lineSpread(x * x * x)[c] * 3 * x *
+                                   return std::pow(x, 3 * power) * profile.lineSpread(x * x * x)[c] * 3 * x *
                                           x;
                                },
                                panelPoints(0, borders.back(), borders), 0, 1e-12);
@@ -160,3 +163,5 @@ TEST(ReferenceProfile, DipoleHasTheTotalDiffuseReflectanceOfJensen) {
 }
 
 }  // namespace
+
+}  // namespace table_integrals

@@ -23,7 +23,7 @@ PelSkin skinOf(const reference::WalkedSkin& s) {
     return skin;
 }
 
-float reflectance(const PelSkin& skin, float nanometres) {
+float reflectanceAt(const PelSkin& skin, float nanometres) {
     float value = -1;
     pellucid::check(pelSkinReflectance(&skin, &nanometres, 1, &value));
     return value;
@@ -41,7 +41,7 @@ TEST(Skin, ReflectsWhatARandomWalkDoes) {
     for (const auto& s : skins)
         for (const int nm : {390, 420, 500, 540, 580, 630, 720}) {
             const auto walk = reference::walkSkin(reference::layersOf(s, nm), 1.4, 20000, 7);
-            EXPECT_NEAR(reflectance(skinOf(s), float(nm)), walk.reflectance,
+            EXPECT_NEAR(reflectanceAt(skinOf(s), float(nm)), walk.reflectance,
                         tolerance::skinReflectance + 3 * walk.error)
                 << nm << " nm, melanin " << s.melanin << ", blood " << s.blood;
         }
@@ -93,7 +93,7 @@ TEST(Skin, NoLightIsMade) {
     float before = 0;
     for (const float scattering : {2.0f, 4.0f, 7.0f, 10.0f}) {
         skin.scattering = scattering;
-        const float r = reflectance(skin, 720);
+        const float r = reflectanceAt(skin, 720);
         EXPECT_GT(r, before);
         EXPECT_LT(r, 0.94f);
         before = r;
@@ -129,13 +129,13 @@ TEST(Skin, SpectraAddUp) {
 TEST(Skin, OxygenatedBloodShowsItsTwoBands) {
     PelSkin skin = pelSkinDefaults();
     skin.oxygenation = 1;
-    EXPECT_LT(reflectance(skin, 540), reflectance(skin, 520));
-    EXPECT_LT(reflectance(skin, 540), reflectance(skin, 560));
-    EXPECT_LT(reflectance(skin, 575), reflectance(skin, 560));
-    EXPECT_LT(reflectance(skin, 575), reflectance(skin, 600));
+    EXPECT_LT(reflectanceAt(skin, 540), reflectanceAt(skin, 520));
+    EXPECT_LT(reflectanceAt(skin, 540), reflectanceAt(skin, 560));
+    EXPECT_LT(reflectanceAt(skin, 575), reflectanceAt(skin, 560));
+    EXPECT_LT(reflectanceAt(skin, 575), reflectanceAt(skin, 600));
     skin.oxygenation = 0;  // one band, at 555 nm
-    EXPECT_LT(reflectance(skin, 555), reflectance(skin, 540));
-    EXPECT_LT(reflectance(skin, 555), reflectance(skin, 575));
+    EXPECT_LT(reflectanceAt(skin, 555), reflectanceAt(skin, 540));
+    EXPECT_LT(reflectanceAt(skin, 555), reflectanceAt(skin, 575));
 }
 
 TEST(Skin, MapsComeBack) {

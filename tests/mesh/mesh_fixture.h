@@ -5,11 +5,6 @@
 
 namespace fixture {
 
-inline const pellucid::Device& device() {
-    static const pellucid::Device device("");
-    return device;
-}
-
 inline Mesh oracleMesh(const std::filesystem::path& directory, const std::string& name) {
     const auto file = [&](const char* what) { return directory / ("mesh_" + name + "_" + what + ".npy"); };
     Mesh mesh;

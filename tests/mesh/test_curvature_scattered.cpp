@@ -4,6 +4,9 @@
 #include "reference_meshes.h"
 
 using namespace fixture;
+
+namespace scattered_meshes {
+
 using namespace reference;
 
 namespace {
@@ -162,3 +165,5 @@ TEST(CurvatureHub, TheRimOfAFanSeesItsNeighbours) {
     const auto values = valuesOf(latLongSphere(40, 60, 1), meanParams(PEL_CURVATURE_QUADRIC));
     for (uint32_t v = 0; v < 61; ++v) EXPECT_NEAR(values[v], 1, tolerance::longCells) << v;
 }
+
+}  // namespace scattered_meshes

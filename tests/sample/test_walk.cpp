@@ -24,7 +24,7 @@ constexpr double headError = 4e-3, headBias = 5e-4;
 // 0.0024 of the fit of the medium, and three standard errors of 38,000 walks.
 constexpr double reflectanceError = 6e-3;
 
-sample::Lighting fromAbove() {
+sample::Lighting zenith() {
     return {{sample::SurfaceLight{}}, {}};
 }
 sample::Lighting fromEverywhere() {
@@ -73,7 +73,7 @@ TEST(WalkLight, BallEqualsTheOraclesWalk) {
     for (double radius : {4.0, 15.0}) {  // mean free paths
         const auto points = middles(scene, testsAreSmall() ? 1600 : 160);
         const sample::WalkedLight light =
-            walkLight(body, fromAbove(), points, medium(1 / radius), {uint32_t(sized(64, 8))});
+            walkLight(body, zenith(), points, medium(1 / radius), {uint32_t(sized(64, 8))});
         const reference::WalkResult expected =
             reference::walkBall({1, 0.99055}, radius, bins, sized(300000, 3000), 5);
         const Error e = errorOf(light, [&](size_t i) {
@@ -155,7 +155,7 @@ TEST(WalkLight, LayersCarryLightAsFarAsInTheOraclesWalk) {
         const std::vector<sample::SurfacePoint> inShadow(sized(32, 2),
                                                          {0, {0.5 + away / 20, 0.25 - away / 20, 0.25}});
         const sample::WalkedLight light =
-            walkLight(body, fromAbove(), inShadow, layers, {uint32_t(sized(300, 50))});
+            walkLight(body, zenith(), inShadow, layers, {uint32_t(sized(300, 50))});
         EXPECT_NEAR(meanOf(light, 0), expected.beyond, testsAreSmall() ? 0.05 : 6 * expected.error) << away;
     }
 }
@@ -167,7 +167,7 @@ TEST(WalkLight, EqualLayersAreOneMedium) {
     sample::LayeredMedium layers = medium(0.1);
     layers.thickness = 0.2;
     const auto walked = [&](const sample::LayeredMedium& m) {
-        return walkLight(body, fromAbove(), points, m, {8}).first;
+        return walkLight(body, zenith(), points, m, {8}).first;
     };
     EXPECT_EQ(walked(layers), walked(medium(0.1)));
     for (sample::Wave& w : layers.waves) w.outerAbsorption *= 2;
@@ -219,7 +219,7 @@ TEST(WalkLight, SameResultWithAnyNumberOfThreads) {
     const auto points = middles(scene, 60);
     const auto walked = [&](int threads, uint64_t seed) {
         omp_set_num_threads(threads);
-        return walkLight(body, fromAbove(), points, medium(0.1), {8, 0, seed}).first;
+        return walkLight(body, zenith(), points, medium(0.1), {8, 0, seed}).first;
     };
     const int before = omp_get_max_threads();
     EXPECT_EQ(walked(1, 3), walked(5, 3));
@@ -231,10 +231,10 @@ TEST(WalkLight, SamplesForANoise) {
     const sample::Scene scene(sample::makeSphere(1, 24, 48).view());
     const sample::WalkBody body(scene, 0);
     for (double noise : {0.02, 0.01}) {
-        const auto light = walkLight(body, fromAbove(), middles(scene, 10), medium(0.1), {1, noise});
+        const auto light = walkLight(body, zenith(), middles(scene, 10), medium(0.1), {1, noise});
         EXPECT_NEAR(light.noise / noise, 1, 0.25) << light.samples;
     }
-    EXPECT_EQ(walkLight(body, fromAbove(), {}, medium(0.1), {1, 1e-9}).first.size(), 0u);
+    EXPECT_EQ(walkLight(body, zenith(), {}, medium(0.1), {1, 1e-9}).first.size(), 0u);
 }
 
 TEST(WalkLight, CancelsWhileItWalks) {
@@ -244,7 +244,7 @@ TEST(WalkLight, CancelsWhileItWalks) {
     const sample::WalkOptions options{sample::maxWalkSamples, 0, 1,
                                       [](double) { throw std::domain_error("cancelled"); }};
     const auto start = std::chrono::steady_clock::now();
-    EXPECT_THROW(walkLight(body, fromAbove(), points, medium(0.1), options), std::domain_error);
+    EXPECT_THROW(walkLight(body, zenith(), points, medium(0.1), options), std::domain_error);
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10)) << "of many hours";
 }
 
@@ -262,10 +262,10 @@ TEST(WalkLight, BodiesOfTheirOwn) {
     std::erase_if(points, [&](const auto& p) { return p.triangle >= inner; });
     EXPECT_EQ(walkLight(body, fromEverywhere(), points, medium(0.2), {8}).first,
               walkLight(sample::WalkBody(alone, 0), fromEverywhere(), points, medium(0.2), {8}).first);
-    for (float v : walkLight(body, fromAbove(), points, medium(0.2), {8}).first)
+    for (float v : walkLight(body, zenith(), points, medium(0.2), {8}).first)
         EXPECT_EQ(v, 0) << "in the shadow";
     points.push_back({uint32_t(inner), {1, 0, 0}});
-    EXPECT_THROW(walkLight(body, fromAbove(), points, medium(0.2), {8}), std::invalid_argument);
+    EXPECT_THROW(walkLight(body, zenith(), points, medium(0.2), {8}), std::invalid_argument);
     EXPECT_THROW(sample::WalkBody(scene, 3), std::invalid_argument);
 }
 
@@ -288,7 +288,7 @@ TEST(WalkLight, RefusesWhatHasNoResult) {
     const sample::WalkBody body(scene, 0);
     const std::vector<sample::SurfacePoint> points{{0, {1, 0, 0}}};
     const auto refused = [&](const sample::LayeredMedium& m, const sample::WalkOptions& options = {}) {
-        EXPECT_THROW(walkLight(body, fromAbove(), points, m, options), std::invalid_argument);
+        EXPECT_THROW(walkLight(body, zenith(), points, m, options), std::invalid_argument);
     };
     for (double path : {0.0, -1.0, double(INFINITY), std::nan("")}) refused(medium(path));
     for (double albedo : {-0.1, 1.1, std::nan("")}) refused(medium(1, albedo));
@@ -312,7 +312,7 @@ TEST(WalkLight, RefusesWhatHasNoResult) {
         EXPECT_TRUE(v >= 0 && v <= 1.001f);
     const sample::Scene sheet(sample::makeRectangle(-1, 1, -1, 1, 0).view());
     const sample::WalkedLight open =
-        walkLight(sample::WalkBody(sheet, 0), fromAbove(), points, medium(0.1), {64});
+        walkLight(sample::WalkBody(sheet, 0), zenith(), points, medium(0.1), {64});
     EXPECT_GT(open.lost, 0u);
     for (float v : open.first) EXPECT_TRUE(std::isfinite(v));
 }
@@ -387,7 +387,7 @@ TEST(WalkLight, HeadEqualsAnotherProgramsWalk) {
         std::vector<double> off;
         const std::vector<sample::SurfacePoint> points = nearestPoints(scene, from, off);
         EXPECT_LT(*std::max_element(off.begin(), off.end()), 0.01) << "cm";
-        sample::Lighting lighting = fromAbove();
+        sample::Lighting lighting = zenith();
         lighting.lights[0].toLight = normalize(c.toLight);
         // Lengths of the profile in cm.
         const double d = 0.1 * c.scale;

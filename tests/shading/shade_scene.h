@@ -7,10 +7,6 @@ namespace shade_test {
 
 // --- the device's answer ---
 
-inline const Device& device() {
-    static const Device d("");
-    return d;
-}
 inline const Tables& tables() {
     static const Tables t = makeTables(device());
     return t;

@@ -5,7 +5,10 @@
 #include "shade_scene.h"
 #include "test.h"
 
+namespace shading_integrals {
+
 using namespace reference;
+
 namespace {
 
 TEST(ReferenceShade, HarmonicsAreOrthonormal) {
@@ -176,3 +179,5 @@ INSTANTIATE_TEST_SUITE_P(Disks, PoissonDisk, testing::Values(8u, 16u, 32u),
                          [](const auto& info) { return std::to_string(info.param); });
 
 }  // namespace
+
+}  // namespace shading_integrals

@@ -50,8 +50,8 @@ const Place& usual() {
 using Change = std::function<void(const Place&, Shader&)>;
 
 // A shader of a frame, with outputs over threes.
-struct Shaded {
-    Shaded(const Place& on, const Frame& f, const Change& change, bool padded = false)
+struct ShadedImages {
+    ShadedImages(const Place& on, const Frame& f, const Change& change, bool padded = false)
         : frame(f), shader(on.device) {
         setFrame(on.device, shader, f, on.tables, padded);
         for (const auto slot : slots) {
@@ -78,7 +78,7 @@ struct Shaded {
 void expectCropped(
     const Place& on, const Frame& f, const Change& change = [](const Place&, Shader&) {},
     bool padded = true) {
-    const Shaded whole(on, f, change);
+    const ShadedImages whole(on, f, change);
     for (const Region& r : regions) {
         SCOPED_TRACE(testing::Message() << r.width << " x " << r.height << " from " << r.x << ", " << r.y);
         PelShaderOptions options = f.options;
@@ -87,18 +87,18 @@ void expectCropped(
         Shader shader = whole.shader;
         shader.set(options).commit().execute();
         const Frame part = cropped(f, r);
-        const Shaded alone(on, part, change, padded);
+        const ShadedImages alone(on, part, change, padded);
         Shader other = alone.shader;
         other.commit().execute();
         for (size_t k = 0; k < whole.targets.size(); ++k) {
             Image all{uint32_t(k == 3 ? 1 : 3), whole.targets[k].readAll<float>()};
-            EXPECT_EQ(cropped(all, r).values, alone.targets[k].readAll<float>()) << Shaded::slots[k];
+            EXPECT_EQ(cropped(all, r).values, alone.targets[k].readAll<float>()) << ShadedImages::slots[k];
             // Nothing outside.
             for (uint32_t y = r.y; y < r.y + r.height; ++y)
                 std::fill_n(&all.values[(size_t(y) * width + r.x) * all.components],
                             size_t(r.width) * all.components, 3.0f);
             EXPECT_EQ(std::ranges::count(all.values, 3.0f), std::ptrdiff_t(all.values.size()))
-                << Shaded::slots[k];
+                << ShadedImages::slots[k];
         }
     }
 }
@@ -157,7 +157,7 @@ TEST(Region, AnotherSizeTakesNoMemoryAndNoPrograms) {
         SCOPED_TRACE(int(scattering));
         Frame f = frameOf(scattering);
         f.options.blurNormals = 1;
-        const Shaded whole(usual(), f, setTextures);
+        const ShadedImages whole(usual(), f, setTextures);
         Shader shader = whole.shader;
         PelShaderOptions options = f.options;
         setRegion(options, {0, 0, width, height});
@@ -184,7 +184,7 @@ TEST(Region, AnotherSizeTakesNoMemoryAndNoPrograms) {
 
 TEST(Region, OutsideOfTheImagesIsRefused) {
     Frame f = frameOf(PEL_SCATTERING_NONE);
-    const Shaded whole(usual(), f, setTextures);
+    const ShadedImages whole(usual(), f, setTextures);
     Shader shader = whole.shader;
     for (const Region r : {Region{0, 0, width + 1, 1},
                            {1, 0, width, 1},

@@ -124,13 +124,13 @@ TEST(Shade, EverythingAMillionPixels) {
 
 // --- outputs beside radiance ---
 
-struct Shaded {
+struct ShadedParts {
     std::vector<float> radiance, diffuse, deepScatter, specular, thickness;
     PelShaderStats stats = pelShaderStatsDefaults();
 };
 
 // RGB float32 over zeros; -1 in the thickness of pixels that are left alone.
-Shaded shadeParts(const Frame& f) {
+ShadedParts shadeParts(const Frame& f) {
     Shader shader(device());
     setFrame(device(), shader, f, tables());
     std::vector<Buffer> targets;
@@ -158,7 +158,7 @@ Frame partsFrame(uint32_t seed) {
 TEST(ShadeOutputs, EachMatchesTheOracleAndRadianceStaysWhatItIs) {
     for (uint32_t seed : {1u, 2u}) {
         const Frame f = partsFrame(seed);
-        const Shaded shaded = shadeParts(f);
+        const ShadedParts shaded = shadeParts(f);
         if (seed == 2) {
             expectSameBits(device(), shaded.radiance, shade(f));
         }
@@ -185,7 +185,7 @@ TEST(ShadeOutputs, EachMatchesTheOracleAndRadianceStaysWhatItIs) {
 
 TEST(ShadeOutputs, OneAloneInHalf) {
     const Frame f = partsFrame(2);
-    const Shaded all = shadeParts(f);
+    const ShadedParts all = shadeParts(f);
     Shader shader(device());
     const Buffer radiance(device(), f.pixels() * 12), specular(device(), f.pixels() * 8),
         thickness(device(), f.pixels() * 2);
@@ -208,7 +208,7 @@ TEST(ShadeOutputs, OfBadPixelsAndWithoutAThickness) {
     const size_t bad = f.height / 2 * f.width + 50;
     f.slots[PEL_SLOT_MATERIAL].values[bad] = 1;
     f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * bad] = NAN;
-    const Shaded shaded = shadeParts(f);
+    const ShadedParts shaded = shadeParts(f);
     for (const auto* part : {&shaded.radiance, &shaded.diffuse, &shaded.deepScatter, &shaded.specular}) {
         EXPECT_EQ((*part)[3 * bad + 2], -7);
         for (float v : *part) EXPECT_TRUE(std::isfinite(v));

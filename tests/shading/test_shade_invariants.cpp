@@ -103,11 +103,11 @@ Scene randomScene(uint32_t seed, uint32_t parts, uint32_t width, uint32_t height
     return s;
 }
 
-using Bytes = std::vector<std::vector<unsigned char>>;
+using OutputBytes = std::vector<std::vector<unsigned char>>;
 
 // The images that a shader makes, which may have made others before.
-Bytes run(const Scene& s, const PelShaderOptions& options, PelShaderStats* stats = nullptr,
-          Shader shader = Shader(device())) {
+OutputBytes run(const Scene& s, const PelShaderOptions& options, PelShaderStats* stats = nullptr,
+                Shader shader = Shader(device())) {
     const Frame& f = s.frame;
     clearFrame(shader);
     setFrame(device(), shader, f, tables());
@@ -131,7 +131,7 @@ Bytes run(const Scene& s, const PelShaderOptions& options, PelShaderStats* stats
     }
     shader.commit().execute();
     if (stats) *stats = shader.stats();
-    Bytes bytes;
+    OutputBytes bytes;
     for (const Buffer& target : targets) bytes.push_back(target.readAll<unsigned char>());
     return bytes;
 }
@@ -160,7 +160,7 @@ TEST_P(ShadeInvariants, SkippingListsBandsAndRunsChangeNoBit) {
         const Scene s = randomScene(seed, GetParam().parts, 141 + seed, 50);
         PelShaderOptions options = s.frame.options;
         PelShaderStats stats = pelShaderStatsDefaults();
-        const Bytes right = run(s, options, &stats);
+        const OutputBytes right = run(s, options, &stats);
         EXPECT_EQ(run(s, options), right) << "again";
         EXPECT_EQ(bool(stats.features & PEL_FEATURE_NORMAL_MAP), s.has(NORMAL_MAP));
         EXPECT_EQ(bool(stats.features & PEL_FEATURE_OUTPUTS), s.has(OUTPUTS));
@@ -220,7 +220,7 @@ TEST(ShadeSequences, OneChangeIsSeenAndForgotten) {
     const auto base = [] { return randomScene(1, FILTER | OUTPUTS | PLAIN, 142, 50); };
     Shader shader(device());
     const Scene first = base();
-    const Bytes right = run(first, first.frame.options, nullptr, shader);
+    const OutputBytes right = run(first, first.frame.options, nullptr, shader);
     const std::pair<const char*, std::function<void(Frame&)>> changes[] = {
         {"ids",
          [](Frame& f) {
@@ -248,7 +248,7 @@ TEST(ShadeSequences, OneChangeIsSeenAndForgotten) {
     for (const auto& [what, change] : changes) {
         Scene other = base();
         change(other.frame);
-        const Bytes fresh = run(other, other.frame.options);
+        const OutputBytes fresh = run(other, other.frame.options);
         EXPECT_NE(fresh, right) << what << " makes a difference";
         EXPECT_EQ(run(other, other.frame.options, nullptr, shader), fresh) << what;
         EXPECT_EQ(run(first, first.frame.options, nullptr, shader), right) << what << ", changed back";
@@ -346,7 +346,7 @@ TEST(ShadeBands, BlurredNormalsWithTheirHalo) {
     s.target.resize(3 * s.frame.pixels());
     PelShaderOptions options = s.frame.options;
     PelShaderStats whole = pelShaderStatsDefaults(), some = whole;
-    const Bytes right = run(s, options, &whole);
+    const OutputBytes right = run(s, options, &whole);
     EXPECT_TRUE(whole.features & PEL_FEATURE_BLUR_NORMALS);
     const uint64_t rowBytes = 70 * (40 + 8),
                    guards = 2 * 400 * 40;  // of PEL_PLANE_GUARD values round each plane

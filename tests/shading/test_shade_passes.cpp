@@ -10,14 +10,14 @@ namespace {
 
 // --- blurred on screen ---
 
-struct Worst {
+struct WorstPass {
     double error = 0;
     size_t compared = 0, doubtful = 0;
 };
-Worst againstOracle(const Frame& f, const std::vector<float>& radiance) {
+WorstPass againstOracle(const Frame& f, const std::vector<float>& radiance) {
     std::vector<bool> doubtful;
     const auto truth = reference::blurredNormals(surfaceOf(f), &doubtful);
-    Worst worst;
+    WorstPass worst;
     for (size_t i = 0; i < f.pixels(); ++i) {
         if (!truth[i]) continue;
         if (doubtful[i]) {
@@ -38,7 +38,7 @@ TEST(BlurNormals, MatchesTheOracle) {
         const auto [shown, stats] = shadeCounted(f);
         EXPECT_EQ(stats.features, uint32_t(PEL_FEATURE_AMBIENT | PEL_FEATURE_BLUR_NORMALS));
         EXPECT_EQ(stats.launches, 5u) << "classify, prepare, along x, along y, shade";
-        const Worst worst = againstOracle(f, shown);
+        const WorstPass worst = againstOracle(f, shown);
         EXPECT_LE(worst.error, tolerance::shadeTerm) << "pixels " << pixel << " apart";
         EXPECT_GT(worst.compared, 9 * worst.doubtful);
     }

@@ -8,16 +8,16 @@ using namespace pellucid;
 
 namespace {
 
-constexpr float distance[3] = {0.9f, 0.35f, 0.2f};  // mm
+constexpr float burleyDistance[3] = {0.9f, 0.35f, 0.2f};  // mm
 constexpr uint32_t width = 64, height = 3;
 
 // Spheres of many sizes under a light from above, each pixel with a thickness, a shadow and a position of its
 // own; lengths in mm.
-struct Scene {
+struct BodyScene {
     std::vector<float> normals, curvature, meanCurvature, thickness, shadow, position;
     float toLight[3] = {0, 0, 1};
 
-    Scene() {
+    BodyScene() {
         std::mt19937 random(4);
         std::uniform_real_distribution<float> even(0, 1);
         for (uint32_t i = 0; i < width * height; ++i) {
@@ -83,7 +83,7 @@ struct Shading : scatter_scene::ShownImages {
                    maps[k].depth, maps[k].side, maps[k].side);
         shader.commit();
     }
-    Scene scene;
+    BodyScene scene;
 };
 
 PelMaterial materialOf(const Profile& profile) {
@@ -100,7 +100,7 @@ double throughSlab(double s, double d) {
 }
 void expectSlab(const std::vector<float>& radiance, uint32_t i, double s) {
     for (size_t c = 0; c < 3; ++c)
-        EXPECT_NEAR(radiance[3 * i + c], throughSlab(s, distance[c]), tolerance::profileLookUp)
+        EXPECT_NEAR(radiance[3 * i + c], throughSlab(s, burleyDistance[c]), tolerance::profileLookUp)
             << "pixel " << i << " s " << s;
 }
 
@@ -108,13 +108,14 @@ void expectSlab(const std::vector<float>& radiance, uint32_t i, double s) {
 reference::ProfilePtr oracleProfile() {
     // burley from mean free paths of s(A) times d: albedo 1 gives s = 1.9 - 1 + 3.5 * 0.04
     const double s = 0.9 + 3.5 * 0.04;
-    return reference::burleyProfile({distance[0] * s, distance[1] * s, distance[2] * s}, {1, 1, 1});
+    return reference::burleyProfile({burleyDistance[0] * s, burleyDistance[1] * s, burleyDistance[2] * s},
+                                    {1, 1, 1});
 }
 
 }  // namespace
 
 TEST(ShadeProfile, TheProfileAloneGivesItsTablesAndWidths) {
-    const Profile profile = Profile::burleyDistance(distance);
+    const Profile profile = Profile::burleyDistance(burleyDistance);
     const PelProfileInfo info = profile.info();
     Inputs in{.thickness = false};
     Shading shading(materialOf(profile), in);
@@ -165,7 +166,7 @@ TEST(ShadeProfile, ARadiusOfZeroIsTheTablesOwn) {
 // Section 11: the slab's transmission takes the place of the table's dark side where it is the larger, and is
 // never added.
 TEST(ShadeProfile, TransmissionIsTheSlabsAndNeverAdded) {
-    const Profile profile = Profile::burleyDistance(distance);
+    const Profile profile = Profile::burleyDistance(burleyDistance);
     const auto truth = oracleProfile();
     Shading shading(materialOf(profile));
     const auto radiance = shading.execute();
@@ -175,7 +176,7 @@ TEST(ShadeProfile, TransmissionIsTheSlabsAndNeverAdded) {
     int through = 0;
     for (size_t i = 0; i < width * height; ++i)
         for (size_t c = 0; c < 3; ++c) {
-            const double s = shading.scene.thickness[i], d = distance[c],
+            const double s = shading.scene.thickness[i], d = burleyDistance[c],
                          back = std::max(0.0f, -shading.scene.normals[3 * i + 2]);
             const double slab = back * throughSlab(s, d);
             EXPECT_NEAR(radiance[3 * i + c], std::max(double(without[3 * i + c]), slab),
@@ -191,7 +192,7 @@ TEST(ShadeProfile, TransmissionIsTheSlabsAndNeverAdded) {
 }
 
 TEST(ShadeProfile, NothingIsKnownToComeThroughFromALightWithoutAMap) {
-    Shading shading(materialOf(Profile::burleyDistance(distance)), {.thickness = false});
+    Shading shading(materialOf(Profile::burleyDistance(burleyDistance)), {.thickness = false});
     shading.set(PEL_SLOT_POSITION, shading.scene.position);
     PelLight below = pelLightDefaults();
     below.toLight[0] = below.toLight[1] = 0, below.toLight[2] = -1;
@@ -208,7 +209,7 @@ TEST(ShadeProfile, NothingIsKnownToComeThroughFromALightWithoutAMap) {
 
 TEST(ShadeProfile, TransmissionOfEveryKindIsWhatLiesBeyond) {
     const std::vector<Profile> all{Profile::skin(), Profile::named("marble"),
-                                   Profile::burleyDistance(distance),
+                                   Profile::burleyDistance(burleyDistance),
                                    Profile::table({0, 1, 2.5f}, {3, 2, 1, 1, 1, 2, 0, 0.5f, 0})};
     for (const Profile& profile : all) {
         const double radius = profile.info().radius;
@@ -236,7 +237,7 @@ TEST(ShadeProfile, TransmissionOfEveryKindIsWhatLiesBeyond) {
 // Closed ends: where the filter is lit to its end the shadow takes nothing, and leaves nothing at the other
 // end.
 TEST(ShadeProfile, LitSkinLosesNothingToTheShadow) {
-    const Profile profile = Profile::burleyDistance(distance);
+    const Profile profile = Profile::burleyDistance(burleyDistance);
     Inputs in{.thickness = false};
     const auto lit = Shading(materialOf(profile), in).execute();
     in.shadow = true;
@@ -296,7 +297,8 @@ TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
     EXPECT_EQ(expectGain(profile, 1, ofBurley), plain);
     expectGain(profile, 0.5, ofBurley);
     // Of Burley's distance d the path is 1.087 d. Sums of Gaussians say nothing of it.
-    expectGain(Profile::burleyDistance(distance), 1, [&](size_t c) { return 1.087 * distance[c]; });
+    expectGain(Profile::burleyDistance(burleyDistance), 1,
+               [&](size_t c) { return 1.087 * burleyDistance[c]; });
     expectGain(Profile::skin(), 1, [](size_t) { return 0.0; });
 }
 
@@ -362,7 +364,7 @@ TEST(ShadeProfile, AutoKeepsToTheScratchBudget) {
 // Texels that are longer than light reaches; and a map that is smaller, which holds no body of that profile:
 // the unit is wrong.
 TEST(ShadeProfile, MapsThatDoNotFitTheProfileAreSaid) {
-    const Profile profile = Profile::burleyDistance(distance), skin = Profile::skin();
+    const Profile profile = Profile::burleyDistance(burleyDistance), skin = Profile::skin();
     const struct {
         const Profile& profile;
         uint32_t side;
@@ -396,7 +398,7 @@ TEST(ShadeProfile, MapsThatDoNotFitTheProfileAreSaid) {
 // The thickness is the greatest of eight taps within two texels: over a map of random heights, each tap is
 // the greatest somewhere. Of cascades it is that of the finest map that holds the taps.
 TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
-    const Profile profile = Profile::burleyDistance(distance);
+    const Profile profile = Profile::burleyDistance(burleyDistance);
     Inputs in{.thickness = false};
     Shading shading(materialOf(profile), in);
     std::mt19937 random(5);
@@ -437,7 +439,7 @@ TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
 
 // Also in a cube: beside a step of the map, the thicker side does not become thin.
 TEST(ShadeProfile, ThicknessFromACubeIsTheGreatestNearby) {
-    const Profile profile = Profile::burleyDistance(distance);
+    const Profile profile = Profile::burleyDistance(burleyDistance);
     Inputs in{.thickness = false};
     Shading shading(materialOf(profile), in);
     constexpr uint32_t side = 256;

@@ -10,19 +10,19 @@ namespace {
 // Distance along a ray of the light to the first surface.
 using Cast = std::function<double(Vec3 origin, Vec3 direction)>;
 
-struct Scene {
+struct SharpScene {
     std::vector<Vec3> points, normals;
     MapLight light;
     double texel;  // of the map, at the target
 };
 
 constexpr uint32_t mapSize = 256;
-constexpr double extent = 85;  // 0.33 a texel
+constexpr double mapExtent = 85;  // 0.33 a texel
 
-Scene sceneOf(Vec3 toLight, bool perspective, bool reversed, const Cast& cast) {
-    Scene s;
-    s.light = mapLight(1, perspective, reversed, toLight, {0, 0, 0}, extent, mapSize);
-    s.texel = extent / mapSize;
+SharpScene sceneOf(Vec3 toLight, bool perspective, bool reversed, const Cast& cast) {
+    SharpScene s;
+    s.light = mapLight(1, perspective, reversed, toLight, {0, 0, 0}, mapExtent, mapSize);
+    s.texel = mapExtent / mapSize;
     const auto& v = s.light.view;
     for (uint32_t i = 0; i < mapSize * mapSize; ++i) {
         const double across = v.extent * ((i % mapSize + 0.5) / mapSize - 0.5),
@@ -37,7 +37,7 @@ Scene sceneOf(Vec3 toLight, bool perspective, bool reversed, const Cast& cast) {
 
 // Shadow times N.L of each point, all lengths counted in another unit. `rounded`: the map in another format.
 // `width`: of the filter; 0: sharp shadows.
-std::vector<float> lit(const Scene& s, double unit = 1, uint32_t cascades = 0,
+std::vector<float> lit(const SharpScene& s, double unit = 1, uint32_t cascades = 0,
                        const std::function<void(Shader&)>& rounded = {}, float width = 0) {
     Frame f;
     f.width = uint32_t(s.points.size()), f.height = 1;
@@ -64,7 +64,7 @@ std::vector<float> lit(const Scene& s, double unit = 1, uint32_t cascades = 0,
     return result;
 }
 
-double cosine(const Scene& s, size_t i) {
+double cosine(const SharpScene& s, size_t i) {
     return reference::dot(s.normals[i], -1.0 * s.light.view.forward);
 }
 
@@ -75,7 +75,7 @@ Vec3 lightAt(double cosine, double turn) {
 
 const Cast ground = [](Vec3 o, Vec3 d) { return -o[2] / d[2]; };
 
-void scatterOverGround(Scene& s, uint32_t count) {
+void scatterOverGround(SharpScene& s, uint32_t count) {
     Random random(3);
     for (uint32_t i = 0; i < count; ++i) {
         s.points.push_back({random.uniform(-8, 8), random.uniform(-8, 8), 0});
@@ -87,7 +87,7 @@ TEST(SharpShadow, APlaneThrowsNoneOnItselfAtAnyAngleInAnyUnit) {
     for (double c : {1.0, 0.7, 0.3, 0.1, 0.06})
         for (double turn : {0.3, 2.0})
             for (int form = 0; form < 4; ++form) {
-                Scene s = sceneOf(lightAt(c, turn), form & 1, form & 2, ground);
+                SharpScene s = sceneOf(lightAt(c, turn), form & 1, form & 2, ground);
                 scatterOverGround(s, 512);
                 for (double unit : {1.0, 0.1, 0.001, 1000.0}) {
                     const std::vector<float> e = lit(s, unit);
@@ -108,9 +108,9 @@ TEST(SharpShadow, APlaneThrowsNoneOnItselfAtAnyAngleInAnyUnit) {
 TEST(SharpShadow, IsItsDefinition) {
     for (bool perspective : {false, true})
         for (bool reversed : {false, true}) {
-            Scene s;
-            s.light = mapLight(4, perspective, reversed, lightAt(0.7, 1), {0, 0, 0}, extent, 64);
-            s.texel = extent / 64;
+            SharpScene s;
+            s.light = mapLight(4, perspective, reversed, lightAt(0.7, 1), {0, 0, 0}, mapExtent, 64);
+            s.texel = mapExtent / 64;
             Random random(11);
             for (int i = 0; i < 3000; ++i) {
                 const Vec3 n = random.unit();
@@ -143,7 +143,7 @@ TEST(SharpShadow, FormatsOfMapsThrowNoneByTheirRounding) {
     constexpr double share = 0.02;  // of the range, used by the ground
     for (const PelFormat format : {PEL_FORMAT_R16_UNORM, PEL_FORMAT_R16F, PEL_FORMAT_R8_UNORM})
         for (double c : {1.0, 0.3}) {
-            Scene s = sceneOf(lightAt(c, 2), false, false, ground);
+            SharpScene s = sceneOf(lightAt(c, 2), false, false, ground);
             scatterOverGround(s, 512);
             PelLight& l = s.light.light.params;
             const double part = format == PEL_FORMAT_R8_UNORM ? 1 : share;
@@ -175,7 +175,7 @@ TEST(SharpShadow, FormatsOfMapsThrowNoneByTheirRounding) {
 // A map alone or as its own only cascade is the same. Points outside of the map are lit, and texels of NaN
 // throw no shadow.
 TEST(SharpShadow, NoShadowFromWhatIsNotThere) {
-    Scene s = sceneOf(lightAt(0.7, 1), false, false, ground);
+    SharpScene s = sceneOf(lightAt(0.7, 1), false, false, ground);
     scatterOverGround(s, 256);
     EXPECT_EQ(lit(s), lit(s, 1, 1));
     for (double away : {100.0, 1e4, 1e9}) s.points.push_back({away, away, 0}), s.normals.push_back({0, 0, 1});

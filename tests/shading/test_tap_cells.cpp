@@ -37,7 +37,7 @@ std::vector<reference::Vec2> spiral(int count) {
 }
 
 // RMS errors of what is seen against a thousand taps, at some pixels.
-struct Errors {
+struct FormErrors {
     double of(const std::vector<float>& shown) const {
         double sum = 0;
         for (const auto& [i, t] : truth) sum += std::pow(shown[i] - t, 2);
@@ -45,8 +45,8 @@ struct Errors {
     }
     std::vector<std::pair<size_t, double>> truth;
 };
-Errors errorsOf(const Frame& f, const FormTruth& truth) {
-    Errors errors;
+FormErrors errorsOf(const Frame& f, const FormTruth& truth) {
+    FormErrors errors;
     const auto taps = spiral(1024);
     for (size_t i = 0; i < f.pixels(); i += 37)
         if (const PelMaterial* m = materialAt(f, i))
@@ -63,7 +63,7 @@ uint64_t cellLaunches(const Seen& cells, const Seen& taps) {
 // Against a disk of very many taps, on a map for which few taps are inaccurate.
 template <class From>
 void expectNearer(const Frame& f, const From& from, uint64_t launches, const std::string& what) {
-    const Errors errors = errorsOf(f, truthOf(from));
+    const FormErrors errors = errorsOf(f, truthOf(from));
     ASSERT_GT(errors.truth.size(), sized(1000u, 20u));
     const Seen taps = shadeForms(f, {from.light}), cells = shadeForms(interpolated(f), {from.light});
     EXPECT_EQ(cellLaunches(cells, taps), launches) << what;

@@ -11,14 +11,14 @@ using namespace shade_test;
 namespace {
 
 constexpr cl_channel_order orders[] = {0, CL_R, CL_RG, CL_RGBA, CL_RGBA};
-constexpr PelFormat formats[] = {PEL_FORMAT_UNDEFINED, PEL_FORMAT_R32F, PEL_FORMAT_RG32F, PEL_FORMAT_RGBA32F,
-                                 PEL_FORMAT_RGBA32F};
+constexpr PelFormat formatOf[] = {PEL_FORMAT_UNDEFINED, PEL_FORMAT_R32F, PEL_FORMAT_RG32F, PEL_FORMAT_RGBA32F,
+                                  PEL_FORMAT_RGBA32F};
 
 // A texture of floats, whose texels hold `components` values of an image; three are four with a 7.
 class Texture {
   public:
     Texture(const std::vector<float>& values, uint32_t components, uint32_t width, uint32_t height)
-        : components_(components), format_(formats[components]), width_(width), height_(height) {
+        : components_(components), format_(formatOf[components]), width_(width), height_(height) {
         void *context = nullptr, *id = nullptr;
         pellucid::check(pelDeviceGetCl(device().get(), &context, &id, &queue_));
         const cl_image_format format{orders[components], CL_FLOAT};

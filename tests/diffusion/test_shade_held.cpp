@@ -3,21 +3,19 @@
 // they are repeated (docs/guide/hosts.md, "What a call may do").
 #include "diffusion/lit_ball.h"
 #include "held_queue.h"
-#include "pass_scene.h"
+#include "shading/pass_scene.h"
+
+namespace held_calls {
 
 using namespace pellucid;
 using fixture::expectReturns;
+using shade_test::Frame;
 
 namespace {
 
-// Of the two devices in the headers.
-const Device& own() {
-    return shade_test::device();
-}
-
 // Memory for this many floats, and more behind them, which no call may write.
 Buffer guarded(size_t floats) {
-    return Buffer(own(), std::vector<float>(floats + 4096, -7.0f));
+    return Buffer(device(), std::vector<float>(floats + 4096, -7.0f));
 }
 std::vector<float> checked(const Buffer& buffer, size_t floats, const char* what) {
     std::vector<float> all = buffer.readAll<float>();
@@ -39,14 +37,14 @@ template <class Make, class Change>
 void expectFrames(const char* what, size_t floats, const Make& make, const Change& change,
                   bool changeMakesBuffers) {
     const Buffer held = guarded(floats), plain = guarded(floats);
-    Shader shader(own());
+    Shader shader(device());
     make(shader, held);
-    expectReturns(own(), what, [&](const PelSubmit* submit) {
+    expectReturns(device(), what, [&](const PelSubmit* submit) {
         shader.commit().execute(submit);
         change(shader);
         shader.commit().execute(submit);
     });
-    Shader other(own());
+    Shader other(device());
     make(other, plain);
     change(other);
     other.commit().execute();
@@ -64,7 +62,7 @@ void expectFrames(const char* what, size_t floats, const Make& make, const Chang
 template <class Call>
 void expectHeld(const char* what, size_t floats, bool makesBuffers, const Call& call) {
     const Buffer held = guarded(floats), plain = guarded(floats);
-    expectReturns(own(), what, [&](const PelSubmit* submit) { call(held, submit); });
+    expectReturns(device(), what, [&](const PelSubmit* submit) { call(held, submit); });
     call(plain, nullptr);
     EXPECT_EQ(buffersMadeBy([&] { call(plain, nullptr); }) > 0, makesBuffers) << what;
     EXPECT_EQ(checked(held, floats, what), checked(plain, floats, what)) << what;
@@ -76,21 +74,21 @@ TEST(ShadeHeld, FramesInBandsWithPasses) {
     f.lights.push_back(mapLight(1, false, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 61).light);
     f.curvatureLut = f.shadowLut = true;
     f.slots[PEL_SLOT_CURVATURE] = f.slots[PEL_SLOT_MATERIAL];
-    const Tables made = makeTables(own(), 24, 16);
+    const Tables made = makeTables(device(), 24, 16);
     for (uint64_t budget : {uint64_t{0}, uint64_t{f.width} * 4 * 20}) {
         f.options.scratchBudget = budget;
         f.options.blurNormals = budget == 0;  // they would need all rows
         expectFrames(
             budget ? "a frame in bands" : "a frame", f.pixels() * 3,
             [&](Shader& shader, const Buffer& out) {
-                setFrame(own(), shader, f, made);
+                setFrame(device(), shader, f, made);
                 shader.set(PEL_SLOT_RADIANCE, imageDesc(out, PEL_FORMAT_RGB32F, f.width, f.height));
             },
             [&](Shader& shader) {
                 Frame other = f;
                 other.ambient.constant[1] = 0.7f;
                 other.materials[1].albedo[0] = 0.3f;
-                setFrame(own(), shader, other, made);
+                setFrame(device(), shader, other, made);
             },
             true);
     }
@@ -104,7 +102,7 @@ TEST(ShadeHeld, FramesWithProfilesThatScatter) {
     std::vector<float> normals = p.positions, curvature(p.pixels(), 0.5f);
     for (float& n : normals) n /= float(radius);
     const Profile skin = Profile::skin();
-    const Buffer map(own(), ball.maps[0]);
+    const Buffer map(device(), ball.maps[0]);
     for (PelScattering method : {PEL_SCATTERING_PREINTEGRATED, PEL_SCATTERING_SCREEN, PEL_SCATTERING_LIGHT,
                                  PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_AUTO}) {
         const auto lit = [&](Shader& shader, float red, float diffusionRadius) {
@@ -123,7 +121,7 @@ TEST(ShadeHeld, FramesWithProfilesThatScatter) {
         expectFrames(("scattering method " + std::to_string(method)).c_str(), p.pixels() * 3,
                      [&](Shader& shader, const Buffer& out) {
                          const auto set = [&](PelImageSlot slot, const auto& values, PelFormat format) {
-                             shader.set(slot, imageDesc(Buffer(own(), values), format, p.width, p.height));
+                             shader.set(slot, imageDesc(Buffer(device(), values), format, p.width, p.height));
                          };
                          set(PEL_SLOT_POSITION, p.positions, PEL_FORMAT_RGB32F);
                          set(PEL_SLOT_NORMAL_SHADING, normals, PEL_FORMAT_RGB32F);
@@ -141,12 +139,12 @@ TEST(ShadeHeld, FramesWithProfilesThatScatter) {
 TEST(ShadeHeld, ScatteringAlone) {
     using namespace scatter_scene;
     const Picture p = ball(24, 10, 0.9, reference::normalized(Vec3{1, 0.3, 0.2}));
-    const Buffer e(own(), p.irradiance), x(own(), p.positions), ids(own(), p.ids);
+    const Buffer e(device(), p.irradiance), x(device(), p.positions), ids(device(), p.ids);
     const auto rgb = [&](const Buffer& b) { return imageDesc(b, PEL_FORMAT_RGB32F, p.width, p.height); };
     const auto id = imageDesc(ids, PEL_FORMAT_R8_UINT, p.width, p.height);
     const Profile skin = Profile::skin();
     for (PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE}) {
-        Scatter scatter(own());
+        Scatter scatter(device());
         expectHeld("pelScatterExecute", p.pixels() * 3, false,
                    [&](const Buffer& out, const PelSubmit* submit) {
                        PelScatterControls controls = pelScatterControlsDefaults();
@@ -166,12 +164,12 @@ TEST(ShadeHeld, OtherSubmissions) {
     using namespace shade_test;
     const Frame f = reliefFrame(2, 40, 30, 0.4f);
     const auto image = [&](PelImageSlot slot, PelFormat format) {
-        return imageDesc(upload(own(), f.slots[slot]), format, f.width, f.height);
+        return imageDesc(upload(device(), f.slots[slot]), format, f.width, f.height);
     };
     const auto normals = image(PEL_SLOT_NORMAL_GEOMETRIC, PEL_FORMAT_RGB32F),
                positions = image(PEL_SLOT_POSITION, PEL_FORMAT_RGB32F);
     expectHeld("pelScreenCurvature", f.pixels(), true, [&](const Buffer& out, const PelSubmit* submit) {
-        screenCurvature(own(), pelScreenCurvatureParamsDefaults(), normals, positions, nullptr, nullptr,
+        screenCurvature(device(), pelScreenCurvatureParamsDefaults(), normals, positions, nullptr, nullptr,
                         imageDesc(out, PEL_FORMAT_R32F, f.width, f.height), submit);
     });
 
@@ -183,19 +181,19 @@ TEST(ShadeHeld, OtherSubmissions) {
     integral.numVertices = 4, integral.positions = corners.data();
     integral.numIndices = 6, integral.indices = triangles.data();
     integral.irradiance = light.data(), integral.irradianceAt = PEL_IRRADIANCE_VERTEX;
-    const Buffer at(own(), points);
+    const Buffer at(device(), points);
     expectHeld("pelSurfaceIntegral", 6, true, [&](const Buffer& out, const PelSubmit* submit) {
         integral.points = vertexView(at, 2), integral.result = vertexView(out, 2);
-        surfaceIntegral(own(), integral, submit);
+        surfaceIntegral(device(), integral, submit);
     });
 
     PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
     desc.width = 31, desc.height = 29;
     desc.numVertices = 4, desc.uvs = uvs.data();
     desc.numIndices = 6, desc.indices = triangles.data();
-    const Buffer vertices(own(), corners), values(own(), light), drawn = guarded(31 * 29 * 3);
+    const Buffer vertices(device(), corners), values(device(), light), drawn = guarded(31 * 29 * 3);
     const PelImageDesc from = imageDesc(drawn, PEL_FORMAT_RGB32F, 31, 29);
-    TextureScatter texture(own(), desc);
+    TextureScatter texture(device(), desc);
     expectHeld("texture scattering", 31 * 29 * 3, true, [&](const Buffer& out, const PelSubmit* submit) {
         for (int i = 0; i < 2; ++i) {
             texture.setPositions(vertexView(vertices, 4), submit);
@@ -218,16 +216,16 @@ TEST(ShadeHeld, Tables) {
         Lut lut;
         size_t bytes = 0;
         std::vector<float> texels;
-        expectReturns(own(), what, [&](const PelSubmit* submit) {
-            lut = Lut(own(), desc, submit);
+        expectReturns(device(), what, [&](const PelSubmit* submit) {
+            lut = Lut(device(), desc, submit);
             check(pelLutGetSize(lut.get(), PEL_LUT_FLOAT, &bytes));
             texels.resize(bytes / sizeof(float));
             check(pelLutRead(lut.get(), PEL_LUT_FLOAT, texels.data(), bytes, submit));
         });
-        EXPECT_EQ(texels, Lut(own(), desc).template read<float>(PEL_LUT_FLOAT)) << what;
+        EXPECT_EQ(texels, Lut(device(), desc).template read<float>(PEL_LUT_FLOAT)) << what;
         Lut copy;
-        expectReturns(own(), "pelLutCreateFromTexels",
-                      [&](const PelSubmit*) { copy = Lut(own(), lut.info(), texels); });
+        expectReturns(device(), "pelLutCreateFromTexels",
+                      [&](const PelSubmit*) { copy = Lut(device(), lut.info(), texels); });
         EXPECT_EQ(copy.read<float>(PEL_LUT_FLOAT), texels) << what;
     };
     expectTable("pelCurvatureLutCreate", curvature);
@@ -239,3 +237,5 @@ TEST(ShadeHeld, Tables) {
 }
 
 }  // namespace
+
+}  // namespace held_calls
