@@ -1,12 +1,12 @@
 // Handles of every type, used wrongly: released twice, used after their release, invented, of another type,
 // by many threads. Each use is an error that names the mistake, and no object is damaged.
 #include "core/handle_kinds.h"
+#include "core/on_threads.h"
 
 using AnyHandle = handles::Handle;
 using handles::Kind;
 using handles::kinds;
 using pellucid::check;
-using pellucid::Device;
 using pellucid::Profile;
 
 namespace {
@@ -171,11 +171,6 @@ std::chrono::steady_clock::time_point deadline(int parts) {
            std::chrono::milliseconds(long((text ? std::atof(text) : 2) * 1000 / parts));
 }
 
-void onThreads(const std::function<void(unsigned)>& work) {
-    std::vector<std::jthread> threads;
-    for (unsigned t = 0; t < threadCount; ++t) threads.emplace_back([&work, t] { work(t); });
-}
-
 // Each place holds a handle. Every thread takes handles out, uses them and puts new ones in. A handle is
 // released once, by whoever took it out; all else that is done to it meanwhile may be an error, or not.
 TEST(HandleThreads, SharedPlaces) {
@@ -184,7 +179,7 @@ TEST(HandleThreads, SharedPlaces) {
     std::vector<std::atomic<void*>> places(types * each);
     for (size_t i = 0; i < places.size(); ++i) places[i] = kinds()[i % types].create();
     std::atomic<uint64_t> right{0}, refused{0}, lost{0};
-    onThreads([&](unsigned t) {
+    onThreads(threadCount, [&](unsigned t) {
         std::mt19937 random(t);
         // Longer where other programs keep the machine busy.
         while (std::chrono::steady_clock::now() < end || (right == 0 && refused < 1000000)) {
@@ -235,14 +230,14 @@ TEST(HandleThreads, OneReleaseTooMany) {
         for (const Kind& kind : kinds()) {
             void *const h = kind.create(), *const next = kind.create();
             for (int t = 1; t < threadCount; ++t) kind.retain(h);
-            onThreads([&](unsigned t) {
+            onThreads(threadCount, [&](unsigned t) {
                 EXPECT_EQ(kind.use(h), PEL_SUCCESS);
                 kind.release(h);
                 if (t % 2) kind.use(h);
             });
             EXPECT_NE(kind.use(h), PEL_SUCCESS);
             void* const after = kind.create();  // where the other was
-            onThreads([&](unsigned) { kind.release(h); });
+            onThreads(threadCount, [&](unsigned) { kind.release(h); });
             EXPECT_EQ(kind.use(next), PEL_SUCCESS);
             EXPECT_EQ(kind.use(after), PEL_SUCCESS);
             kind.release(next);

@@ -1,17 +1,13 @@
 // Objects that several threads use at a time give each thread the same results as alone. The check for data
 // races (./run check tsan) also finds races here that happen to be harmless.
 #include "mesh/mesh_fixture.h"
+#include "core/on_threads.h"
 
 namespace {
 
 using namespace pellucid;
 
 constexpr int callers = 4;
-
-void together(const std::function<void(int)>& work) {
-    std::vector<std::jthread> threads;
-    for (int t = 0; t < callers; ++t) threads.emplace_back([&work, t] { work(t); });
-}
 
 TEST(Threads, OneTopologyAndOneLiveMesh) {
     const fixture::Mesh mesh = fixture::torus(24, 16);
@@ -26,7 +22,7 @@ TEST(Threads, OneTopologyAndOneLiveMesh) {
     const LiveMesh live(topology, params);
     const std::vector<char> saved = topology.save();
     std::atomic<int> wrong{0};
-    together([&](int t) {
+    onThreads(callers, [&](int t) {
         const Buffer out(device(), n * sizeof(float));
         const PelVertexView p = vertexView(positions, n), normal = vertexView(normals, n),
                             o = vertexView(out, n);
@@ -52,7 +48,7 @@ TEST(Threads, OneProfileAndOneTable) {
     const Lut table(device(), desc);
     const std::vector<float> right = table.read<float>(PEL_LUT_FLOAT);
     std::atomic<int> wrong{0};
-    together([&](int t) {
+    onThreads(callers, [&](int t) {
         for (int i = 0; i < 10; ++i) {
             if (t == 0) profile.setName(i % 2 ? "cheek" : "a name much longer than cheek");
             wrong += !names.contains(profile.info().name);
@@ -70,7 +66,7 @@ TEST(Threads, OneBufferAndOneDevice) {
     const Buffer own(device, memory), host = Buffer::fromHost(device, memory.data(), 4096);
     std::atomic<int> wrong{0};
     std::atomic<uint64_t> told{0};
-    together([&](int t) {
+    onThreads(callers, [&](int t) {
         std::vector<Event> events;
         for (int i = 0; i < 20; ++i) {
             const auto* mapped = static_cast<const uint32_t*>(host.map());
@@ -101,7 +97,7 @@ TEST(Threads, OneBufferAndOneDevice) {
 TEST(Threads, Errors) {
     static std::atomic<int> heard{0};
     std::atomic<int> wrong{0};
-    together([&](int t) {
+    onThreads(callers, [&](int t) {
         const std::string name = "no such device " + std::to_string(t);
         for (int i = 0; i < 20; ++i) {
             if (t == 0)

@@ -3,8 +3,6 @@
 
 using namespace pellucid;
 
-namespace {}  // namespace
-
 TEST(LutApi, RefusesWhatMakesNoSense) {
     const auto curvature = [&](const char* field, auto change) {
         PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();

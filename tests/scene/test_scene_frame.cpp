@@ -323,7 +323,9 @@ class FieldBounds : public SceneFrames {
                 }
                 return double(std::clock() - start) / CLOCKS_PER_SEC;
             };
-            if (seconds() >= maxSeconds) EXPECT_LT(seconds(), maxSeconds);  // the first may compile
+            if (seconds() >= maxSeconds) {  // the first may compile
+                EXPECT_LT(seconds(), maxSeconds);
+            }
         }
         EXPECT_GT(made, ends.size() / 2);
     }
