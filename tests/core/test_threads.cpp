@@ -1,7 +1,7 @@
 // Objects that several threads use at a time give each thread the same results as alone. The check for data
 // races (./run check tsan) also finds races here that happen to be harmless.
-#include "mesh/mesh_fixture.h"
 #include "core/on_threads.h"
+#include "mesh/mesh_fixture.h"
 
 namespace {
 
