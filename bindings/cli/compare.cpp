@@ -284,14 +284,18 @@ void addCompare(CLI::App& app) {
     option(command, "--layer-b", a.channelsB, "layer of B, such as Surface", Word{"NAME"});
     option(command, "--scale-a", a.scaleA, "multiplies A", isPositive(), shown);
     option(command, "--scale-b", a.scaleB, "multiplies B, such as by an albedo", isPositive(), shown);
-    option(command, "--gbuffer", a.gbuffer,
-           "multi-layer EXR: only pixels of a material count; errors are given for each sub-set of them");
+    CLI::Option* gbuffer =
+        option(command, "--gbuffer", a.gbuffer,
+               "multi-layer EXR: only pixels of a material count; errors are given for each sub-set of them");
     option(command, "--scene", a.scene, "its scene file (TOML)");
-    option(command, "--light", a.light, "number of the light that defines the sub-sets", shown);
+    option(command, "--light", a.light, "number of the light that defines the sub-sets", shown,
+           Needs{gbuffer});
     option(command, "--unit-mm", a.unit, "millimetres per unit of positions (default: the scene's unit_mm)",
-           isPositive());
-    option(command, "--picture", a.picture, "PNG to write: both pictures, and their difference in colours");
-    option(command, "--exposure", a.exposure, "multiplies both pictures in it", isPositive(), shown);
+           isPositive(), Needs{gbuffer});
+    CLI::Option* picture = option(command, "--picture", a.picture,
+                                  "PNG to write: both pictures, and their difference in colours");
+    option(command, "--exposure", a.exposure, "multiplies both pictures in it", isPositive(), shown,
+           Needs{picture});
     option(command, "--max-rmse", a.maxRmse,
            "exit with 1 if the RMSE over all channels is larger, or a value is NaN or Inf", isNotNegative());
     jsonOption(command, a.json);

@@ -42,6 +42,8 @@ void runCurvature(const CurvatureArguments& a) {
     if (!a.range.empty() && !(a.range[0] < a.range[1] && std::isfinite(a.range[1] - a.range[0])))
         throw UsageError(io::concat("--range ", a.range[0], " ", a.range[1],
                                     ": two finite numbers are needed, the lower one first"));
+    if (!a.range.empty() && a.picture.empty() && io::extensionOf(a.output) != "ply")
+        throw UsageError("--range: only --picture and a .ply have colours");
     const MeshWeldChoice weld = weldChoice(a.weld);
     PelCurvatureParams params = a.params;
     params.estimator = chosen<PelCurvatureEstimator>(io::estimators, a.estimator);
@@ -102,12 +104,14 @@ void addCurvature(CLI::App& app) {
     option(command, "--weld", a.weld, "merges vertices at the same position: none, exact, or within a length",
            Word{"none|exact|LENGTH"}, shown);
     option(command, "--orient", a.orient, "flips triangles whose orientation differs from their neighbours'");
-    option(command, "--smooth-radius", a.params.smoothingRadius,
-           "smooths to a radius in the mesh's unit of length, whatever its density", isNotNegative());
+    CLI::Option* radius =
+        option(command, "--smooth-radius", a.params.smoothingRadius,
+               "smooths to a radius in the mesh's unit of length, whatever its density", isNotNegative());
     option(command, "--smooth-crease", a.creaseDegrees,
-           "with --smooth-radius: degrees between normals that stop it", inRange(0.0, 180.0));
+           "with --smooth-radius: degrees between normals that stop it", inRange(0.0, 180.0), Needs{radius});
     option(command, "--smooth-weights", a.smoothingWeights,
-           "with --smooth-radius: how neighbours are weighted", isOneOf(io::smoothingWeights), shown);
+           "with --smooth-radius: how neighbours are weighted", isOneOf(io::smoothingWeights), shown,
+           Needs{radius});
     option(command, "--picture", a.picture,
            "PNG to write as well: the mesh coloured by the values, with a colour bar");
     option(command, "--range", a.range,

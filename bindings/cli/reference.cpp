@@ -71,7 +71,8 @@ struct WalkArguments {
     std::string boundary = "index-matched";
 };
 
-void addWalkOptions(CLI::App& command, WalkArguments& walk) {
+// Returns the option that enables the walk.
+CLI::Option* addWalkOptions(CLI::App& command, WalkArguments& walk) {
     CLI::Option* enabled =
         option(command, "--walk", walk.enabled,
                "trace light through the volume (random walk) instead of integrating the profile over the "
@@ -91,6 +92,7 @@ void addWalkOptions(CLI::App& command, WalkArguments& walk) {
     option(command, "--boundary", walk.boundary,
            "index-matched, or fresnel: a smooth surface of a refractive index of 1.4, which skin always has",
            isOneOf({"index-matched", "fresnel"}), shown, Needs{enabled});
+    return enabled;
 }
 
 sample::Boundary boundaryOf(const WalkArguments& walk) {
@@ -597,8 +599,9 @@ void addReference(CLI::App& app) {
            "scales the profile to this radius, mm; 0: its own", isNotNegative(), shown);
     option(command, "--unit-mm", a.unit, "millimetres per unit of positions (default: the scene's unit_mm)",
            isPositive());
-    option(command, "--cut", a.cut,
-           "mm per channel where the profile ends, as in renderers that cut it off; 0: nowhere", Count{3});
+    CLI::Option* cut = option(
+        command, "--cut", a.cut,
+        "mm per channel where the profile ends, as in renderers that cut it off; 0: nowhere", Count{3});
     option(command, "--subdivide", a.subdivide,
            "levels of subdivision, done first: Catmull-Clark of OBJ files, Loop of others", inRange(0, 6),
            shown);
@@ -606,16 +609,21 @@ void addReference(CLI::App& app) {
            "group of an OBJ file that scatters, all others just cast shadows; or, several times, ID=GROUP: "
            "the body of the material with that id",
            Word{"NAME"}, oneEach);
-    option(command, "--finest", a.finest,
-           "length to which triangles are split at the edges of shadows (default: a quarter of the narrowest "
-           "channel's width)",
-           isNotNegative());
-    option(command, "--coarsest", a.coarsest,
-           "length above which triangles are split everywhere (default: the widest channel's width)",
-           isNotNegative());
-    option(command, "--tolerance", a.tolerance, "bound of the error of far light, part of the brightest",
-           inRange(1e-7, 1.0), shown);
-    addWalkOptions(command, a.walk);
+    CLI::Option* finest = option(
+        command, "--finest", a.finest,
+        "length to which triangles are split at the edges of shadows (default: a quarter of the narrowest "
+        "channel's width)",
+        isNotNegative());
+    CLI::Option* coarsest =
+        option(command, "--coarsest", a.coarsest,
+               "length above which triangles are split everywhere (default: the widest channel's width)",
+               isNotNegative());
+    CLI::Option* tolerance =
+        option(command, "--tolerance", a.tolerance, "bound of the error of far light, part of the brightest",
+               inRange(1e-7, 1.0), shown);
+    // Of the surface integral alone.
+    CLI::Option* walk = addWalkOptions(command, a.walk);
+    for (CLI::Option* each : {cut, finest, coarsest, tolerance}) each->excludes(walk);
     addRunOptions(command, a.run);
 }
 

@@ -80,8 +80,9 @@ PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* pa
         PelMeshReport found = mesh->report();
         if (report) writeStruct(report, found, "PelMeshReport");  // an error comes before any work
         MeshCounts counts{};
-        submitted(mesh->device(), submit,
-                  [&](bool) { meshCurvature(*mesh, full, p, n, out, report ? &counts : nullptr); });
+        submitted(mesh->device(), submit, [&](bool blocks) {
+            meshCurvature(*mesh, full, p, n, out, report ? &counts : nullptr, blocks || report);
+        });
         if (!report) return;
         found.zeroLengthEdges = counts.zeroLengthEdges;
         found.nonFinitePositions = counts.nonFinitePositions;
@@ -125,7 +126,8 @@ PelError pelLiveMeshUpdate(PelLiveMesh live, const PelVertexView* positions, con
         const VertexView n = normals ? view(normals, "normals", 3) : VertexView{};
         const VertexView out = view(curvature, "curvature", quantityFloats(mesh->params().quantity));
         checkRanges(changed, numChanged, topology.vertices());
-        submitted(topology.device(), submit, [&](bool) { mesh->update(p, n, out, changed, numChanged); });
+        submitted(topology.device(), submit,
+                  [&](bool blocks) { mesh->update(p, n, out, changed, numChanged, blocks); });
     });
 }
 

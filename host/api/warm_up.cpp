@@ -87,7 +87,7 @@ void curvatureJobs(const Ref<Device>& device, BuildJobs& jobs) {
                 MeshCounts counts;
                 for (const bool given : {true, false})
                     meshCurvature(*mesh.topology, params, mesh.view(3), given ? mesh.view(3) : VertexView{},
-                                  out, &counts);
+                                  out, &counts, true);
             });
     jobs.push_back([device] {
         const SmallMesh mesh(device, false);

@@ -147,7 +147,7 @@ void storeQuantity(MeshTopology& topology, const PelCurvatureParams& params, uin
 }
 
 void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, const VertexView& positions,
-                   const VertexView& normals, const VertexView& curvature, MeshCounts* counts) {
+                   const VertexView& normals, const VertexView& curvature, MeshCounts* counts, bool blocks) {
     if (counts) *counts = {};
     if (topology.vertices() == 0) return;
     const uint32_t planes = planesOf(params.quantity), planeStride = planeStrideOf(topology);
@@ -164,7 +164,8 @@ void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, con
     if (params.smoothingPasses > 0 || params.smoothingRadius > 0)
         values.to = scratch(MeshTopology::scratchTo, planeBytes * values.planes);
     // Before the uniform passes, so that none of their work is lost if this throws.
-    const Diffusion diffusion = planDiffusion(topology, data, params, scratch);
+    const Diffusion diffusion = planDiffusion(topology, data, params, scratch,
+                                              topology.diffusionRates[params.smoothingWeights], blocks);
     smoothUniform(topology, passDefines(topology, params, data.stride), params.smoothingPasses, values);
     if (diffusion.passes() > 0) smoothToRadius(topology, data, diffusion, values, scratch);
     storeQuantity(topology, params, data.stride, values.from, estimated, curvature, nullptr);

@@ -19,8 +19,8 @@ void storeQuantity(MeshTopology& topology, const PelCurvatureParams& params, uin
                    Rows::Work* work);
 
 // If `normals` is empty they are made from the positions. Enqueues everything. With `counts`, waits and fills
-// it.
+// it. `blocks`: the caller waits, so that the mesh may be measured for its smoothing.
 void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, const VertexView& positions,
-                   const VertexView& normals, const VertexView& curvature, MeshCounts* counts);
+                   const VertexView& normals, const VertexView& curvature, MeshCounts* counts, bool blocks);
 
 }  // namespace pel

@@ -56,7 +56,7 @@ Rows LiveMesh::rowsUpTo(uint32_t distance, Rows::Work& work) const {
 }
 
 void LiveMesh::update(const VertexView& positions, const VertexView& normals, const VertexView& curvature,
-                      const PelVertexRange* changed, uint32_t numChanged) {
+                      const PelVertexRange* changed, uint32_t numChanged, bool blocks) {
     MeshTopology& topology = *topology_;
     const std::unique_lock guard(mutex_);
     stats_.launches = stats_.rowsEstimated = stats_.rowsSmoothed = stats_.rowsStored = stats_.bytesUploaded =
@@ -65,7 +65,9 @@ void LiveMesh::update(const VertexView& positions, const VertexView& normals, co
     std::vector<PelVertexRange> ranges;
     for (uint32_t i = 0; changed && i < numChanged; ++i)
         if (changed[i].count > 0) ranges.push_back(changed[i]);
-    const bool all = !changed || fresh_ || madeNormals_ != !normals.memory;
+    // A mesh without a rate had nothing to smooth, so none of its weights are kept.
+    const bool unmeasured = params_.smoothingRadius > 0 && params_.smoothingStages == 0 && !(rates_.most > 0);
+    const bool all = !changed || fresh_ || unmeasured || madeNormals_ != !normals.memory;
     const bool elsewhere = !sameView(curvature, target_);
     if (!all && !elsewhere && ranges.empty()) return;
 
@@ -95,7 +97,11 @@ void LiveMesh::update(const VertexView& positions, const VertexView& normals, co
         find(ranges);  // passes_ and storedReach_ are known from the first update
     const SlotData data =
         gatherBySlot(topology, positions, normals, scratch, rowsUpTo(0, other), rowsUpTo(1, other));
-    const Diffusion diffusion = planDiffusion(topology, data, params_, scratch);
+    // A part is smoothed as the whole was, by which its other rows are kept.
+    DiffusionRates& measured = topology.diffusionRates[params_.smoothingWeights];
+    const Diffusion diffusion =
+        planDiffusion(topology, data, params_, scratch, all ? measured : rates_, all && blocks);
+    if (all) rates_ = measured;
     passes_ = params_.smoothingPasses + diffusion.passes();
     estimateCurvature(topology, params_, data, estimated, rowsUpTo(estimateReach_, estimates));
     const uint32_t weightReach = diffusion.passes() > 0 ? diffusion.weightReach(madeNormals_) : 0;

@@ -40,9 +40,10 @@ class LiveMesh final : public Object {
 
     const Ref<MeshTopology>& topology() const { return topology_; }
     const PelCurvatureParams& params() const { return params_; }
-    // `changed` NULL: all vertices. Enqueues everything.
+    // `changed` NULL: all vertices. Enqueues everything. `blocks`: the caller waits, so that the mesh may be
+    // measured.
     void update(const VertexView& positions, const VertexView& normals, const VertexView& curvature,
-                const PelVertexRange* changed, uint32_t numChanged);
+                const PelVertexRange* changed, uint32_t numChanged, bool blocks);
     PelLiveMeshStats stats();
 
   private:
@@ -62,6 +63,7 @@ class LiveMesh final : public Object {
     std::vector<PelVertexRange> changed_;
     MeshReach reach_;
     bool listed_ = false;
+    DiffusionRates rates_;  // of the last update of all vertices
     uint32_t estimateReach_ = 0, storedReach_ = 0, passes_ = 0;
     cl::Memory list_, lanes_;
     PelLiveMeshStats stats_ = pelLiveMeshStatsDefaults();

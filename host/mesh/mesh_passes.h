@@ -109,8 +109,7 @@ using RowsOfPass = std::function<Rows(uint32_t pass)>;
 void smoothUniform(MeshTopology& topology, const cl::Defines& defines, uint32_t count, SlotPlanes& values,
                    const RowsOfPass& rows = {});
 
-// The passes of a smoothing to a radius. Waits for the device the first time, if params do not give the
-// number of stages.
+// The passes of a smoothing to a radius.
 struct Diffusion {
     float limit = 0, turn2 = 0;       // of rates, 1/length^2; square of the change of the normal at a crease
     std::vector<float> coefficients;  // of the Chebyshev polynomials from degree 0 on; empty: nothing to do
@@ -122,8 +121,10 @@ struct Diffusion {
         return (madeNormals && turn2 > 0 ? 2 : 1) + (weights == PEL_SMOOTHING_AREA ? 2 : 0);
     }
 };
+// `measure`: measures the mesh, which waits for the device, if params do not give the number of stages.
+// Otherwise only if `rates` were not measured before.
 Diffusion planDiffusion(MeshTopology& topology, const SlotData& data, const PelCurvatureParams& params,
-                        const Scratch& scratch);
+                        const Scratch& scratch, DiffusionRates& rates, bool measure);
 
 // `weighed`: rows whose weights are computed.
 void smoothToRadius(MeshTopology& topology, const SlotData& data, const Diffusion& diffusion,

@@ -13,6 +13,11 @@ namespace pel {
 // Throws if a count or an index is wrong.
 void checkTopologyDesc(const PelMeshTopologyDesc& desc);
 
+// The largest and the median smoothing rate of a mesh, 1/length^2; 0: not measured yet.
+struct DiffusionRates {
+    float most = 0, middle = 0;
+};
+
 class MeshTopology final : public Object {
   public:
     static constexpr Kind kind = Kind::meshTopology;
@@ -61,11 +66,7 @@ class MeshTopology final : public Object {
 
     // Entries of the rings, including fillers.
     size_t ringEntries() const { return ringEntries_; }
-    // The largest and the median smoothing rate of the mesh, 1/length^2, by weights; 0: not measured yet.
-    // Guarded by lock().
-    struct DiffusionRates {
-        float most = 0, middle = 0;
-    };
+    // As measured last, by weights. Guarded by lock().
     DiffusionRates diffusionRates[2];
     // Starts, points and rounds of the two-rings (shared/mesh.h), made or queued; empty: not yet. Guarded
     // by lock().

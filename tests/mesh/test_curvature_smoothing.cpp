@@ -94,6 +94,33 @@ TEST(CurvatureSmoothing, EqualsTheOraclesFlow) {
         }
 }
 
+// Rates grow as sizes shrink, so what a larger pose measured would hardly smooth a smaller one.
+TEST(CurvatureSmoothing, PosesOfOtherSizesOnOneTopologyAreMeasuredAnew) {
+    const Mesh mesh = irregularTorus(sized(60, 30), sized(30, 16));
+    for (const auto weights : bothWeights) {
+        const pellucid::MeshTopology kept(device(), topologyDesc(mesh));
+        for (const float scale : {1.0f, 0.1f, 0.5f, 20.0f}) {
+            Mesh pose = mesh;
+            for (float& x : pose.positions) x *= scale;
+            const PelCurvatureParams params = smoothed(0.3 * scale, weights);
+            const std::vector<float> anew = valuesOf(pose, params);
+            EXPECT_EQ(OnDevice(pose).curvature(kept, params), anew) << "scale " << scale;
+            // An update of all vertices measures too, one of a part does not.
+            const pellucid::MeshTopology topology(device(), topologyDesc(mesh));
+            const pellucid::LiveMesh live(topology, params);
+            for (const Mesh* each : {&mesh, const_cast<const Mesh*>(&pose)}) {
+                const OnDevice at(*each);
+                const PelVertexView normals = at.normalsAt();
+                live.update(at.at(), &normals, at.result());
+                if (each == &mesh) continue;
+                EXPECT_EQ(at.out.readAll<float>(), anew) << "live, scale " << scale;
+                live.update(at.at(), &normals, at.result(), {{7, 3}});
+                EXPECT_EQ(at.out.readAll<float>(), anew) << "live, a part, scale " << scale;
+            }
+        }
+    }
+}
+
 TEST(CurvatureSmoothing, StaysWithinTheRangeOfItsValues) {
     reference::Mesh noisy = tessellate(reference::torusSurface(3, 1), sized(60, 9), sized(30, 7),
                                        reference::Tessellation::irregular)

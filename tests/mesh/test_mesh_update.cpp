@@ -30,8 +30,15 @@ struct Pose : OnDevice {
                 : live.update(at(), optional, result(), submit);
     }
     std::vector<float> values() const { return out.readAll<float>(); }
+    // Submitted, so that a smoothing to a radius takes what the update measured.
     std::vector<float> anew(const MeshTopology& topology, const PelCurvatureParams& params) const {
-        return OnDevice(mesh, floats).curvature(topology, params, !given);
+        const OnDevice again(mesh, floats);
+        PelEvent event = nullptr;
+        const PelSubmit submit{nullptr, 0, &event};
+        given ? topology.curvature(params, again.at(), again.normalsAt(), again.result(), nullptr, &submit)
+              : topology.curvature(params, again.at(), again.result(), nullptr, &submit);
+        Event(event).wait();
+        return again.out.readAll<float>();
     }
 };
 

@@ -415,8 +415,9 @@ typedef struct PelCurvatureParams {
     uint32_t smoothingPasses;
     float scale; /* multiplies the result; 1 when mesh and LUT share their unit of length */
     PelCurvatureQuantity quantity;
-    /* length; standard deviation of a smoothing that does not depend on the mesh's density; 0: none. The
-     * first call with a radius measures the mesh, which blocks, unless smoothingStages is given */
+    /* length; standard deviation of a smoothing that does not depend on the mesh's density; 0: none. Unless
+     * smoothingStages is given, calls without a PelSubmit measure the mesh. Calls with one take the
+     * topology's last measurement, made at a pose of about the same size; if there is none they block */
     float smoothingRadius;
     /* with a radius: angle between normals, radians, across which smoothing falls to 1/e, so that sharp
      * features are kept; 0: no such limit */
@@ -431,9 +432,9 @@ typedef struct PelCurvatureParams {
 /* Curvature at each vertex. `positions`, `normals`: xyz float32 per vertex, as many as the topology has;
  * normals are of unit length; NULL: they are made from the positions, as by pelMeshNormals. `curvature`: one
  * float32 per vertex (more for some quantities), 1/length, finite; 0 where nothing could be measured. Signed
- * values are smoothed, then the quantity is taken. The call blocks with a `report`, and the first time that a
- * topology lists its two-rings for PEL_CURVATURE_QUADRIC. Same input, same bits. Sources: FaceWorks 1.0;
- * Rusinkiewicz, Estimating Curvatures, 3DPVT 2004. */
+ * values are smoothed, then the quantity is taken. The call blocks with a `report`, the first time that a
+ * topology lists its two-rings for PEL_CURVATURE_QUADRIC, and the first time with a smoothingRadius. Same
+ * input, same bits. Sources: FaceWorks 1.0; Rusinkiewicz, Estimating Curvatures, 3DPVT 2004. */
 PEL_API PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* params,
                                   const PelVertexView* positions, const PelVertexView* normals,
                                   const PelVertexView* curvature, PelMeshReport* report,
@@ -468,7 +469,8 @@ PEL_API PelError pelLiveMeshCreate(PelMeshTopology topology, const PelCurvatureP
 PEL_API void pelLiveMeshRetain(PelLiveMesh live);
 PEL_API void pelLiveMeshRelease(PelLiveMesh live);
 
-/* Gives the same bits as pelMeshCurvature, with only the work that the change needs. `changed`: numChanged
+/* Gives the same bits as pelMeshCurvature, with only the work that the change needs. A smoothing to a radius
+ * is measured, as there, by updates of all vertices alone. `changed`: numChanged
  * ranges of vertices whose position or normal differs from the previous update, in any order; NULL: all. Only
  * rows that they reach are measured, smoothed and written; empty ranges cost no launch and no byte. The first
  * update measures everything, as does one that begins or stops to give normals. An update with another
