@@ -263,6 +263,9 @@ void runShade(ShadeArguments a) {
     if (picture.empty() && a.show != std::vector<std::string>{"final"})
         throw UsageError(
             "--show: parts are shown in a picture; name one with --picture, or write -o to a .png");
+    if (picture.empty() && (a.tone.exposure != io::ToneMap().exposure || a.tone.curve != io::ToneMap().curve))
+        throw UsageError(
+            "--exposure and --tonemap: of pictures; name one with --picture, or write -o to a .png");
     if (picture == a.output && !a.picture.empty())
         throw UsageError("--picture: -o is a picture already; write -o to an .exr, or leave --picture out");
     if (a.scene.empty()) {

@@ -498,8 +498,9 @@ ShadowMaps blankMaps(const SceneFile& scene) {
     ShadowMaps maps;
     for (const auto& [file, map] : shadowMapsOf(scene)) {
         std::set<std::string> names = namesOf(map.groups);
-        if (names.erase("")) names.insert("Z");
-        maps[file] = blank(names, map.cube ? 6 * 16 : 2);
+        if (names.erase("") && names.empty()) names.insert("Z");
+        Image& image = maps[file] = blank(names, map.cube ? 6 * 16 : 2);
+        image.source = file;
     }
     return maps;
 }

@@ -18,6 +18,8 @@ constexpr cl_uint lobeSamples = 128;
 constexpr cl_uint shareSamples = 512;
 constexpr size_t mostSamples = PEL_ENVIRONMENT_LEVELS * lobeSamples + shareSamples;
 constexpr cl_uint irradianceMip = 2;  // 16 x 16 texels a face
+// Along an edge of a face, of the reduced image at most: twice those of the finest level.
+constexpr cl_uint faceTexels = 2 * PEL_ENVIRONMENT_SIZE;
 
 // Hammersley's second coordinate, evenly spread: the reversed binary digits of k.
 double radicalInverse(unsigned k) {
@@ -111,10 +113,17 @@ class Environment final : public Pass {
             return cl_float4{{a[0], a[1], a[2], 0}};
         };
         const cl_uint size = PEL_ENVIRONMENT_SIZE;
-        work.launch(program(), "environment_texels", range(size, 6 * size), image, cl_ulong(image.byteOffset),
-                    cl_ulong(step), cl_ulong(image.rowStride), cl_ulong(image.planeStride),
-                    cl_uint(image.pixelStride), faces ? edge : image.width, image.height, axis(0), axis(1),
-                    axis(2), texels);
+        const cl_uint width = faces ? edge : image.width, height = faces ? edge : image.height,
+                      leastWidth = std::min(width, faces ? faceTexels : 4 * faceTexels),
+                      leastHeight = std::min(height, faces ? faceTexels : 2 * faceTexels),
+                      lines = leastHeight * (faces ? 6 : 1);
+        const cl::Memory reduced = work.device.allocate(size_t(leastWidth) * lines * sizeof(cl_float4));
+        work.launch(program(), "environment_reduce", range(leastWidth, lines), image,
+                    cl_ulong(image.byteOffset), cl_ulong(step), cl_ulong(image.rowStride),
+                    cl_ulong(image.planeStride), cl_uint(image.pixelStride), width, height, leastWidth,
+                    leastHeight, reduced);
+        work.launch(program(), "environment_texels", range(size, 6 * size), reduced, cl_int(faces),
+                    leastWidth, leastHeight, axis(0), axis(1), axis(2), texels);
         for (cl_uint mip = 1; mip < PEL_ENVIRONMENT_MIPS; ++mip)
             work.launch(program(), "environment_halve", range(size >> mip, 6 * (size >> mip)), mip, texels);
         cl_uint first = 0;

@@ -56,6 +56,19 @@ std::string withoutEffect(const ShaderMaterial& material) {
     return names;
 }
 
+// How the eye of a caustic table differs in shape; "" if it does not. Tables do not depend on the unit of
+// length.
+std::string otherShape(const PelEyeLutDesc& table, const PelEye& eye) {
+    const double scale = double(eye.scleraRadius) / table.scleraRadius;
+#define PEL_COMPARE_(type, name, value, least, most, none, unit, ...)                \
+    if (const double is = table.name * (*unit ? scale : 1.0);                        \
+        std::abs(is - eye.name) > 1e-3 * std::max(1e-3, std::abs(double(eye.name)))) \
+        return text(#name " is ", float(is), " in the table and ", eye.name, " in the eye");
+    PEL_EACH_EYE_SHAPE_FIELD(PEL_COMPARE_)
+#undef PEL_COMPARE_
+    return "";
+}
+
 }  // namespace
 
 std::string warningsOf(const ShaderState& given, const ShaderState& state, uint32_t features) {
@@ -100,6 +113,16 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
                      ? ""
                      : text(", here \"", scatteringName(m.scattering), "\""),
                  " (docs/guide/methods.md, \"Controls\")");
+        if (material.eye && !material.eye->ownCaustics) {
+            const ShaderEye& eye = *material.eye;
+            const PelLutInfo& table = eye.caustics->info();
+            if (const std::string other = otherShape(table.eye, eye.params); !other.empty())
+                warn("material ", id, " has the caustic table of another eye: ", other);
+            if (eye.irisProfile && eye.irisProfile->name() != table.profile)
+                warn("material ", id,
+                     " has an irisProfile without effect: its caustic table was made with \"", table.profile,
+                     "\" instead of \"", eye.irisProfile->name(), "\"");
+        }
         if (scattersByTaps(material) &&
             std::ranges::equal(state.camera.inverseViewProjection, pelCameraDefaults().inverseViewProjection))
             warn("material ", id,

@@ -1,44 +1,95 @@
 // Converts the host's image of the surroundings to the levels that shading reads (shared/environment.h;
 // section 6 of the mathematics, "environment").
 //
-// environment_texels: the image, equirectangular or six faces, averaged over each texel of a cube.
-// environment_halve: one mip of it from the finer one. environment_level: nodes of one level, or of
-// irradiance, by samples of the lobe that read the mip whose texels are as large as a sample's share of the
-// sphere [Krivanek, Colbert, Real-time Shading with Filtered Importance Sampling, EGSR 2008].
+// environment_reduce: the image, equirectangular or six faces, in at most as many texels as are needed.
+// environment_texels: its mean over each texel of a cube. environment_halve: one mip of it from the finer
+// one. environment_level: nodes of one level, or of irradiance, by samples of the lobe that read the mip
+// whose texels are as large as a sample's share of the sphere [Krivanek, Colbert, Real-time Shading with
+// Filtered Importance Sampling, EGSR 2008]. Means are over solid angle, so that small lamps keep their light.
 //
 // One work-item: one texel or node, PEL_WIDTH 1. Variants: PEL_FORMAT_ENVIRONMENT, PEL_GROUP.
 #include "lib/image/cube_map.clh"
 #include "shared/environment.h"
 
-#define PEL_LARGEST_FOOTPRINT 32  // samples along a side of a texel
+// Which texels of a row of `from` one of `to` texels covers, and by how much of itself times `from`.
+typedef struct Cover {
+    uint begin, end, from, to;
+} Cover;
+static inline Cover coverOf(uint x, uint from, uint to) {
+    return (Cover){x * from, (x + 1) * from, from, to};
+}
+static inline uint firstOf(const Cover* c) {
+    return c->begin / c->to;
+}
+static inline uint endOf(const Cover* c) {
+    return (c->end - 1) / c->to + 1;
+}
+static inline float overlap(const Cover* c, uint i) {
+    return (float)(min(c->end, (i + 1) * c->to) - max(c->begin, i * c->to));
+}
 
-// The host's image: `width` x `height` texels, or faces of `width` texels along an edge, `step` bytes apart.
-typedef struct Surroundings {
-    __global const uchar* first;
-    ulong step, row, plane;
-    uint pixel, width, height;
-} Surroundings;
+// `image`: width x height texels, or faces of `width` texels along an edge, `step` bytes apart; `least`: the
+// same of `texels`, whose faces lie one below the other.
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment_reduce(
+    __global const uchar* restrict image, ulong offset, ulong step, ulong row, ulong plane, uint pixel,
+    uint width, uint height, uint leastWidth, uint leastHeight, __global float4* restrict texels) {
+    const uint x = get_global_id(0), line = get_global_id(1);
+    if (x >= leastWidth || line >= leastHeight * (step ? 6 : 1)) return;
+    image += offset + line / leastHeight * step;
+    const Cover across = coverOf(x, width, leastWidth),
+                down = coverOf(line % leastHeight, height, leastHeight);
+    float3 sum = (float3)(0.0f);
+    float whole = 0.0f;
+    for (uint j = firstOf(&down); j < endOf(&down); ++j) {
+        const float solid = step ? 1.0f : sinpi(((float)j + 0.5f) / (float)height);
+        for (uint i = firstOf(&across); i < endOf(&across); ++i) {
+            __global const uchar* p = image + (ulong)j * row + (ulong)i * pixel;
+            const float3 value = (float3)(pixelComponent(PEL_FORMAT_ENVIRONMENT, p, plane, 0),
+                                          pixelComponent(PEL_FORMAT_ENVIRONMENT, p, plane, 1),
+                                          pixelComponent(PEL_FORMAT_ENVIRONMENT, p, plane, 2));
+            const float weight = solid * overlap(&down, j) * overlap(&across, i);
+            sum += weight * select((float3)(0.0f), min(value, PEL_ENVIRONMENT_LARGEST),
+                                   (value > 0.0f) & isfinite(value));
+            whole += weight;
+        }
+    }
+    texels[line * leastWidth + x] = (float4)(sum / whole, 0.0f);
+}
 
-// The texel that a direction in the image's space meets.
-static inline float3 surroundingsAlong(const Surroundings* s, float3 d) {
-    uint x, y, face = 0;
-    if (s->step) {
+// The mean of the reduced image over a sample of about `angle` x `angle` radians round a direction. Samples
+// share each texel among them, wherever they lie, so that none is left out or counted twice.
+static inline float4 surroundingsAlong(__global const float4* image, bool faces, uint width, uint height,
+                                       float3 d, float angle) {
+    float u, v, wide, high;  // in texels
+    if (faces) {
         const CubePoint p = cubePoint(vec3(d.x, d.y, d.z));
-        face = (uint)p.face;
-        x = (uint)clamp((p.u * 0.5f + 0.5f) * (float)s->width, 0.0f, (float)(s->width - 1));
-        y = (uint)clamp((p.v * 0.5f + 0.5f) * (float)s->width, 0.0f, (float)(s->width - 1));
+        const float r2 = fma(p.u, p.u, fma(p.v, p.v, 1.0f));
+        image += (uint)p.face * width * width;
+        u = fma(p.u, 0.5f, 0.5f) * (float)width, v = fma(p.v, 0.5f, 0.5f) * (float)width;
+        wide = high = angle * 0.5f * (float)width * sqrt(r2 * sqrt(r2));
     } else {
         // +y is the upper edge and +z the middle of the row, as in OpenEXR's latitude-longitude maps.
-        const float u = 0.5f - 0.5f * M_1_PI_F * atan2(d.x, d.z);
-        const float v = M_1_PI_F * acos(clamp(d.y * rsqrt(dot(d, d)), -1.0f, 1.0f));
-        x = (uint)clamp(u * (float)s->width, 0.0f, (float)(s->width - 1));
-        y = (uint)clamp(v * (float)s->height, 0.0f, (float)(s->height - 1));
+        const float length = sqrt(dot(d, d));
+        u = (0.5f - 0.5f * M_1_PI_F * atan2(d.x, d.z)) * (float)width;
+        v = M_1_PI_F * acos(clamp(d.y / length, -1.0f, 1.0f)) * (float)height;
+        wide = angle * 0.5f * M_1_PI_F * (float)width * length / sqrt(fma(d.x, d.x, d.z * d.z));
+        high = angle * M_1_PI_F * (float)height;
     }
-    __global const uchar* p = s->first + face * s->step + (ulong)y * s->row + (ulong)x * s->pixel;
-    const float3 value = (float3)(pixelComponent(PEL_FORMAT_ENVIRONMENT, p, s->plane, 0),
-                                  pixelComponent(PEL_FORMAT_ENVIRONMENT, p, s->plane, 1),
-                                  pixelComponent(PEL_FORMAT_ENVIRONMENT, p, s->plane, 2));
-    return select((float3)(0.0f), min(value, PEL_ENVIRONMENT_LARGEST), (value > 0.0f) & isfinite(value));
+    wide = min(wide, (float)width), high = min(high, (float)height);  // Inf at the poles
+    const float left = u - 0.5f * wide, right = u + 0.5f * wide, up = v - 0.5f * high, down = v + 0.5f * high;
+    const int columns = (int)width, rows = (int)height;
+    float4 sum = (float4)(0.0f);
+    float whole = 0.0f;
+    for (float y = floor(up); y < down; y += 1.0f) {
+        const int j = clamp((int)y, 0, rows - 1);
+        for (float x = floor(left); x < right; x += 1.0f) {
+            const int i = (int)x, wrapped = faces ? clamp(i, 0, columns - 1) : (i + columns) % columns;
+            const float weight = (min(down, y + 1.0f) - max(up, y)) * (min(right, x + 1.0f) - max(left, x));
+            sum += weight * image[j * columns + wrapped];
+            whole += weight;
+        }
+    }
+    return sum / whole;
 }
 
 // Texels before a mip, in all finer ones.
@@ -49,23 +100,29 @@ static inline uint mipStart(uint mip) {
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment_texels(
-    __global const uchar* restrict image, ulong offset, ulong step, ulong row, ulong plane, uint pixel,
-    uint width, uint height, float4 axisX, float4 axisY, float4 axisZ, __global float4* restrict texels) {
+    __global const float4* restrict image, int faces, uint width, uint height, float4 axisX, float4 axisY,
+    float4 axisZ, __global float4* restrict texels) {
     const uint size = PEL_ENVIRONMENT_SIZE, x = get_global_id(0), line = get_global_id(1);
     if (x >= size || line >= 6 * size) return;
-    const Surroundings s = {image + offset, step, row, plane, pixel, width, height};
-    const uint across = step ? width : width / 4;  // texels of the image along an edge of the cube, about
-    const uint samples = clamp((across + size - 1) / size, 1u, (uint)PEL_LARGEST_FOOTPRINT);
-    float3 sum = (float3)(0.0f);
+    // At least two samples to a texel of the image, also where those of the cube are largest.
+    const uint across =
+        faces ? width : max(width / 4, height / 2);  // texels along an edge of the cube, about
+    const uint samples = (2 * across + size - 1) / size;
+    const float perSide = 2.0f / (float)(size * samples);
+    float4 sum = (float4)(0.0f);
+    float whole = 0.0f;
     for (uint i = 0; i < samples * samples; ++i) {
-        const float perSide = 2.0f / (float)(size * samples);
         const float u = ((float)(x * samples + i % samples) + 0.5f) * perSide - 1.0f;
         const float v = ((float)(line % size * samples + i / samples) + 0.5f) * perSide - 1.0f;
+        const float r2 = fma(u, u, fma(v, v, 1.0f)), solid = 1.0f / (r2 * sqrt(r2));
         const Vec3w way = cubeVector((int)(line / size), u, v, 1.0f);
         const float3 d = (float3)(way.x, way.y, way.z);
-        sum += surroundingsAlong(&s, (float3)(dot(axisX.xyz, d), dot(axisY.xyz, d), dot(axisZ.xyz, d)));
+        sum += solid * surroundingsAlong(image, faces, width, height,
+                                         (float3)(dot(axisX.xyz, d), dot(axisY.xyz, d), dot(axisZ.xyz, d)),
+                                         perSide * sqrt(solid));
+        whole += solid;
     }
-    texels[line * size + x] = (float4)(sum / (float)(samples * samples), 0.0f);
+    texels[line * size + x] = sum / whole;
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment_halve(
@@ -73,8 +130,16 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment
     const uint size = PEL_ENVIRONMENT_SIZE >> mip, x = get_global_id(0), line = get_global_id(1);
     if (x >= size || line >= 6 * size) return;
     __global const float4* from = texels + mipStart(mip - 1) + 4 * line * size + 2 * x;
-    texels[mipStart(mip) + line * size + x] =
-        0.25f * (from[0] + from[1] + from[2 * size] + from[2 * size + 1]);
+    float4 sum = (float4)(0.0f);
+    float whole = 0.0f;
+    for (uint k = 0; k < 4; ++k) {
+        const float u = ((float)(4 * x + 2 * (k % 2)) + 1.0f) / (float)(2 * size) - 1.0f;
+        const float v = ((float)(4 * (line % size) + 2 * (k / 2)) + 1.0f) / (float)(2 * size) - 1.0f;
+        const float r2 = fma(u, u, fma(v, v, 1.0f)), solid = 1.0f / (r2 * sqrt(r2));
+        sum += solid * from[k / 2 * 2 * size + k % 2];
+        whole += solid;
+    }
+    texels[mipStart(mip) + line * size + x] = sum / whole;
 }
 
 // Bilinear in one face of a mip.

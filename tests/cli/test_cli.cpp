@@ -139,7 +139,9 @@ TEST_F(Cli, WrongUseAndBadInputAreRefused) {
     refused(unread + "--scratch-mib 1.5", 2,
             "--scratch-mib: '1.5' is not a whole number from 0 to 1073741824\n");
     // Capital letters are as good; what is missing next is the scene.
-    refused(unread + "--tonemap Filmic", 3, "a.toml: cannot be read");
+    refused(unread + "--tonemap filmic", 2, "--exposure and --tonemap: of pictures");
+    refused(unread + "--exposure 2", 2, "--exposure and --tonemap: of pictures");
+    refused(unread + "--picture @p.png --tonemap Filmic", 3, "a.toml: cannot be read");
     // The name of a file whose extension stands for no format is wrong use in every argument.
     write("a.foo", "");
     for (const char* line :

@@ -89,6 +89,15 @@ TEST_F(Shade, WhatASceneNamesAndIsNotThereIsAnsweredWithThoseFound) {
     scene_.lights[0].wideShadow.clear();
     scene_.lights[0].shadowMapFile = "none.exr";
     refuses("none.exr: cannot be read");
+    // One map's channel is the only one, another map names one that the same file lacks.
+    pellucid::io::Image depths;
+    depths.source = "z.exr", depths.width = depths.height = 4;
+    depths.addInterleaved(std::vector<std::string>{"Z"}, std::vector<float>(16, 1));
+    pellucid::io::writeExr(path("z.exr"), depths);
+    scene_.lights[0].shadowMapFile = path("z.exr");
+    scene_.lights.push_back(scene_.lights[0]);
+    scene_.lights[1].shadowMapChannel = "Q";
+    refuses("z.exr: has no channel 'Q'; it has: Z");
 }
 
 TEST_F(Shade, TablesFromFilesAreThoseThatAreAskedFor) {

@@ -58,6 +58,40 @@ class Sequence {
 
 }  // namespace
 
+TEST(EyeSequence, TablesOfOtherEyesAreNamed) {
+    Sequence sequence;
+    const Device& device = sequence.frames[0]->device;
+    const Profile skin = Profile::skin(), marble = Profile::named("marble");
+    const auto warningsWith = [&](const PelEye& eye, const PelEyeLutDesc& table) {
+        Shader shader(device);
+        sequence.frames[0]->prepare(shader);
+        shader.setEye(2, eye, Lut(device, table)).commit();
+        return shader.warnings();
+    };
+    PelEye eye = pelEyeDefaults();
+    PelEyeLutDesc desc = pelEyeLutDescDefaults();
+    desc.width = 16, desc.height = 8, desc.depth = 12;
+    EXPECT_EQ(warningsWith(eye, desc), "");
+    desc.scleraRadius *= 10, desc.corneaRadius *= 10, desc.limbusRadius *= 10, desc.chamberDepth *= 10;
+    EXPECT_EQ(warningsWith(eye, desc), "") << "lengths of another unit";
+    eye.corneaRadius = 8.5f;
+    EXPECT_EQ(warningsWith(eye, desc),
+              "material 2 has the caustic table of another eye: corneaRadius is 7.8 in "
+              "the table and 8.5 in the eye");
+    desc.corneaRadius = 85;
+    eye.irisConcavity = 0.3f;
+    EXPECT_NE(warningsWith(eye, desc).find("irisConcavity is 0 in the table and 0.3"), std::string::npos);
+    eye.irisConcavity = 0;
+    eye.irisProfile = skin.get();
+    EXPECT_EQ(warningsWith(eye, desc),
+              "material 2 has an irisProfile without effect: its caustic table was made "
+              "with \"none\" instead of \"skin\"");
+    desc.profile = marble.get();
+    EXPECT_NE(warningsWith(eye, desc).find("was made with \"marble\""), std::string::npos);
+    desc.profile = skin.get();
+    EXPECT_EQ(warningsWith(eye, desc), "");
+}
+
 TEST(EyeSequence, EqualsNewShaders) {
     Sequence sequence;
     const Device& device = sequence.frames[0]->device;

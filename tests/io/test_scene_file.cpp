@@ -227,6 +227,8 @@ TEST_F(SceneFileTest, MistakesNameKeyAndWhatIsRight) {
         {"id = 1", "id = 1.0", "floating-point; a whole number"},
         {"curvature = \"Curvature.C\"", "curvature = 7", "one channel name would be right"},
         {"\"Normal.X\", ", "", "has 2 names; an array of 3 channel names"},
+        {"[[material]]", "[light.shadow_map.cascade_1]\nfile = \"no.exr\"\n[[material]]",
+         "'cascade_1' in [light.shadow_map] is one cascade more than 'cascades' says"},
         {"specular = 1.5", "normal_map_levels = []", "an array of 1 to 16 file names"},
         {"specular = 1.5", "normal_map = \"a\\u0000b\"", "holds a NUL character"},
         {"specular = 1.5", "thickness_taps = 12", "0, 8, 16 or 32"},

@@ -192,6 +192,62 @@ TEST_F(Environment, SixFacesAreTheSameLight) {
     EXPECT_EQ(below, seen(beside, 6 * n, n));
 }
 
+struct SkyTexel {
+    Vec3 direction;
+    double solidAngle;
+};
+std::vector<SkyTexel> texelsOf(bool faces, uint32_t n) {
+    std::vector<SkyTexel> texels;
+    for (uint32_t y = 0; y < (faces ? 6 : 1) * n; ++y)
+        for (uint32_t x = 0; x < (faces ? 1 : 2) * n; ++x)
+            if (faces) {
+                const Vec3 d =
+                    reference::cubeDirection(int(y / n), (2 * x + 1.0) / n - 1, (2 * (y % n) + 1.0) / n - 1);
+                texels.push_back({normalized(d), 4 / (double(n) * n * std::pow(dot(d, d), 1.5))});
+            } else {
+                const double down = pi * (y + 0.5) / n, turn = pi * (1 - (x + 0.5) / n), s = std::sin(down);
+                texels.push_back(
+                    {{s * std::sin(turn), std::cos(down), s * std::cos(turn)}, s * pi / n * pi / n});
+            }
+    return texels;
+}
+
+// What a lamp gives to all normals together, wherever it is. A lamp of radius 0 is one texel.
+TEST_F(Environment, ASmallLampKeepsItsLight) {
+    const auto expectLight = [&](bool faces, uint32_t n, const std::vector<SkyTexel>& texels, Vec3 lamp,
+                                 double degrees) {
+        const auto far = [&](const SkyTexel& t) { return -dot(t.direction, lamp); };
+        const SkyTexel* const nearest = &*std::ranges::min_element(texels, {}, far);
+        Image image{3, std::vector<float>(3 * texels.size())};
+        double expected = 0, seen = 0;
+        for (size_t i = 0; i < texels.size(); ++i) {
+            const SkyTexel& t = texels[i];
+            if (&t != nearest && far(t) > -std::cos(degrees * pi / 180)) continue;
+            image.set(i, Rgb{100, 100, 100});
+            for (const Vec3& normal : pixels_.normals)
+                expected += 50 * t.solidAngle / pi * std::max(dot(normal, t.direction), 0.0);
+        }
+        const uint32_t width = faces ? n : 2 * n;
+        shader_
+            .setEnvironment(
+                imageDesc(upload(device(), image), PEL_FORMAT_RGB32F, width, uint32_t(texels.size()) / width))
+            .commit()
+            .execute();
+        const auto all = target_.readAll<float>(), shine = specular_.readAll<float>();
+        for (size_t i = 0; i < all.size(); i += 3) seen += double(all[i]) - double(shine[i]);
+        EXPECT_NEAR(seen / expected, 1, tolerance::environmentLamp)
+            << (faces ? "faces, " : "") << n << " high, " << degrees << " degrees at " << lamp.x << ' '
+            << lamp.y << ' ' << lamp.z;
+    };
+    for (const bool faces : {false, true})
+        for (const uint32_t n : {32u, 100u, 300u}) {
+            const std::vector<SkyTexel> texels = texelsOf(faces, n);
+            for (const Vec3& place : {Vec3{0, 0, 1}, {1, 0.2, 0.1}, {0.3, 0.6, 0.7}, {1, 1, 1}, {0.1, 1, 0}})
+                for (const double degrees : {0.0, 1.0})
+                    expectLight(faces, n, texels, normalized(place), degrees);
+        }
+}
+
 TEST_F(Environment, ItIsReducedOnceAndTakenAwayAgain) {
     shader_.set(pellucid::directionalLight({0, 1, 0}, {1, 1, 1})).commit().execute();
     const auto without = target_.readAll<float>();

@@ -91,14 +91,19 @@ void shadowMapKeys(Visitor& v, Light& l) {
     v.text("second_channel", l.secondChannel);
     auto& s = l.light;
     PEL_EACH_SHADOW_MAP_FIELD(PELLUCID_FIELD_KEY)
-    for (uint32_t i = 0; i < 3; ++i)
-        v.table(cascadeKeys[i], i + 1 < l.light.shadowCascades, [&](auto& inner) {
+    for (uint32_t i = 0; i < 3; ++i) {
+        const bool used = i + 1 < l.light.shadowCascades;
+        if constexpr (requires { v.has(""); })
+            if (!used && v.has(cascadeKeys[i]))
+                v.fail(cascadeKeys[i], "is one cascade more than 'cascades' says");
+        v.table(cascadeKeys[i], used, [&](auto& inner) {
             inner.text("file", l.cascades[i].file);
             inner.text("channel", l.cascades[i].channel);
             inner.text("second_channel", l.cascades[i].secondChannel);
             inner.numbers("world_to_shadow", l.light.cascadeToShadow[i], 16, range::any);
             inner.number("depth_range", l.light.cascadeDepthRange[i], range::any);
         });
+    }
 }
 
 template <class Visitor, class Light>
