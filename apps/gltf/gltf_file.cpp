@@ -193,13 +193,9 @@ class Builder {
         for (const size_t node : roots()) locate(node, Matrix(), 0);
         for (const size_t node : order_) enter(node);
         if (scene_.mesh.triangles.empty()) throw FileError(document_.path(), "has no triangles in its scene");
-        MeshData& mesh = scene_.mesh;
-        if (!uvsEverywhere_) mesh.uvs.clear();
-        if (!normalsEverywhere_) {
-            mesh.normals.clear();
-            computeNormals(mesh);
-        }
-        for (const std::string& w : warnings_) mesh.warnings.push_back(w);
+        if (!uvsAnywhere_) scene_.mesh.uvs.clear();
+        completeNormals();
+        for (const std::string& w : warnings_) scene_.mesh.warnings.push_back(w);
         return std::move(scene_);
     }
 
@@ -404,6 +400,7 @@ class Builder {
                                  ? Triple(0)
                                  : unit(turned(m, vectorOf(&normals[3 * v]), mirrored), Triple(0));
             bad |= n == Triple(0);
+            withoutNormal_.push_back(n == Triple(0));
             for (int c = 0; c < 3; ++c) {
                 if (!std::isfinite(float(p[c])))
                     part.primitive["attributes"]["POSITION"].fail(
@@ -417,13 +414,30 @@ class Builder {
             }
         }
         if (bad && !normals.empty())
-            warn("some normals are zero or not finite: all are made from the triangles");
-        normalsEverywhere_ &= !bad;
-        uvsEverywhere_ &= !uvs.empty();
+            warn("some normals are zero or not finite: these are made from the triangles");
+        if (uvs.empty() && scene_.materials[part.material].baseColorImage >= 0)
+            warn("some parts have a texture and no texture coordinates: they get its first texel");
+        uvsAnywhere_ |= !uvs.empty();
         for (size_t i = 0; i < part.triangles.size(); i += 3)
             for (const size_t k : {size_t{0}, size_t{mirrored ? 2u : 1u}, size_t{mirrored ? 1u : 2u}})
                 mesh.triangles.push_back(uint32_t(first + part.triangles[i + k]));
         scene_.materialOf.insert(scene_.materialOf.end(), part.triangles.size() / 3, part.material);
+    }
+
+    // Makes the normals of vertices without one from the triangles at such vertices.
+    void completeNormals() {
+        MeshData& mesh = scene_.mesh;
+        if (std::ranges::count(withoutNormal_, true) == 0) return;
+        MeshData made;
+        made.positions = mesh.positions;
+        for (size_t t = 0; t < mesh.triangles.size(); t += 3) {
+            const std::span corners(&mesh.triangles[t], 3);
+            if (std::ranges::any_of(corners, [&](uint32_t v) { return withoutNormal_[v]; }))
+                made.triangles.insert(made.triangles.end(), corners.begin(), corners.end());
+        }
+        computeNormals(made);
+        for (size_t v = 0; v < withoutNormal_.size(); ++v)
+            if (withoutNormal_[v]) std::copy_n(&made.normals[3 * v], 3, &mesh.normals[3 * v]);
     }
 
     std::vector<float> sized(const GltfValue& attributes, const char* key, size_t components,
@@ -466,7 +480,8 @@ class Builder {
     std::map<size_t, uint32_t> known_;
     std::map<int, int> images_;
     std::vector<std::string> warnings_;
-    bool normalsEverywhere_ = true, uvsEverywhere_ = true;
+    std::vector<bool> withoutNormal_;  // by vertex of the scene
+    bool uvsAnywhere_ = false;
 };
 
 }  // namespace

@@ -172,6 +172,8 @@ void addLights(ImportedGltf& made, const GltfImportOptions& options) {
         return std::ranges::any_of(light.light.position, [](float p) { return !(std::abs(p) <= 1e30f); });
     });
     if (dropped) warn(made.gltf, concat(dropped, " lights are left out: they are too far away for a float"));
+    if (lights.empty() && options.lights)
+        warn(made.gltf, "the scene has no lights, so their factor is without effect");
     made.lampAdded = lights.empty();
     made.lightFactor = 1;
     if (made.lampAdded) return addLamp(made.scene);

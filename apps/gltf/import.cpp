@@ -106,7 +106,9 @@ void addImport(CLI::App& app) {
     option(command, "--size", a.size, "pixels of the G-buffer, WxH (default: 1024 wide, the camera's shape)",
            Word{"SIZE"});
     option(command, "--camera", a.camera,
-           "number of the camera, from 0 on; first, or none to frame everything", Word{"CAMERA"}, shown);
+           "number of the camera among the perspective ones, from 0 on, in the order of the scene's nodes; "
+           "first, or none to frame everything",
+           Word{"CAMERA"}, shown);
     option(command, "--lights", a.lights,
            "factor of the lights' brightness in lux and candela (default: chosen by how bright the scene "
            "becomes)",

@@ -14,9 +14,11 @@ namespace {
 
 std::atomic<bool> interrupted{false};
 
-// The first Ctrl-C cancels at the next step of progress, the second one kills.
+// The first Ctrl-C cancels at the next step of progress, the second one kills. Compilers inside a driver notice
+// it too: their messages are discarded.
 void onInterrupt(int signal) {
     interrupted = true;
+    pel::system::discardErrors();
     std::signal(signal, SIG_DFL);
 }
 
@@ -102,6 +104,7 @@ Progress::Progress() : start_(std::chrono::steady_clock::now()) {
 }
 
 Progress::~Progress() {
+    pel::system::restoreErrors();
     if (shown_) std::fputs("\n", stderr);
 }
 

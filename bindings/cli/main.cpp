@@ -9,6 +9,7 @@ using namespace pellucid;
 using namespace pellucid::cli;
 
 static int fail(ExitCode code, const char* message) {
+    pel::system::restoreErrors();
     std::fprintf(stderr, "pellucid: %s\n", io::printable(message, true).c_str());
     return code;
 }

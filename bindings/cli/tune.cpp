@@ -63,10 +63,11 @@ void addTune(CLI::App& app) {
     auto [command, a] = subcommand<TuneArguments>(
         app, "tune", "Measure which sizes of work-groups are fastest on a device, and keep them in a file",
         tune);
-    option(command, "--show", a.show, "only say which sizes are in force, and why");
+    CLI::Option* show = option(command, "--show", a.show, "only say which sizes are in force, and why");
     option(command, "-o,--output", a.output,
-           "file, for PELLUCID_TUNING; without it, this user's for the device, its driver and this version");
-    option(command, "--quick", a.quick, "fewer sizes and rounds, smaller tables and frames");
+           "file, for PELLUCID_TUNING; without it, this user's for the device, its driver and this version")
+        ->excludes(show);
+    option(command, "--quick", a.quick, "fewer sizes and rounds, smaller tables and frames")->excludes(show);
     addRunOptions(command, a.run);
 }
 

@@ -37,6 +37,10 @@ bool errorsAreSeen();
 // Opens the standard streams that are closed, so that no file takes their place; false if that fails. From
 // now on a limit on file sizes is an error, as a full disk is.
 bool prepareStreams();
+// Discards what is written to standard error, until restoreErrors(). May be called in a signal handler. Does
+// nothing on Windows.
+void discardErrors();
+void restoreErrors();
 // Standard output for this program only: from now on, output of libraries goes to standard error.
 std::FILE* keepOutput();
 

@@ -128,6 +128,8 @@ TEST_F(Import, LightsCamerasAndProfilesOfOnesOwn) {
     EXPECT_TRUE(contains(done("import @named.glb -o @named --size 8x8").out, "material 1: a\\x1b[1m\\x0ab,"));
     EXPECT_TRUE(
         contains(cli("import @named.glb -o @named --profile nope=skin").err, "there are a\\x1b[1m\\x0ab"));
+    EXPECT_TRUE(contains(done("import @named.glb -o @named --size 8x8 --lights 2").err,
+                         "the scene has no lights, so their factor is without effect"));
     EXPECT_EQ(report["materials"][0]["profile"], "skin");
     EXPECT_EQ(report["lights"], 3);
     if (draws()) {

@@ -210,6 +210,42 @@ TEST(Gltf, TurnedAndMirroredFacesKeepTheirFront) {
         }
 }
 
+// A part with normals and texture coordinates keeps them beside one without, and beside normals of length 0.
+TEST(Gltf, PartsWithoutNormalsOrCoordinatesLeaveThoseOfOthers) {
+    std::string buffer = squareBuffer();
+    const float leaning[] = {0.6f, 0, 0.8f};
+    for (int v = 0; v < 4; ++v) buffer += gltf::bytesOf<float>({leaning[0], leaning[1], leaning[2]});
+    for (int v = 0; v < 4; ++v) buffer += gltf::bytesOf<float>({v ? leaning[0] : 0, 0, v ? leaning[2] : 0});
+    const auto withParts = [&](const json& primitives) {
+        return decoded(square(
+            {{"/meshes/0/primitives", primitives},
+             {"/accessors/3", R"({"bufferView": 3, "componentType": 5126, "count": 4, "type": "VEC3"})"_json},
+             {"/accessors/4", R"({"bufferView": 3, "byteOffset": 48, "componentType": 5126, "count": 4,
+                                  "type": "VEC3"})"_json},
+             {"/buffers/0/byteLength", buffer.size()},
+             {"/bufferViews/3", {{"buffer", 0}, {"byteOffset", 92}, {"byteLength", buffer.size() - 92}}},
+             {"/materials", R"([{}, {"pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1]}}])"_json}},
+            buffer));
+    };
+    const json whole = R"({"attributes": {"POSITION": 0, "NORMAL": 3, "TEXCOORD_0": 1}, "indices": 2})"_json,
+               bare = R"({"attributes": {"POSITION": 0}, "indices": 2, "material": 1})"_json,
+               holed = R"({"attributes": {"POSITION": 0, "NORMAL": 4}, "indices": 2})"_json;
+    const GltfScene both = withParts(json::array({whole, bare}));
+    EXPECT_EQ(std::vector(both.mesh.uvs.begin(), both.mesh.uvs.begin() + 8), decoded(square()).mesh.uvs);
+    for (size_t v = 0; v < 8; ++v)
+        for (size_t c = 0; c < 3; ++c)
+            EXPECT_EQ(both.mesh.normals[3 * v + c], v < 4 ? leaning[c] : float(c == 2)) << v;
+    EXPECT_TRUE(both.mesh.warnings.empty());
+    EXPECT_TRUE(withParts(json::array({bare})).mesh.uvs.empty());
+    const GltfScene some = withParts(json::array({holed}));
+    for (size_t v = 0; v < 4; ++v)
+        for (size_t c = 0; c < 3; ++c)
+            EXPECT_EQ(some.mesh.normals[3 * v + c], v ? leaning[c] : float(c == 2)) << v;
+    EXPECT_EQ(
+        some.mesh.warnings,
+        std::vector<std::string>{"some normals are zero or not finite: these are made from the triangles"});
+}
+
 TEST(Gltf, StripsFansAndNoIndices) {
     const auto triangles = [](const Edits& edits) { return decoded(square(edits)).mesh.triangles; };
     EXPECT_EQ(triangles({{mode, 5}}), (Indices{0, 1, 2, 2, 1, 0, 2, 0, 2, 2, 0, 3}));  // of 0 1 2 0 2 3

@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
@@ -125,6 +126,20 @@ bool prepareStreams() {
         if (::fcntl(fd, F_GETFD) < 0 && ::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY) != fd)
             return false;
     return true;
+}
+
+static std::atomic<int> keptErrors{-1};
+void discardErrors() {
+    const int before = errno;  // of the code that the signal interrupts
+    const int kept = keptErrors < 0 ? ::fcntl(2, F_DUPFD_CLOEXEC, 3) : -1;
+    const int none = kept < 0 ? -1 : ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (none >= 0) ::dup2(none, 2), ::close(none);
+    if (kept >= 0) keptErrors = kept;
+    errno = before;
+}
+void restoreErrors() {
+    const int kept = keptErrors.exchange(-1);
+    if (kept >= 0) ::dup2(kept, 2), ::close(kept);
 }
 
 std::FILE* keepOutput() {

@@ -61,6 +61,9 @@ bool errorsAreSeen() {
     return ::_isatty(2);
 }
 
+void discardErrors() {}
+void restoreErrors() {}
+
 bool prepareStreams() {
     ::_setmode(1, _O_BINARY);      // the same bytes as on other systems
     std::setlocale(LC_CTYPE, "");  // arguments are in the system's code page, and so are paths made of them
