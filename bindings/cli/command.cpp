@@ -14,8 +14,8 @@ namespace {
 
 std::atomic<bool> interrupted{false};
 
-// The first Ctrl-C cancels at the next step of progress, the second one kills. Compilers inside a driver notice
-// it too: their messages are discarded.
+// The first Ctrl-C cancels at the next step of progress, the second one kills. Compilers inside a driver
+// notice it too: their messages are discarded.
 void onInterrupt(int signal) {
     interrupted = true;
     pel::system::discardErrors();

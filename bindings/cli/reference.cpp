@@ -522,7 +522,7 @@ class Reference {
             const double most = sample::mostReflectance(boundaryOf(a_.walk));
             if (!(A[c] > 0 && A[c] < most))
                 throw InputError(io::concat("a reflectance of ", A[c], " has no medium behind the boundary ",
-                                            a_.walk.boundary, "; values between 0 and ", most,
+                                            a_.walk.boundary, "; values above 0 and below ", most,
                                             " can be given with --reflectance"));
         }
         return A;

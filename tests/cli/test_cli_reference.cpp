@@ -252,7 +252,7 @@ TEST_F(CliReference, WalkOfTheVerticesAndBodies) {
     refused(walk + "--reflectance 0.5 1 0.5", 3, "--reflectance");
     done(walk + "--reflectance 0.5 0.95 0.5");
     std::filesystem::remove(path("v.npy"));
-    refused(walk + "--reflectance 0.5 0.95 0.5 --boundary fresnel", 3, "values between 0 and 0.928");
+    refused(walk + "--reflectance 0.5 0.95 0.5 --boundary fresnel", 3, "values above 0 and below 0.928");
     refused(walk + "--noise 0.1", 2, "--samples");
     refused(two + "--noise 1", 2, "--walk");
 }

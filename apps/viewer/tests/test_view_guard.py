@@ -20,7 +20,7 @@ def test_a_unit_has_a_length(unit, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("program, options", [
-    ("view.__main__", {"unit_mm", "port"}), ("view.gallery", {"size"}),
+    ("view.__main__", {"port"}), ("view.gallery", {"size"}),
     ("batch.__main__", {"timeout", "patience"})])
 def test_help_states_the_defaults(program, options, monkeypatch):
     def parse(parser):

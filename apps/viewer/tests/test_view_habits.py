@@ -123,7 +123,7 @@ def test_presets_and_what_was_open_come_back(fresh, tmp_path):
     memory.update(presets={"Mine": fresh.look.to_dict(), "Old": {}})
     memory.update(presets={"Old": None})
     other.opened["Skin"] = True
-    remember(other, fresh, subdivide=1, up="auto")  # another viewer's presets stay
+    remember(other, fresh)  # another viewer's presets stay
     assert [p.name for p in path.parent.iterdir()] == ["view.json"]
     again = Memory(path)
     assert list(again.part("presets")) == ["Mine"] and again.opened == {"Skin": True}
@@ -135,6 +135,14 @@ def test_presets_and_what_was_open_come_back(fresh, tmp_path):
     assert recall(again, session) == str(files.standard_head())
     assert session.look == fresh.look == Look.from_dict(again.part("presets")["Mine"])
     assert session.orbit == fresh.orbit and len(session.mesh.positions) == len(fresh.mesh.positions)
+    # Flags come before what is remembered, and are remembered like it, also when the next run has none.
+    flagged, later = Session(fresh.device), Session(fresh.device)
+    assert recall(again, flagged, up="z", subdivide=0, mm=10) == str(files.standard_head())
+    remember(again, flagged)
+    assert recall(Memory(path), later) == str(files.standard_head()) and later.mm == 10
+    assert later.read == {"subdivide": 0, "up": "z"}
+    np.testing.assert_array_equal(later.mesh.positions, flagged.mesh.positions)
+    assert len(later.mesh.positions) < len(session.mesh.positions)
 
 
 @pytest.mark.parametrize("text", ["{", "[]", '{"last": 3}',

@@ -40,9 +40,9 @@ def main() -> int:
     parser.add_argument("--fresh", action="store_true",
                         help="begin with the head, not with what was open last")
     parser.add_argument("--gbuffer", help="of a scene (default: SCENE_gbuffer.exr or gbuffer.exr beside it)")
-    parser.add_argument("--up", choices=("auto", "y", "z"), default="auto",
+    parser.add_argument("--up", choices=("auto", "y", "z"),
                         help="which way is up in the mesh (auto: y in OBJ files)")
-    parser.add_argument("--unit-mm", type=float, default=1.0, help="millimetres per unit of the mesh (1)")
+    parser.add_argument("--unit-mm", type=float, help="millimetres per unit of the mesh; 1 at first")
     parser.add_argument("--subdivide", type=int, help="levels of subdivision (2 for the heads, 0 for others)")
     parser.add_argument("--look", help="a look.json that the viewer wrote")
     parser.add_argument("--device", default="", help="OpenCL device, as `pellucid devices` lists them")
@@ -54,7 +54,7 @@ def main() -> int:
                         help="one that stays valid, in place of random ones that are valid once")
     parser.add_argument("--no-browser", action="store_true", help="only print the address")
     a = parser.parse_args()
-    if not a.unit_mm > 0:
+    if a.unit_mm is not None and not a.unit_mm > 0:
         parser.error("--unit-mm must be above 0")
     import json
 
@@ -82,9 +82,10 @@ def main() -> int:
         nonlocal resumed
         if a.mesh and a.mesh.lower().endswith(".toml"):
             return SceneSession(a.mesh, a.gbuffer, device)
-        session = Session(device, a.unit_mm)
+        session = Session(device, a.unit_mm or 1.0)
         if not (a.mesh or a.fresh or a.look):
-            resumed = recall(memory, session)
+            flags = {"mm": a.unit_mm, "subdivide": a.subdivide, "up": a.up}
+            resumed = recall(memory, session, **{k: v for k, v in flags.items() if v is not None})
             if resumed:
                 return session
         if a.look:
@@ -94,7 +95,7 @@ def main() -> int:
                 beside = Path(a.look).parent / getattr(session.look, name)
                 if getattr(session.look, name) and beside.is_file():  # as the viewer exports it
                     setattr(session.look, name, str(beside))
-        session.load(a.mesh or files.standard_head(), a.subdivide, a.up)
+        session.load(a.mesh or files.standard_head(), a.subdivide, a.up or "auto")
         return session
 
     try:
@@ -127,7 +128,7 @@ def main() -> int:
     def leave() -> None:
         try:
             if isinstance(viewer.session, Session):
-                remember(memory, viewer.session, subdivide=a.subdivide, up=a.up)
+                remember(memory, viewer.session)
             else:
                 memory.update(open=memory.opened)
         except OSError as error:

@@ -64,16 +64,16 @@ class Memory:
             raise
 
 
-def remember(memory: Memory, session: Any, **opened: Any) -> None:
-    """Saves what a session shows, and how its mesh was `opened`. Raises OSError."""
+def remember(memory: Memory, session: Any) -> None:
+    """Saves what a session shows, and how its mesh was read. Raises OSError."""
     memory.update(open=memory.opened, last={
         "mesh": str(Path(session.mesh.source).absolute()) if session.mesh.source else "",
-        "mm": session.mm, "look": session.look.to_dict(), "orbit": asdict(session.orbit), **opened})
+        "mm": session.mm, "look": session.look.to_dict(), "orbit": asdict(session.orbit), **session.read})
 
 
-def recall(memory: Memory, session: Any) -> str:
-    """Shows the last session. Returns the mesh's file, or "" if there is none, it no longer exists (the look
-    is then shown alone), or it cannot be shown."""
+def recall(memory: Memory, session: Any, **asked: Any) -> str:
+    """Shows the last session, but with what is `asked`: mm, subdivide, up. Returns the mesh's file, or "" if
+    there is none, it no longer exists (the look is then shown alone), or it cannot be shown."""
     last, unit = memory.part("last"), session.mm
     try:
         look, orbit = Look.from_dict(last["look"]), filled(Orbit(), last["orbit"], "the camera")
@@ -83,6 +83,7 @@ def recall(memory: Memory, session: Any) -> str:
         if not Path(last["mesh"]).is_file():  # such as one that was dropped on the page
             session.look = look
             return ""
+        last = last | asked
         session.mm = float(last["mm"])
         session.load(last["mesh"], last.get("subdivide"), last.get("up", "auto"))
     except (KeyError, TypeError, ValueError, OSError, PellucidError):

@@ -134,6 +134,7 @@ class Session:
         self.renderer = Renderer()
         self.mm = millimetres_per_unit
         self.told = ""  # of the materials of a file
+        self.read: dict[str, Any] = {}  # how the mesh was read from its file: load's further arguments
         self.orbit = Orbit()
         self.look = Look()
         self.other: Optional[Look] = None  # the look on the right of the dividing line
@@ -172,7 +173,7 @@ class Session:
         stays."""
         mesh, paint, told = load(path, subdivide, up)
         self.show(mesh, paint)
-        self.told = told
+        self.told, self.read = told, {"subdivide": subdivide, "up": up}
         return mesh
 
     def paint_skin(self, kind: str, path: Any) -> None:
