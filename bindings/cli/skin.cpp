@@ -130,7 +130,7 @@ void pigments(const SkinArguments& a) {
     const size_t count = image.pixelCount();
     std::vector<float> maps[3];
     for (auto& map : maps) map.resize(count);
-    constexpr size_t piece = 1 << 16;
+    constexpr size_t piece = 1 << 12;
     for (size_t i = 0; i < count; i += piece) {
         progress(double(i) / double(count), "pigments");
         check(pelSkinFromAlbedo(&a.skin, &albedo[3 * i], std::min(piece, count - i), &maps[0][i], &maps[1][i],

@@ -501,10 +501,11 @@ void skinFromAlbedo(const PelSkin& skin, const float* albedo, size_t count, floa
         for (const auto& [firstRow, lastRow] : {std::pair{0, last}, {0, 0}, {1, last}, {3, last}}) {
             Match match = nearestNode(maps->lab, lab, firstRow, lastRow);
             followValley(maps->lab, lab, match);
-            refine(maps->lab, lab, match);
+            match.difference = deltaE2000(lab, between(maps->lab, match.u, match.v));
             if (match.difference < best.difference) best = match;
             if (best.difference < 0.005) break;
         }
+        refine(maps->lab, lab, best);
         const PelSkin found = Maps::at(skin, best.u, best.v);
         melanin[i] = found.melanin;
         blood[i] = found.blood;

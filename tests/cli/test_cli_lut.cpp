@@ -170,7 +170,7 @@ TEST_F(CliLut, TheSearchForPigmentsShowsProgressAndCanBeInterrupted) {
     for (size_t i = 0; i < albedo.size(); i += 3) albedo[i] = float(i) / float(albedo.size());
     image.addInterleaved(std::vector<std::string>{"R", "G", "B"}, albedo);
     io::writeExr(path("a.exr"), image);
-    EXPECT_NE(std::system(filled("script -qec 'timeout --foreground -s INT 3 " PELLUCID_COMMAND
+    EXPECT_NE(std::system(filled("script -qec 'timeout --foreground -s INT 4 " PELLUCID_COMMAND
                                  " profile pigments @a.exr -o @m.exr' /dev/null >@out.txt 2>&1")
                               .c_str()),
               0);
