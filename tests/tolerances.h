@@ -308,7 +308,7 @@ constexpr double heldMemory = 0.05;  // tables of profiles and lists of a few hu
 constexpr double environmentAmbient = 5e-3;
 // relative RMS, 0.04 to 0.1 measured: lobes are round, as if they were seen along the normal
 constexpr double environmentSpecular = 0.12;
-// 0.029 measured, of a texel of 0.3 degrees: four samples to a texel of the reduced image, turned against it
+// 0.029 measured, of a texel of 0.3 degrees: three samples along two texels, turned against them
 constexpr double environmentLamp = 0.035;
 constexpr double environmentShare = 2e-3;  // 512 samples, and linear between 32 x 32 nodes
 

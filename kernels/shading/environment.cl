@@ -104,9 +104,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment
     float4 axisZ, __global float4* restrict texels) {
     const uint size = PEL_ENVIRONMENT_SIZE, x = get_global_id(0), line = get_global_id(1);
     if (x >= size || line >= 6 * size) return;
-    // At least two samples to a texel of the image, also where those of the cube are largest.
-    const uint across =
-        faces ? width : max(width / 4, height / 2);  // texels along an edge of the cube, about
+    // Texels of the image along an edge of the cube, about. Three samples lie along two of them where texels
+    // of the cube are largest.
+    const uint across = faces ? width : max(width / 4, height / 2);
     const uint samples = (2 * across + size - 1) / size;
     const float perSide = 2.0f / (float)(size * samples);
     float4 sum = (float4)(0.0f);
