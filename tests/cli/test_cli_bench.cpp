@@ -450,8 +450,8 @@ TEST_F(BenchCommand, TuneKeepsWhatIsFasterAndShowsWhatIsInForce) {
     EXPECT_EQ(shown("PELLUCID_TUNING='" + path("tuned.txt") + "'").at("sizes"), tuned.at("sizes"));
     refused("tune -o @none/tuned.txt", 2, "none/tuned.txt");
     refused("tune --sho", 2, "--show");
-    refused("tune --show --quick", 2, "--quick excludes --show");
-    refused("tune --show -o @t.txt", 2, "excludes --show");
+    refused("tune --show --quick", 2, "--show excludes --quick");
+    refused("tune --show -o @t.txt", 2, "--show excludes --output");
     refused("tune", 2, "name one with -o", "PELLUCID_CACHE_DIR=off");
 }
 
