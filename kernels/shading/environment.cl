@@ -99,6 +99,12 @@ static inline uint mipStart(uint mip) {
     return start;
 }
 
+// The solid angle of a small square at (u, v) of a face, over its area.
+static inline float solidAt(float u, float v) {
+    const float r2 = fma(u, u, fma(v, v, 1.0f));
+    return 1.0f / (r2 * sqrt(r2));
+}
+
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment_texels(
     __global const float4* restrict image, int faces, uint width, uint height, float4 axisX, float4 axisY,
     float4 axisZ, __global float4* restrict texels) {
@@ -106,7 +112,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment
     if (x >= size || line >= 6 * size) return;
     // Texels of the image along an edge of the cube, about. Three samples lie along two of them where texels
     // of the cube are largest.
-    const uint across = faces ? width : max(width / 4, height / 2);
+    const uint across = faces ? width : (height + 1) / 2;
     const uint samples = (2 * across + size - 1) / size;
     const float perSide = 2.0f / (float)(size * samples);
     float4 sum = (float4)(0.0f);
@@ -114,7 +120,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment
     for (uint i = 0; i < samples * samples; ++i) {
         const float u = ((float)(x * samples + i % samples) + 0.5f) * perSide - 1.0f;
         const float v = ((float)(line % size * samples + i / samples) + 0.5f) * perSide - 1.0f;
-        const float r2 = fma(u, u, fma(v, v, 1.0f)), solid = 1.0f / (r2 * sqrt(r2));
+        const float solid = solidAt(u, v);
         const Vec3w way = cubeVector((int)(line / size), u, v, 1.0f);
         const float3 d = (float3)(way.x, way.y, way.z);
         sum += solid * surroundingsAlong(image, faces, width, height,
@@ -135,7 +141,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void environment
     for (uint k = 0; k < 4; ++k) {
         const float u = ((float)(4 * x + 2 * (k % 2)) + 1.0f) / (float)(2 * size) - 1.0f;
         const float v = ((float)(4 * (line % size) + 2 * (k / 2)) + 1.0f) / (float)(2 * size) - 1.0f;
-        const float r2 = fma(u, u, fma(v, v, 1.0f)), solid = 1.0f / (r2 * sqrt(r2));
+        const float solid = solidAt(u, v);
         sum += solid * from[k / 2 * 2 * size + k % 2];
         whole += solid;
     }

@@ -293,6 +293,9 @@ TEST_F(Environment, WhatIsNoLightCountsAsNone) {
     surround([&](Vec3 d) { return d.x > 0.2 ? Rgb{0, 0, 0} : Rgb{0.5, 0.5, 0.5}; });
     shader_.commit().execute();
     EXPECT_EQ(seen, target_.readAll<float>());
+    surround([](Vec3) { return Rgb{1, 1, 1}; }, nullptr, 1);
+    shader_.commit().execute();
+    for (size_t i = 0; i < count; ++i) EXPECT_NEAR(diffuse(i).x, 0.5, 1e-4) << "two texels, pixel " << i;
     surround([](Vec3) { return Rgb{3e38, 1e30, 1e-40}; }, nullptr, 1);
     shader_.commit().execute();
     for (const float v : target_.readAll<float>()) EXPECT_TRUE(std::isfinite(v));
