@@ -227,10 +227,9 @@ TEST_F(Environment, ASmallLampKeepsItsLight) {
             for (const Vec3& normal : pixels_.normals)
                 expected += 50 * t.solidAngle / pi * std::max(dot(normal, t.direction), 0.0);
         }
-        const uint32_t width = faces ? n : 2 * n;
         shader_
             .setEnvironment(
-                imageDesc(upload(device(), image), PEL_FORMAT_RGB32F, width, uint32_t(texels.size()) / width))
+                imageDesc(upload(device(), image), PEL_FORMAT_RGB32F, faces ? n : 2 * n, faces ? 6 * n : n))
             .commit()
             .execute();
         const auto all = target_.readAll<float>(), shine = specular_.readAll<float>();
