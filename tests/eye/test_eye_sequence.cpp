@@ -114,7 +114,7 @@ TEST(EyeSequence, EqualsNewShaders) {
                                              {"aqueousIndex", &PelEye::aqueousIndex, 1.2f},
                                              {"irisRadius", &PelEye::irisRadius, 5.4f},
                                              {"irisConcavity", &PelEye::irisConcavity, 0.6f}}) {
-        states.push_back({name, [field, value](PelEye& e) { e.*field = value; }});
+        states.push_back({name, [field = field, value = value](PelEye& e) { e.*field = value; }});
         add({"defaults"});
     }
     add({"moved", [](PelEye& e) { e.center[0] = 2, e.gaze[0] = 0.3f, e.gaze[2] = 0.9f; }});
