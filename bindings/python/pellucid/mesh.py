@@ -336,7 +336,9 @@ class LiveMesh(OfThisProcess):
         p = vertex_view(device, positions, 3, "positions")
         n = None if normals is None else vertex_view(device, normals, 3, "normals")
         c = self._target(out)
-        ranges = None if changed is None else np.array(list(changed), np.uint32).reshape(-1, 2)
+        ranges = None
+        if changed is not None:  # a negative number becomes one beyond any mesh, which the library refuses
+            ranges = np.array(list(changed), np.int64).reshape(-1, 2).astype(np.uint32)
         views = [v for v in (p, n, c) if v is not None]
         given = [*natives([p, n, c]), *((0, 0) if ranges is None else (ranges.ctypes.data, len(ranges)))]
         return Event(submit(device, views, _handles(waits), lambda w: self._handle.update(*given, w), self,
