@@ -14,14 +14,16 @@ from .passes import look, render_exr
 class Lamp:
     """A light, and the description of its shadow map. Blender's watts spread over 4 pi: a point light of P
     watts gives irradiance P / (4 pi d^2), so that irradiance / pi at distance 1 is P / (4 pi^2). An area
-    light's radiance is P / (pi A), which gives P / pi^2. A sun's strength is irradiance itself."""
+    light's radiance is P / (pi A), which gives P / pi^2; before Blender 4.0 it is P / (4 A). A sun's strength
+    is irradiance itself."""
 
     def __init__(self, name, data, matrix):
         self.name, self.kind = name, data.type
         self.matrix = matrix
         self.position = matrix.translation.copy()
         self.forward = (matrix.to_3x3() @ Vector((0, 0, -1))).normalized()
-        share = {"SUN": 1 / math.pi, "AREA": 1 / math.pi**2}.get(data.type, 1 / (4 * math.pi**2))
+        area = math.pi if bpy.app.version >= (4, 0) else 4
+        share = {"SUN": 1, "AREA": 1 / area}.get(data.type, 1 / (4 * math.pi)) / math.pi
         share *= data.energy * 2 ** getattr(data, "exposure", 0)  # Blender 4.5 and newer
         warmth = data.temperature_color if getattr(data, "use_temperature", False) else (1, 1, 1)
         self.color = [c * w * share for c, w in zip(data.color, warmth)]
@@ -57,7 +59,27 @@ def gather(source, scene, bounds):
     return lamps
 
 
+def surface(data, matrix):
+    """What the light's strength is multiplied by if it is per area or solid angle."""
+    if data.type == "SUN":
+        return math.pi * math.sin(data.angle / 2) ** 2 or 1
+    if data.type != "AREA":
+        return 4 * math.pi * data.shadow_soft_size**2 or 4
+    height = data.size_y if data.shape in ("RECTANGLE", "ELLIPSE") else data.size
+    part = math.pi / 4 if data.shape in ("DISK", "ELLIPSE") else 1
+    return part * (matrix.to_3x3() @ Vector((data.size, 0, 0))).length * (
+        matrix.to_3x3() @ Vector((0, height, 0))).length
+
+
 def add(scene, lamps, name, data, matrix):
+    if data.type == "AREA" and data.spread < 3.14:
+        warn(f"area light '{name}' shines to all sides: a rectangle of a scene has no spread")
+        data.spread = math.pi
+    if data.use_nodes and any(n.type not in ("OUTPUT_LIGHT", "EMISSION") for n in data.node_tree.nodes):
+        warn(f"light '{name}' shines as without its nodes")
+    if not getattr(data, "normalize", True):  # Blender 4.5 and newer
+        data.energy *= surface(data, matrix)
+        data.normalize = True
     if data.type == "SUN":
         data.angle = 0
     elif data.type != "AREA":

@@ -87,6 +87,10 @@ if light == "SPOT":
     data.spot_size, data.spot_blend = math.radians(50), 0.4
 if light == "AREA":
     data.shape, data.size, data.size_y, lamp.scale = "RECTANGLE", 1.5, 0.5, (1, 2, 1)
+    data.spread, data.use_nodes = 2, True
+    data.node_tree.nodes.new("ShaderNodeLightFalloff")
+    if hasattr(data, "normalize"):
+        data.energy, data.normalize = 200, False  # per area
 scene.collection.objects.link(lamp)
 
 camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))

@@ -166,6 +166,8 @@ TEST_F(BlenderScript, AnAreaLightIsARectangle) {
                      "blender_scene.py"),
               0)
         << said();
+    EXPECT_TRUE(contains(said(), "shines to all sides")) << said();
+    EXPECT_TRUE(contains(said(), "shines as without its nodes")) << said();
     io::SceneFile scene = io::readScene(path("out/scene.toml"));
     ASSERT_EQ(scene.lights.size(), 1u);
     const PelLight& l = scene.lights[0].light;
