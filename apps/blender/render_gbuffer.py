@@ -25,8 +25,8 @@ def size(text):
         width, height = (int(part) for part in text.split("x"))
     except ValueError:
         width = height = 0
-    if width < 1 or height < 1:
-        raise argparse.ArgumentTypeError(f"'{text}': it must be such as 1280x720")
+    if width < 4 or height < 4:  # Blender's least
+        raise argparse.ArgumentTypeError(f"'{text}': it must be such as 1280x720, at least 4x4")
     return width, height
 
 
@@ -123,19 +123,21 @@ def main():
     passes.prepare(scene, frame)
     passes.warn_if_out_of_view(scene, camera, things)
     passes.render_gbuffer(scene, camera, os.path.join(options.output, "gbuffer.exr"), options.half)
+    for thing in things:  # to the cameras of shadow maps
+        thing.visible_camera = thing.visible_shadow
     taken = set()
     for lamp in lamps:
         lights.render_shadow_map(scene, lamp, bounds, options, taken)
     sky = lights.ambient(source, options.output)
-    scene_file.write(os.path.join(options.output, "scene.toml"), unit, camera, lamps, sky, materials, found,
-                     not options.no_curvature, fallback)
+    scene_file.write(os.path.join(options.output, "scene.toml"), unit, passes.viewpoint(camera, bounds),
+                     lamps, sky, materials, found, not options.no_curvature, fallback)
     print(f"pellucid: {options.output}/gbuffer.exr, {options.output}/scene.toml", flush=True)
 
 
 if __name__ == "__main__":
     try:
         main()
-    except Fault as reason:
+    except (Fault, OSError) as reason:
         print(f"render_gbuffer.py: {reason}", file=sys.stderr, flush=True)
         os._exit(3)  # Blender turns sys.exit into success
     except SystemExit as stop:

@@ -72,7 +72,7 @@ def run(command, pellucid):
         raise Fault(f"cannot run '{pellucid}' ({error.strerror}): give its path with --pellucid or "
                     f"PELLUCID_COMMAND, or leave curvature out with --no-curvature") from None
     if done.returncode:
-        raise Fault(f"{pellucid} {command[0]}: {done.stderr.strip()}")
+        raise Fault(f"{pellucid} {command[0]}: {done.stderr.strip() or f'exit code {done.returncode}'}")
 
 
 def load_ply(path, pellucid, up):
@@ -103,22 +103,46 @@ def load_ply(path, pellucid, up):
     bpy.context.scene.collection.objects.link(bpy.data.objects.new(name, mesh))
 
 
-def realise(source, scene):
-    """Everything that the source scene renders, as plain meshes in world space, linked to `scene`."""
-    for thing in source.objects:
-        for modifier in thing.modifiers:  # as they render, not as they look on screen
+def show_as_rendered(source):
+    """Makes the view layer, of which Blender tells the evaluated objects, show what a render shows."""
+    source.render.simplify_subdivision = source.render.simplify_subdivision_render
+    for collection in bpy.data.collections:
+        collection.hide_viewport = collection.hide_render
+    layers = [bpy.context.view_layer.layer_collection]
+    for layer in layers:  # which grows
+        layer.hide_viewport = False
+        layers += layer.children
+    for thing in bpy.context.view_layer.objects:
+        thing.hide_set(False)
+    for particles in bpy.data.particles:
+        particles.display_percentage = 100
+        children = "child_percent" if hasattr(particles, "child_percent") else "child_nbr"  # Blender 3
+        setattr(particles, children, particles.rendered_child_count)
+    for thing in bpy.data.objects:  # those of instanced collections too
+        thing.hide_viewport = thing.hide_render
+        thing.show_instancer_for_viewport = thing.show_instancer_for_render
+        for modifier in thing.modifiers:
             modifier.show_viewport = modifier.show_render
             if modifier.type in ("SUBSURF", "MULTIRES"):
                 modifier.levels = modifier.render_levels
     bpy.context.view_layer.update()
+
+
+def realise(source, scene):
+    """Everything that the source scene renders, as plain meshes in world space, linked to `scene`."""
+    show_as_rendered(source)
+    override = bpy.context.view_layer.material_override
     graph = bpy.context.evaluated_depsgraph_get()
     things, left_out = [], set()
     for instance in graph.object_instances:
         thing = instance.object
-        if not instance.show_self or thing.original.hide_render:
+        if not instance.show_self:
             continue
         if thing.type != thing.original.type:
             continue  # the mesh of a text or curve, which comes besides; Blender 3.4 crashes on taking it
+        if any(p.settings.type == "HAIR" and p.settings.render_type == "PATH"
+               for p in thing.particle_systems):
+            left_out.add(f"hair of {thing.name}")
         if thing.type in ("VOLUME", "CURVES", "HAIR", "POINTCLOUD"):
             left_out.add(thing.name)
         if thing.type not in RENDERED:
@@ -132,8 +156,12 @@ def realise(source, scene):
         for i, slot in enumerate(thing.material_slots):  # materials may belong to the object
             if i < len(mesh.materials):
                 mesh.materials[i] = slot.material
+        if override:
+            mesh.materials.clear()
+            mesh.materials.append(override)
         made = bpy.data.objects.new(f"pellucid {thing.name}", mesh)
         made.pass_index = thing.original.pass_index or len(things) + 1
+        made.visible_camera, made.visible_shadow = thing.visible_camera, thing.visible_shadow
         scene.collection.objects.link(made)
         things.append(made)
     if left_out:
@@ -148,7 +176,7 @@ def measure_curvature(things, pellucid, smooth):
     with tempfile.TemporaryDirectory() as folder:
         ply, npy = os.path.join(folder, "mesh.ply"), os.path.join(folder, "curvature.npy")
         for thing in things:
-            write_ply(ply, thing.data)
+            write_ply(ply, thing.name.removeprefix("pellucid "), thing.data)
             run(["curvature", ply, "-o", npy, "--smooth", str(smooth), "--weld", "exact"], pellucid)
             with open(npy, "rb") as file:
                 data = file.read()
@@ -157,12 +185,12 @@ def measure_curvature(things, pellucid, smooth):
             attribute.data.foreach_set("value", values)
 
 
-def write_ply(path, mesh):
+def write_ply(path, name, mesh):
     mesh.calc_loop_triangles()
     positions = array.array("f", bytes(12 * len(mesh.vertices)))
     mesh.vertices.foreach_get("co", positions)
     if not all(map(math.isfinite, positions)):
-        raise Fault(f"{mesh.name}: it has vertices at NaN or Inf")
+        raise Fault(f"{name}: it has vertices at NaN or Inf")
     corners = array.array("i", bytes(12 * len(mesh.loop_triangles)))
     mesh.loop_triangles.foreach_get("vertices", corners)
     faces = corners.tobytes()

@@ -19,13 +19,13 @@ class Lamp:
 
     def __init__(self, name, data, matrix):
         self.name, self.kind = name, data.type
-        self.matrix = matrix
         self.position = matrix.translation.copy()
         self.forward = (matrix.to_3x3() @ Vector((0, 0, -1))).normalized()
         area = math.pi if bpy.app.version >= (4, 0) else 4
         share = {"SUN": 1, "AREA": 1 / area}.get(data.type, 1 / (4 * math.pi)) / math.pi
         share *= data.energy * 2 ** getattr(data, "exposure", 0)  # Blender 4.5 and newer
         warmth = data.temperature_color if getattr(data, "use_temperature", False) else (1, 1, 1)
+        self.casts_shadow = getattr(data.cycles, "cast_shadow", data.use_shadow)  # one for all from 4.2 on
         self.color = [c * w * share for c, w in zip(data.color, warmth)]
         if data.type == "SPOT":
             self.angle = data.spot_size
@@ -46,7 +46,9 @@ def gather(source, scene, bounds):
     lamps = []
     for instance in bpy.context.evaluated_depsgraph_get().object_instances:
         thing = instance.object
-        if thing.type != "LIGHT" or thing.original.hide_render or not thing.data.energy > 0:
+        if thing.type != "LIGHT" or not thing.data.energy > 0:
+            continue
+        if thing.data.type == "AREA" and thing.data.cycles.is_portal:
             continue
         add(scene, lamps, thing.name, thing.data.copy(), instance.matrix_world.copy())
     if not lamps:
@@ -71,12 +73,23 @@ def surface(data, matrix):
         matrix.to_3x3() @ Vector((0, height, 0))).length
 
 
+def emission(name, data):
+    """What a light's nodes multiply it by."""
+    output = data.node_tree.get_output_node("CYCLES") if data.use_nodes else None
+    if output is None:
+        return 1, 1, 1
+    node = output.inputs["Surface"].links[0].from_node if output.inputs["Surface"].is_linked else None
+    if node is None or node.type != "EMISSION" or any(i.is_linked for i in node.inputs):
+        warn(f"light '{name}': of its nodes only the numbers of an Emission node count")
+    if node is None or node.type != "EMISSION":
+        return 1, 1, 1
+    return [c * node.inputs["Strength"].default_value for c in node.inputs["Color"].default_value[:3]]
+
+
 def add(scene, lamps, name, data, matrix):
     if data.type == "AREA" and data.spread < 3.14:
         warn(f"area light '{name}' shines to all sides: a rectangle of a scene has no spread")
         data.spread = math.pi
-    if data.use_nodes and any(n.type not in ("OUTPUT_LIGHT", "EMISSION") for n in data.node_tree.nodes):
-        warn(f"light '{name}' shines as without its nodes")
     if not getattr(data, "normalize", True):  # Blender 4.5 and newer
         data.energy *= surface(data, matrix)
         data.normalize = True
@@ -84,6 +97,7 @@ def add(scene, lamps, name, data, matrix):
         data.angle = 0
     elif data.type != "AREA":
         data.shadow_soft_size = 0
+    data.color = [c * e for c, e in zip(data.color, emission(name, data))]
     data.use_nodes = False
     thing = bpy.data.objects.new(f"pellucid {name}", data)
     thing.matrix_world = matrix
@@ -94,13 +108,15 @@ def add(scene, lamps, name, data, matrix):
 def render_shadow_map(scene, lamp, bounds, options, taken):
     """Depths seen from a sun, a spot or the centre of an area, 0 near to 1 far; 1 where nothing is. `taken`:
     other lights' files."""
+    if not lamp.casts_shadow:
+        return
     if lamp.kind == "POINT":
         warn(f"light '{lamp.name}' is a point light: no shadow map is rendered for it")
         return
     lamp.map_file = file_names.unique("shadow", lamp.name, ".exr", taken)
     camera = bpy.data.objects.new("pellucid shadow", bpy.data.cameras.new("pellucid shadow"))
     scene.collection.objects.link(camera)
-    rotation = lamp.matrix.to_3x3().normalized()
+    rotation = lamp.forward.to_track_quat("-Z", "Y").to_matrix()  # the light's own may be mirrored or skewed
     right, up = rotation.col[0].copy(), rotation.col[1].copy()
     along = [lamp.forward.dot(c) for c in bounds.corners()]
     margin = 0.02 * bounds.radius
@@ -143,10 +159,8 @@ def render_shadow_map(scene, lamp, bounds, options, taken):
                           row(Vector((0, 0, 0)), 1)]
         encode = ("INVERSE", 1 / lamp.depth_a, -lamp.depth_b / lamp.depth_a)
     scene.camera = camera
-    width, height = scene.render.resolution_x, scene.render.resolution_y
     scene.render.resolution_x = scene.render.resolution_y = options.shadow_size
     write_depth(scene, os.path.join(options.output, lamp.map_file), *encode)
-    scene.render.resolution_x, scene.render.resolution_y = width, height
 
 
 def depth_material(kind, factor, offset):

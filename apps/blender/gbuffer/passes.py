@@ -6,7 +6,7 @@ import bpy
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Matrix, Vector
 
-from .fault import quiet, warn
+from .fault import Fault, quiet, warn
 from .surface import AOVS
 
 # Channel of the materials' pass indices. Blender 5 writes its passes' full names.
@@ -22,13 +22,18 @@ def frame_size(source, options):
     """Pixels."""
     if options.size or not bpy.data.filepath:
         return options.size or (1024, 1024)
-    share = source.render.resolution_percentage / 100
-    return int(source.render.resolution_x * share), int(source.render.resolution_y * share)
+    render = source.render
+    if render.pixel_aspect_x != render.pixel_aspect_y:  # Blender 5.0 fails to write them
+        warn("the scene's pixels are not square; those of the G-buffer are")
+    return tuple(max(4, n * render.resolution_percentage // 100)
+                 for n in (render.resolution_x, render.resolution_y))
 
 
 def add_camera(source, scene, bounds, size):
     """A copy of the source scene's camera, or one that frames everything from half left in front."""
     if source.camera:
+        if source.camera.type != "CAMERA":
+            raise Fault(f"the scene's camera is '{source.camera.name}', a {source.camera.type.lower()}")
         camera = bpy.data.objects.new("pellucid camera", source.camera.data.copy())
         evaluated = source.camera.evaluated_get(bpy.context.evaluated_depsgraph_get())
         camera.matrix_world = evaluated.matrix_world.copy()
@@ -54,8 +59,18 @@ def add_camera(source, scene, bounds, size):
     return camera
 
 
+def viewpoint(camera, bounds):
+    """Where the scene file says that it is seen from: of parallel rays a point far behind."""
+    eye = camera.matrix_world.translation
+    if camera.data.type == "ORTHO":
+        eye = bounds.centre + 1e4 * bounds.radius * camera.matrix_world.col[2].xyz.normalized()
+    return tuple(eye)
+
+
 def warn_if_out_of_view(scene, camera, things):
     """Warns of an empty picture, which is seldom wanted and does not show its reason."""
+    if camera.data.type == "PANO":  # which may see all round
+        return
     for thing in things:
         corners = [world_to_camera_view(scene, camera, thing.matrix_world @ Vector(c))
                    for c in thing.bound_box]
@@ -100,7 +115,10 @@ def render_exr(scene, path, layers=False, depth="32"):
     settings.color_depth, settings.exr_codec = depth, "ZIP"
     scene.render.filepath = path
     with quiet():
-        bpy.ops.render.render(write_still=True, scene=scene.name)
+        try:
+            bpy.ops.render.render(write_still=True, scene=scene.name)
+        except RuntimeError as error:
+            raise Fault(f"{path}: {error}") from None
 
 
 def render_gbuffer(scene, camera, path, half):

@@ -48,6 +48,8 @@ class Surface:
             self.scattering = Scattering([value("Scale") * r for r in value("Radius")], 1.0)
         if shader.type != "BSDF_PRINCIPLED":
             return
+        if linked("Alpha") or value("Alpha") < 1:
+            warn(f"material '{self.name}': its Alpha is left out; it is drawn solid")
         metallic, roughness = value("Metallic"), value("Roughness")
         self.roughness = linked("Roughness")
         # Principled's roughness is the root of GGX's width.

@@ -47,7 +47,7 @@ def keys_of(surface, preset, unit, folder, taken, extents):
     return keys
 
 
-def write(path, unit, camera, lamps, sky, materials, eyes, curvature, fallback):
+def write(path, unit, viewpoint, lamps, sky, materials, eyes, curvature, fallback):
     """unit: millimetres per Blender unit. materials: (id, Blender material, Surface). eyes: (Blender
     material, keys). fallback: the preset of materials that have none."""
     of_eyes = {material.name: keys for material, keys in eyes}
@@ -76,7 +76,7 @@ def write(path, unit, camera, lamps, sky, materials, eyes, curvature, fallback):
         lines += ['roughness = "Roughness.X"']
     if any(s.weight or (s.scattering and s.scattering.weight < 1) for s in surfaces):
         lines += ['scatter_weight = "ScatterWeight.X"']
-    lines += ["", "[camera]", "position = " + value(tuple(camera.matrix_world.translation))]
+    lines += ["", "[camera]", "position = " + value(viewpoint)]
     if sky:
         lines += ["", "[ambient]", "sh = [", *("    " + value(row) + "," for row in sky), "]"]
     for lamp in lamps:

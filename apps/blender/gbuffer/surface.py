@@ -1,5 +1,7 @@
 """Materials: ids, albedo and normals as passes, and a diffuse surface while the G-buffer renders."""
 
+import os
+
 import bpy
 
 from .fault import Fault, warn
@@ -14,6 +16,11 @@ AOVS = (("NShading", "COLOR"), ("NGeom", "COLOR"), ("Albedo", "COLOR"), ("Curvat
 COLOURS = {"BSDF_PRINCIPLED": "Base Color", "BSDF_DIFFUSE": "Color", "SUBSURFACE_SCATTERING": "Color",
            "BSDF_GLOSSY": "Color", "BSDF_TOON": "Color", "BSDF_VELVET": "Color",
            "EEVEE_SPECULAR": "Base Color"}
+
+
+def files(image):
+    path = bpy.path.abspath(image.filepath, library=image.library)
+    return [path.replace("<UDIM>", str(tile.number)) for tile in image.tiles]
 
 
 def prepare(things):
@@ -32,6 +39,10 @@ def prepare(things):
                     skin.diffuse_color = (0.72, 0.49, 0.39, 1)
                     skin[PRESET] = "skin"
                 thing.data.materials[i] = skin
+    missing = [i.name for i in bpy.data.images if i.users and i.source in ("FILE", "TILED")
+               and not i.packed_files and not any(map(os.path.isfile, files(i)))]
+    if missing:
+        warn("images whose files are missing, which are pink: " + ", ".join(missing))
     used = sorted({m for thing in things for m in thing.data.materials}, key=lambda m: m.name)
     if not any(m.pass_index for m in used):
         for i, material in enumerate(used):

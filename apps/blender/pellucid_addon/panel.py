@@ -2,6 +2,7 @@
 
 import bpy
 
+from . import render
 from .fields import FIELDS
 
 
@@ -14,8 +15,7 @@ class PELLUCID_PT_panel(bpy.types.Panel):
         layout.use_property_split = True
         row = layout.row()
         row.scale_y = 1.5
-        row.enabled = not settings.status
-        row.operator("pellucid.render", text=settings.status or "Render", icon="RENDER_STILL")
+        row.operator("pellucid.render", text=render.status or "Render", icon="RENDER_STILL")
         column = layout.column()
         for name in ("samples", "exposure", "shadow_size", "unit"):
             column.prop(settings, name)

@@ -14,7 +14,7 @@ FIXED = [("auto", "From its shader", "Scatters by its Subsurface inputs; with we
          ("plain", "Nothing scatters", "Shaded by Lambert, with the gloss of its shader"),
          ("skin", "Skin, by tables", "Skin as in real-time renderers: curvature and shadow tables"),
          ("eye", "Eye", "A refracting cornea, an iris and a pupil, fitted to the ball of its faces")]
-_library = []
+_libraries = {}  # by command
 
 
 def command():
@@ -27,15 +27,16 @@ def command():
 
 
 def library():
-    """Names of the library's materials, asked for once; none where the command is not found."""
-    if not _library:
+    """Names of the library's materials, for which each command is asked once; none if it does not answer."""
+    asked = command()
+    if asked not in _libraries:
         try:
-            said = subprocess.run([command(), "profile", "list", "--json"], capture_output=True, text=True,
-                                  timeout=60)
-            _library.extend(p["name"] for p in json.loads(said.stdout)["profiles"])
+            said = subprocess.run([asked, "profile", "list", "--json"], capture_output=True, text=True,
+                                  stdin=subprocess.DEVNULL, timeout=10)
+            _libraries[asked] = [p["name"] for p in json.loads(said.stdout)["profiles"]]
         except (OSError, ValueError, KeyError, TypeError, subprocess.TimeoutExpired):
-            pass
-    return _library
+            _libraries[asked] = []  # or each drawing of the panel would wait again
+    return _libraries[asked]
 
 
 _items = []  # Blender keeps no texts of items that a function returns
@@ -89,7 +90,6 @@ class Settings(bpy.types.PropertyGroup):
     unit: bpy.props.FloatProperty(name="Unit (mm)",
                                   description="Millimetres per Blender unit; 0: the scene's unit scale",
                                   default=0.0, min=0.0)
-    status: bpy.props.StringProperty(default="", options={"SKIP_SAVE"})
 
 
 class Preferences(bpy.types.AddonPreferences):

@@ -13,6 +13,7 @@ import bpy
 from . import properties
 
 IMAGE, LOG = "Pellucid", "Pellucid log"
+status = ""  # what is being done; not in the scene, which may be saved meanwhile
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "script", "render_gbuffer.py")
 
 
@@ -23,13 +24,16 @@ class Failure(Exception):
 def steps(scene, folder):
     """The steps in order, as (description, command). The copy of the file is in the folder."""
     settings, render = scene.pellucid, scene.render
-    factor, share = int(settings.samples), render.resolution_percentage / 100
-    size = [max(1, int(n * share)) * factor for n in (render.resolution_x, render.resolution_y)]
+    factor = int(settings.samples)
+    size = [max(4, n * render.resolution_percentage // 100) * factor
+            for n in (render.resolution_x, render.resolution_y)]
     addon = bpy.context.preferences.addons.get(__package__)
     device = ["--device",
               addon.preferences.device] if addon and addon.preferences and addon.preferences.device else []
     unit = ["--unit", str(settings.unit)] if settings.unit > 0 else []
-    yield "G-buffer", [bpy.app.binary_path, "--factory-startup", "-b", os.path.join(folder, "scene.blend"),
+    scripts = [] if bpy.app.autoexec_fail else ["--enable-autoexec"]  # of drivers, as they run here
+    yield "G-buffer", [bpy.app.binary_path, "--factory-startup", *scripts,
+                       "-b", os.path.join(folder, "scene.blend"),
                        "--python", SCRIPT, "--", "-o", folder,
                        "--size", f"{size[0]}x{size[1]}", "--frame", str(scene.frame_current), "--shadow-size",
                        str(settings.shadow_size),
@@ -56,15 +60,9 @@ def save_log(text):
 
 def show(folder, factor, path):
     """The picture as an image of the file, packed, and in an image editor if one is open."""
-    made = os.path.join(folder, "picture.png")
-    image = bpy.data.images.load(made)
+    image = bpy.data.images.load(os.path.join(folder, "picture.png"))
     if factor > 1:
-        image.scale(max(1, image.size[0] // factor), max(1, image.size[1] // factor))
-    if path and factor > 1:
-        image.filepath_raw, image.file_format = path, "PNG"
-        image.save()
-    elif path:  # Blender has not read it yet, and saves no such image
-        shutil.copyfile(made, path)
+        image.scale(image.size[0] // factor, image.size[1] // factor)
     image.pack()
     old = bpy.data.images.get(IMAGE)
     if old:
@@ -76,7 +74,9 @@ def show(folder, factor, path):
             if area.type == "IMAGE_EDITOR":
                 area.spaces.active.image = image
                 area.tag_redraw()
-    return image
+    if path:
+        with open(path, "wb") as file:
+            file.write(image.packed_file.data)
 
 
 class PELLUCID_OT_render(bpy.types.Operator):
@@ -92,23 +92,34 @@ class PELLUCID_OT_render(bpy.types.Operator):
                                    description="Folder for G-buffer, shadow maps and scene.toml; empty: "
                                                "none", subtype="DIR_PATH", options={"SKIP_SAVE"})
 
-    def begin(self, context):
-        scene = context.scene
+    @classmethod
+    def poll(cls, context):
+        cls.poll_message_set("A picture is being rendered; Escape cancels it")
+        return not status
+
+    def begin(self, scene):
         self.factor = int(scene.pellucid.samples)
         self.folder = tempfile.mkdtemp(prefix="pellucid-")
         self.log = ""
-        bpy.ops.wm.save_as_mainfile(filepath=os.path.join(self.folder, "scene.blend"), copy=True,
-                                    compress=False)
+        try:
+            bpy.ops.wm.save_as_mainfile(filepath=os.path.join(self.folder, "scene.blend"), copy=True,
+                                        compress=False)
+        except RuntimeError as error:
+            raise Failure(str(error)) from None
+        painted = [i.name for i in bpy.data.images if i.is_dirty and i.type != "RENDER_RESULT"]
+        if painted:
+            self.report({"WARNING"}, "painted but not saved, so left out: " + ", ".join(painted))
         self.steps = steps(scene, self.folder)
         self.process = None
 
-    def start(self, scene):
+    def start(self):
         """The next step; False after the last."""
+        global status
         step = next(self.steps, None)
         if step is None:
             return False
         self.what, command = step
-        scene.pellucid.status = self.what + "..."
+        status = self.what + "..."
         self.output = open(os.path.join(self.folder, "log.txt"), "w+", encoding="utf-8", errors="replace")
         try:
             self.process = subprocess.Popen(command, stdout=self.output, stderr=subprocess.STDOUT,
@@ -130,9 +141,10 @@ class PELLUCID_OT_render(bpy.types.Operator):
             raise Failure(f"{self.what}: {failure_reason(text)}")
         return True
 
-    def end(self, scene, failure=None):
+    def end(self, failure=None):
         """Puts the result in its place, and removes the folder."""
-        result = {"FINISHED"}
+        global status
+        status, result = "", {"FINISHED"}
         try:
             if failure is None:
                 show(self.folder, self.factor, bpy.path.abspath(self.filepath) if self.filepath else "")
@@ -148,28 +160,27 @@ class PELLUCID_OT_render(bpy.types.Operator):
         if failure is not None:
             self.report({"ERROR"}, f"{failure} (all of it is in the text '{LOG}')")
             result = {"CANCELLED"}
-        scene.pellucid.status = ""
         shutil.rmtree(self.folder, ignore_errors=True)
         return result
 
     def execute(self, context):
         """To the end, as scripts want it."""
-        self.begin(context)
         try:
-            while self.start(context.scene):
+            self.begin(context.scene)
+            while self.start():
                 self.process.wait()
                 self.done()
         except Failure as failure:
-            return self.end(context.scene, failure)
-        return self.end(context.scene)
+            return self.end(failure)
+        return self.end()
 
     def invoke(self, context, event):
         """With the user interface alive; Escape cancels."""
-        self.begin(context)
         try:
-            self.start(context.scene)
+            self.begin(context.scene)
+            self.start()
         except Failure as failure:
-            return self.end(context.scene, failure)
+            return self.end(failure)
         self.timer = context.window_manager.event_timer_add(0.2, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
@@ -177,21 +188,32 @@ class PELLUCID_OT_render(bpy.types.Operator):
     def modal(self, context, event):
         failure = None
         if event.type == "ESC":
-            self.process.terminate()
-            self.process.wait()
+            self.stop()
             failure = Failure("cancelled")
         elif event.type != "TIMER":
             return {"PASS_THROUGH"}
         else:
             try:
-                if not self.done() or self.start(context.scene):
+                if not self.done() or self.start():
                     for area in context.screen.areas if context.screen else ():
                         area.tag_redraw()
                     return {"RUNNING_MODAL"}
             except Failure as fault:
                 failure = fault
         context.window_manager.event_timer_remove(self.timer)
-        return self.end(context.scene, failure)
+        return self.end(failure)
+
+    def stop(self):
+        self.process.terminate()
+        self.process.wait()
+        self.output.close()
+
+    def cancel(self, context):
+        """Blender ends, or another file is opened."""
+        global status
+        status = ""
+        self.stop()
+        shutil.rmtree(self.folder, ignore_errors=True)
 
 
 register, unregister = bpy.utils.register_classes_factory((PELLUCID_OT_render,))

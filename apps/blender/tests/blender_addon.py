@@ -16,8 +16,13 @@ import bpy
 from mathutils import Vector
 
 zip_file, out, *width = sys.argv[sys.argv.index("--") + 1 :]
-bpy.ops.preferences.addon_install(filepath=zip_file)
-bpy.ops.preferences.addon_enable(module="pellucid")
+if bpy.app.version >= (4, 2):
+    bpy.ops.extensions.package_install_files(filepath=zip_file, repo="user_default")
+    addon = "bl_ext.user_default.pellucid"
+else:
+    bpy.ops.preferences.addon_install(filepath=zip_file)
+    addon = "pellucid"
+bpy.ops.preferences.addon_enable(module=addon)
 
 for thing in list(bpy.data.objects):
     bpy.data.objects.remove(thing)
@@ -82,7 +87,8 @@ scene.collection.objects.link(camera)
 scene.camera = camera
 scene.world = None
 
-report = {"library": sys.modules["pellucid.properties"].library()}
+properties = sys.modules[addon + ".properties"]
+report = {"library": properties.library()}
 report["own"] = [sorted(k for k in m.keys() if k != "pellucid_preset") for m in (jade, eye)]
 before = {m.name: [n.name for n in m.node_tree.nodes] for m in bpy.data.materials if m.use_nodes}
 engine, scenes = scene.render.engine, len(bpy.data.scenes)
@@ -100,16 +106,22 @@ report["log"] = bpy.data.texts["Pellucid log"].as_string()
 scene.pellucid.samples = "1"
 bpy.ops.pellucid.render(filepath=os.path.join(out, "plain.png"))
 report["plain_size"] = list(bpy.data.images["Pellucid"].size)
-report["images"] = sorted(i.name for i in bpy.data.images if i.name.startswith("Pellucid"))
 
-# A command that is not there: a message, and nothing lost.
-bpy.context.preferences.addons["pellucid"].preferences.command = "/nowhere/pellucid"
-try:
-    bpy.ops.pellucid.render()
-    report["failure"] = "none"
-except RuntimeError as error:  # an operator's error report
-    report["failure"] = str(error)
-bpy.ops.preferences.addon_disable(module="pellucid")
-bpy.ops.preferences.addon_enable(module="pellucid")
+
+def failure(**options):
+    try:
+        bpy.ops.pellucid.render(**options)
+    except RuntimeError as error:  # an operator's error report
+        return str(error)
+    return "none"
+
+
+# A folder or a command that is not there: a message, and nothing lost.
+report["unsaved"] = failure(filepath="/nowhere/picture.png")
+report["images"] = sorted(i.name for i in bpy.data.images if i.source != "VIEWER")
+bpy.context.preferences.addons[addon].preferences.command = "/nowhere/pellucid"
+report["failure"], report["without"] = failure(), properties.library()
+bpy.ops.preferences.addon_disable(module=addon)
+bpy.ops.preferences.addon_enable(module=addon)
 with open(os.path.join(out, "report.json"), "w") as file:
     json.dump(report, file)

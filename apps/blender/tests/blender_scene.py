@@ -3,8 +3,8 @@ render_gbuffer.py -- ...
 
 What a .blend file may hold and a converter may get wrong: modifiers that differ on screen and in a render,
 materials on the object and on the mesh, a mirrored and unevenly scaled object, an instanced collection, a
-bumped and textured surface, things that are not rendered. PELLUCID_SCENE: "FILE.blend LIGHT", a light's
-type.
+bumped and textured surface, things that are rendered but not shown or the reverse, a light with nodes, a
+portal. PELLUCID_SCENE: "FILE.blend LIGHT", a light's type.
 """
 
 import math
@@ -59,6 +59,7 @@ ring = bpy.context.object
 bpy.ops.object.shade_smooth()
 ring.scale, ring.rotation_euler = (-1.0, 1.0, 1.4), (0.7, 0.3, 0)
 ring.data.materials.append(jade)
+ring.hide_viewport = True
 
 bpy.ops.mesh.primitive_cube_add(size=0.8)
 cube = bpy.context.object
@@ -75,11 +76,20 @@ scene.collection.objects.link(empty)
 bpy.ops.mesh.primitive_plane_add(size=6, location=(0, 2, 0), rotation=(math.pi / 2, 0, 0))
 bpy.context.object.data.materials.append(other)
 bpy.ops.mesh.primitive_cube_add(size=1, location=(0, -2, 0))
-bpy.context.object.hide_render = True
+unseen = bpy.context.object
+unseen.users_collection[0].objects.unlink(unseen)
+hidden = bpy.data.collections.new("hidden")
+hidden.objects.link(unseen)
+scene.collection.children.link(hidden)
+hidden.hide_render = True
+bpy.ops.mesh.primitive_cube_add(size=0.5, location=(1.25, -1.5, 1))  # between ball and lamp
+bpy.context.object.visible_camera = bpy.context.object.visible_shadow = False
 
 data = bpy.data.lights.new("lamp", light)
 data.color = (1, 0.8, 0.6)
-data.energy = 2.0 if light == "SUN" else 300.0
+data.energy = 4.0 if light == "SUN" else 600.0
+data.use_nodes = True
+data.node_tree.nodes["Emission"].inputs["Strength"].default_value = 0.5
 lamp = bpy.data.objects.new("lamp", data)
 lamp.location = (2.5, -3, 2)
 lamp.rotation_euler = (-lamp.location).to_track_quat("-Z", "Y").to_euler()
@@ -87,11 +97,13 @@ if light == "SPOT":
     data.spot_size, data.spot_blend = math.radians(50), 0.4
 if light == "AREA":
     data.shape, data.size, data.size_y, lamp.scale = "RECTANGLE", 1.5, 0.5, (1, 2, 1)
-    data.spread, data.use_nodes = 2, True
-    data.node_tree.nodes.new("ShaderNodeLightFalloff")
+    data.spread = 2
     if hasattr(data, "normalize"):
         data.energy, data.normalize = 200, False  # per area
 scene.collection.objects.link(lamp)
+portal = bpy.data.objects.new("portal", bpy.data.lights.new("portal", "AREA"))
+portal.data.cycles.is_portal = True
+scene.collection.objects.link(portal)
 
 camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
 camera.location = (0.5, -7, 1.5)

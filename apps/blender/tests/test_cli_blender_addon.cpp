@@ -17,11 +17,11 @@ TEST_F(CommandTest, TheAddOnRendersSkinTeethAnEyeAndJade) {
     ASSERT_EQ(
         std::system(("python3 '" + source + "/packaging/blender_addon' '" + zip + "' >/dev/null").c_str()),
         0);
-    const std::string line = "BLENDER_USER_SCRIPTS='" + home + "' BLENDER_USER_CONFIG='" + home +
-                             "' PELLUCID_COMMAND='" PELLUCID_COMMAND "' '" + blender::command() +
-                             "' --factory-startup -b -t 2 --python '" + source +
-                             "/apps/blender/tests/blender_addon.py' -- '" + zip + "' '" + out + "' >'" +
-                             path("said.txt") + "' 2>&1 </dev/null";
+    const std::string line =
+        "BLENDER_USER_SCRIPTS='" + home + "' BLENDER_USER_CONFIG='" + home + "' BLENDER_USER_EXTENSIONS='" +
+        home + "' PELLUCID_COMMAND='" PELLUCID_COMMAND "' '" + blender::command() +
+        "' --factory-startup -b -t 2 --python '" + source + "/apps/blender/tests/blender_addon.py' -- '" +
+        zip + "' '" + out + "' >'" + path("said.txt") + "' 2>&1 </dev/null";
     std::system(line.c_str());
     const std::string said = read(path("said.txt"));
     ASSERT_TRUE(fs::exists(out + "/report.json")) << said;
@@ -34,7 +34,10 @@ TEST_F(CommandTest, TheAddOnRendersSkinTeethAnEyeAndJade) {
     EXPECT_EQ(report["packed"], true);
     EXPECT_EQ(report["untouched"], true);
     EXPECT_EQ(report["images"], (std::vector<std::string>{"Pellucid"}))
-        << "the second picture takes the place of the first";
+        << "the second picture takes the place of the first, saved or not";
+    EXPECT_TRUE(contains(report["unsaved"].get<std::string>(), "/nowhere/picture.png")) << report["unsaved"];
+    EXPECT_GT(report["library"].size(), 10u);
+    EXPECT_TRUE(report["without"].empty()) << "of another command";
     EXPECT_TRUE(contains(report["failure"].get<std::string>(), "/nowhere/pellucid")) << report["failure"];
     EXPECT_FALSE(contains(report["log"].get<std::string>(), "Fra:")) << "Blender's own lines are kept out";
 
