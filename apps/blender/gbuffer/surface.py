@@ -37,6 +37,8 @@ def prepare(things):
                 if skin is None:
                     skin = bpy.data.materials.new("Skin")
                     skin.diffuse_color = (0.72, 0.49, 0.39, 1)
+                    skin.use_nodes = True
+                    skin.node_tree.nodes.clear()  # Blender 5 has put a grey shader there
                     skin[PRESET] = "skin"
                 thing.data.materials[i] = skin
     missing = [i.name for i in bpy.data.images if i.users and i.source in ("FILE", "TILED")

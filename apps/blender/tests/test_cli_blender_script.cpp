@@ -221,11 +221,13 @@ TEST_F(BlenderScript, AMeshFileScatters) {
     ASSERT_EQ(g.width, 96);
     const std::vector<float> p = rgb(g, "Position.X", "Position.Y", "Position.Z");
     const std::vector<float> id = blender::pass(g, "Material Index", "IndexMA");
+    const std::vector<float>& albedo = g.channel("Albedo.R").pixels;
     float low = 1e9f, high = -1e9f;
     size_t covered = 0;
     for (size_t i = 0; i < id.size(); ++i)
         if (id[i] == 1) {
             ++covered;
+            EXPECT_NEAR(albedo[i], 0.72, 1e-3);
             low = std::min(low, p[3 * i + 2]);
             high = std::max(high, p[3 * i + 2]);
         }
