@@ -32,11 +32,7 @@ class Lamp:
             self.cos_outer = math.cos(data.spot_size / 2)
             self.cos_inner = self.cos_outer + (1 - self.cos_outer) * data.spot_blend
         if data.type == "AREA":
-            # Of disks and ellipses the rectangle of the same area; lights look along -z.
-            share = math.sqrt(math.pi) / 4 if data.shape in ("DISK", "ELLIPSE") else 1 / 2
-            height = data.size_y if data.shape in ("RECTANGLE", "ELLIPSE") else data.size
-            self.half_width = matrix.to_3x3() @ Vector((share * data.size, 0, 0))
-            self.half_height = matrix.to_3x3() @ Vector((0, -share * height, 0))
+            self.half_width, self.half_height = half_sides(data, matrix)
         self.map_file = None
 
 
@@ -61,16 +57,22 @@ def gather(source, scene, bounds):
     return lamps
 
 
+def half_sides(data, matrix):
+    """Of an area light that looks along -z; of disks and ellipses those of the rectangle of the same area."""
+    share = math.sqrt(math.pi) / 4 if data.shape in ("DISK", "ELLIPSE") else 1 / 2
+    height = data.size_y if data.shape in ("RECTANGLE", "ELLIPSE") else data.size
+    turned = matrix.to_3x3()
+    return turned @ Vector((share * data.size, 0, 0)), turned @ Vector((0, -share * height, 0))
+
+
 def surface(data, matrix):
     """What the light's strength is multiplied by if it is per area or solid angle."""
     if data.type == "SUN":
         return math.pi * math.sin(data.angle / 2) ** 2 or 1
     if data.type != "AREA":
         return 4 * math.pi * data.shadow_soft_size**2 or 4
-    height = data.size_y if data.shape in ("RECTANGLE", "ELLIPSE") else data.size
-    part = math.pi / 4 if data.shape in ("DISK", "ELLIPSE") else 1
-    return part * (matrix.to_3x3() @ Vector((data.size, 0, 0))).length * (
-        matrix.to_3x3() @ Vector((0, height, 0))).length
+    width, height = half_sides(data, matrix)
+    return 4 * width.length * height.length
 
 
 def emission(name, data):
@@ -79,9 +81,10 @@ def emission(name, data):
     if output is None:
         return 1, 1, 1
     node = output.inputs["Surface"].links[0].from_node if output.inputs["Surface"].is_linked else None
-    if node is None or node.type != "EMISSION" or any(i.is_linked for i in node.inputs):
+    emits = node is not None and node.type == "EMISSION"
+    if not emits or any(i.is_linked for i in node.inputs):
         warn(f"light '{name}': of its nodes only the numbers of an Emission node count")
-    if node is None or node.type != "EMISSION":
+    if not emits:
         return 1, 1, 1
     return [c * node.inputs["Strength"].default_value for c in node.inputs["Color"].default_value[:3]]
 
