@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "shading/material.h"
+
 namespace pel {
 namespace {
 
@@ -147,10 +149,9 @@ std::vector<Rgb> gaussiansOf(const Density& density, double widest, double reach
 // diffusion theory with an extrapolated boundary (docs/mathematics.md, section 12, "Slabs").
 class Slab {
   public:
-    // `ratio`: the mean free path over Burley's d, of which s = sqrt(1 - albedo) is nearly a parabola.
-    explicit Slab(double ratio) {
-        const double x = std::clamp((ratio - 0.6663) / 4.31, 0.02, 0.5), s = x * (0.91 + 0.9 * x),
-                     absorbed = s * s;
+    // `s`: sqrt(1 - albedo of a single scattering)
+    explicit Slab(double s) {
+        const double absorbed = s * s;
         decay_ = std::sqrt(3 * absorbed) * (1 - 0.4 * absorbed - 0.075 * absorbed * absorbed);
         strength_ = 4 / 3. * decay_ * (1 + 1.3 * absorbed) * (1 + 1.17 * s) / ((1 - s) * (1 - 0.139 * s));
     }
@@ -181,7 +182,9 @@ Rgb densityThrough(const Density& density, const Rgb& path, const Rgb& meanDista
     for (int c = 0; c < 3; ++c) {
         if (!(path[c] > 0)) continue;
         const double t = s / path[c], q = PEL_SLAB_FIRST + PEL_SLAB_SPREAD * std::sqrt(t), b = s / q,
-                     left = Slab(2.5 * path[c] / meanDistance[c]).transmitted(t) - along[c],
+                     left = Slab(std::min(mediumAbsorption(2.5 * path[c] / meanDistance[c]), 0.68))
+                                .transmitted(t) -
+                            along[c],
                      area = s + b - (reach + b) * std::exp((s - reach) / b);  // 1 / 2 pi b of what counts
         through[c] = std::max(left, 0.0) / (2 * std::numbers::pi * b * std::max(area, 0.6 * (s + b)));
     }

@@ -18,6 +18,7 @@ constexpr float softness = 0.1f, coneSlope = 0.8f;
 constexpr double plainFilterWidth = 8, plainBias = 0.5;
 constexpr float plainSoftness = 0.25f, plainConeSlope = 0.5f;
 constexpr double pathOfBurley = 1.087;  // mean free path over Burley's d at a reflectance of 0.8 (section 12)
+const double widthOfBurley = std::sqrt(7.0);  // over its d
 constexpr float noBlend[3] = {1, 0.3f, 0};
 constexpr uint32_t transmissionTexels = 256;
 
@@ -65,7 +66,17 @@ Ref<Lut> transmissionTable(const Ref<Device>& device, const Profile& profile) {
 
 double meanFreePath(const PelProfileInfo& profile, int channel) {
     if (profile.meanFreePath[channel] > 0) return profile.meanFreePath[channel];
-    return profile.kind == PEL_PROFILE_BURLEY ? pathOfBurley / std::sqrt(7.0) * profile.width[channel] : 0;
+    return profile.kind == PEL_PROFILE_BURLEY ? pathOfBurley * profile.width[channel] / widthOfBurley : 0;
+}
+
+double mediumAbsorption(double lengths) {
+    double least = 0.02, most = 0.95;
+    for (int i = 0; i < 24; ++i) {
+        const double s = (least + most) / 2;
+        const bool below = 0.6663 + s * (4.7276 + s * (-4.9721 + s * (7.2062 - s * 3.3091))) < lengths;
+        (below ? least : most) = s;
+    }
+    return least;
 }
 
 double transmissionReach(const Profile& profile) {
@@ -118,6 +129,8 @@ void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const 
     for (int c = 0; c < 3; ++c) {
         const double path = profile ? meanFreePath(info, c) * stretch : 0;
         material.gain[c] = m.scattering == PEL_SCATTERING_NONE ? 0 : float(m.curvatureGain * path);
+        material.absorption[c] =
+            path > 0 ? float(mediumAbsorption(widthOfBurley * meanFreePath(info, c) / info.width[c])) : 0;
         material.gainWindow = std::max(material.gainWindow, float(windowOfPath * path));
     }
     const Rgb through =

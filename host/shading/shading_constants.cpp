@@ -201,6 +201,7 @@ std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(
             to.transmissionShare = m.transmission;
         }
         copy(to.gain, from.gain);
+        copy(to.absorption, from.absorption);
         to.hasNormalMap = !from.normalMap.empty();
         if (from.eye) to.eye = ++eyes;
         to.needs = materialNeeds(state, from);

@@ -102,11 +102,8 @@ static PEL_OUT_OF_LINE uint sumBlocks(__global const PelDiffusionFrame* frame, _
     if (!anyw(on)) return 0;
     const Slope slope = slopeOfBlocks(frame, at, stride, &here, on);
     Sums result = noSums();
-    if (level + 1 < frame->levels) {
-        const Interpolated coarser = interpolateSums(frame, pyramid, sums, NULL, level + 1, x, y, &here, on);
-        result = coarser.sums;
-        result.light = movedLight(&result, &slope, coarser.place, &here);
-    }
+    if (level + 1 < frame->levels)
+        result = interpolateSums(frame, pyramid, sums, NULL, level + 1, x, y, &here, on).sums;
     result = addOwnLevel(frame, pyramid, tables, nodes, at, stride, level, x, y, &here, slope, on, result);
     storeSums(result, stride, to);
     return countw(on);
@@ -196,8 +193,6 @@ static inline Sums sumsOfBlock(__global const PelDiffusionFrame* frame, __global
         result.light = vec3(TAKE_(PEL_SUM_LIGHT), TAKE_(PEL_SUM_LIGHT + 1), TAKE_(PEL_SUM_LIGHT + 2));
         result.weight = vec3(TAKE_(PEL_SUM_WEIGHT), TAKE_(PEL_SUM_WEIGHT + 1), TAKE_(PEL_SUM_WEIGHT + 2));
 #undef TAKE_
-        const Slope slope = slopeOfBlocks(frame, at, stride, &here, true);
-        result.light = movedLight(&result, &slope, n.place, &here);
     }
     result.light = add3(result.light, loadPlanes3(own + PEL_SUM_LIGHT * stride, stride));
     result.weight = add3(result.weight, loadPlanes3(own + PEL_SUM_WEIGHT * stride, stride));

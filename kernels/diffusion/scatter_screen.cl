@@ -113,7 +113,6 @@ static PEL_OUT_OF_LINE Vec3w scatterPixels(__global const PelDiffusionFrame* fra
     }
     Interpolated all = interpolateSums(frame, pyramid, sums, hidden, 1, x, y, here, active);
     Sums* s = &all.sums;
-    s->light = movedLight(s, &slope, all.place, here);
     // Pixels are too coarse for their weights to add up: within the ring of level 1 no weight is missing.
     const Vec3w known = add3(s->weight, s->centre);
     if (near) {

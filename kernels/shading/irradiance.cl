@@ -24,12 +24,14 @@ static inline Vec3w ofMaterials(__global const float* field, uintw id, maskw wan
 
 #if PEL_FORMAT_THICKNESS
 // Reflectance of a slab of this thickness over that of a half-space: the rest leaves on the far side (section
-// 12 of the mathematics, "Slabs"). `path`: the mean free path. 1 where either is unknown.
-static inline floatw keptBySlab(floatw thickness, floatw path) {
-    const floatw t = thickness / path * -1.44269504f, kept = 1.0f - 0.4635f * exp2(1.088f * t) -
-                                                             0.4238f * exp2(0.3548f * t) -
-                                                             0.1127f * exp2(4.3f * t);
-    return selectw((floatw)(1.0f), kept, (thickness > 0.0f) & (path > 0.0f));
+// 12 of the mathematics, "Slabs"). `path`: the mean free path; `s`: sqrt(1 - albedo of the medium). 1 where
+// thickness or path is unknown.
+static inline floatw keptBySlab(floatw thickness, floatw path, floatw s) {
+    const floatw t = thickness / path * -1.44269504f, p = s * (0.194f + 0.033f * s),
+                 e = (1.0f - p) * exp2(s * (3.504f - 0.498f * s * s) * t) +
+                     p * exp2((4.123f + 5.501f * s) * t),
+                 r = (1.0f - s) * (1.0f - 0.139f * s) / (1.0f + 1.17f * s);
+    return selectw((floatw)(1.0f), (1.0f - e) / (1.0f - r * r * e), (thickness > 0.0f) & (path > 0.0f));
 }
 #endif
 
@@ -80,9 +82,10 @@ static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMat
     // The reflectance of a sheet is its albedo, whatever its thickness.
     thickness = selectw(thickness, (floatw)(0.0f), through.x + through.y + through.z > 0.0f);
 #endif
-    const Vec3w path = ofMaterials(materials->gain, id, wanted);
-    e = mul3(
-        e, vec3(keptBySlab(thickness, path.x), keptBySlab(thickness, path.y), keptBySlab(thickness, path.z)));
+    const Vec3w path = ofMaterials(materials->gain, id, wanted),
+                s = ofMaterials(materials->absorption, id, wanted);
+    e = mul3(e, vec3(keptBySlab(thickness, path.x, s.x), keptBySlab(thickness, path.y, s.y),
+                     keptBySlab(thickness, path.z, s.z)));
 #endif
     const floatw none = NAN;
     return select3(vec3(none, none, none), e, valid);

@@ -425,37 +425,60 @@ TEST(LightSpace, SlabsLetThroughWhatRandomWalksDo) {
 // The lit side of a slab whose thickness the host gives: the light that does not leave on the far side. An
 // unknown or infinite thickness changes nothing.
 TEST(LightSpace, SlabsReflectWhatRandomWalksDo) {
-    constexpr float path[] = {0.3f, 0.6f, 1.2f};  // mm
-    const float albedos[] = {0.8f, 0.8f, 0.8f};
-    const uint32_t side = 24, middle = 3 * (side / 2 * side + side / 2);
-    const auto reflected = [](double paths) {
-        return reference::walkSlab({1, 0.99055}, paths, 1, 1, sized(100000, 1000), 7).reflected;
+    struct Kind {
+        float albedo;          // of a half-space
+        double single, paths;  // its medium: albedo of a scattering, mean free path over Burley's d
+        double tolerated = tolerance::slabReflects;
     };
-    const double half = reflected(INFINITY);
-    std::map<float, double> slabs;  // by the thickness in mean free paths
-    for (const PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE, byAuto}) {
+    constexpr Kind kinds[] = {{0.95f, 0.999505, 0.769, tolerance::brightSlabReflects},
+                              {0.8f, 0.99059, 1.084},
+                              {0.5f, 0.91171, 1.795},
+                              {0.2f, 0.61335, 2.921}};
+    constexpr float distance = 0.5f;  // mm
+    const uint32_t side = 24, middle = 3 * (side / 2 * side + side / 2);
+    const auto reflected = [](double single, double paths) {
+        return reference::walkSlab({1, single}, paths, 1, 1, sized(100000, 1000), 7).reflected;
+    };
+    const auto sheetOf = [&](PelScattering method, const Kind& kind) {
         Frame f = sheet(side, method);
         f.giveIrradiance = false;
-        f.profile = Profile::burley(path, albedos, PEL_BURLEY_SEARCHLIGHT);
+        const float path[] = {distance / 2, distance, 2 * distance};
+        const float albedo[] = {kind.albedo, kind.albedo, kind.albedo};
+        f.profile = Profile::burley(path, albedo, PEL_BURLEY_SEARCHLIGHT);
         f.material.curvatureGain = 1;
         f.lamps.resize(1);
         std::copy_n(std::array{0.0f, 0.6f, 0.8f}.data(), 3, f.lamps[0].light.toLight);
+        return f;
+    };
+    for (const Kind& kind : kinds) {
+        const double half = reflected(kind.single, INFINITY);
+        EXPECT_NEAR(half, kind.albedo, testsAreSmall() ? 0.1 : 2 * tolerance::walkReflected);
+        std::map<double, double> slabs;  // by the thickness in mean free paths
+        for (const PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE, byAuto}) {
+            Frame f = sheetOf(method, kind);
+            const PelProfileInfo info = f.profile.info();
+            const std::vector<float> endless = f.shade().light;
+            for (float thickness : {0.1f, 0.3f, 1.0f, 3.0f, 10.0f}) {
+                f.images[PEL_SLOT_THICKNESS].assign(f.picture.pixels(), thickness);
+                const std::vector<float> light = f.shade().light;
+                for (size_t c = 0; c < 3; ++c) {
+                    const double paths = thickness * std::sqrt(7.0) / (kind.paths * info.width[c]);
+                    if (!slabs.contains(paths)) slabs[paths] = reflected(kind.single, paths) / half;
+                    EXPECT_NEAR(light[middle + c] / endless[middle + c], slabs[paths],
+                                testsAreSmall() ? 0.1 : kind.tolerated)
+                        << "albedo " << kind.albedo << ", " << paths << " mean free paths, method "
+                        << int(method) << ", channel " << c;
+                }
+            }
+        }
+    }
+    for (const PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE, byAuto}) {
+        Frame f = sheetOf(method, kinds[1]);
         const std::vector<float> endless = f.shade().light;
         const auto lightOf = [&](float thickness) {
             f.images[PEL_SLOT_THICKNESS].assign(f.picture.pixels(), thickness);
             return f.shade().light;
         };
-        const PelProfileInfo info = f.profile.info();
-        for (float thickness : {0.1f, 0.3f, 1.0f, 3.0f, 10.0f}) {
-            const std::vector<float> light = lightOf(thickness);
-            for (size_t c = 0; c < 3; ++c) {
-                const float paths = thickness / info.meanFreePath[c];
-                if (!slabs.contains(paths)) slabs[paths] = reflected(paths) / half;
-                EXPECT_NEAR(light[middle + c] / endless[middle + c], slabs[paths],
-                            testsAreSmall() ? 0.1 : tolerance::slabReflects)
-                    << paths << " mean free paths, method " << int(method) << ", channel " << c;
-            }
-        }
         for (float unknown : {0.0f, -1.0f, notANumber, infinity, 1e30f})
             EXPECT_EQ(lightOf(unknown), endless) << unknown << ", method " << int(method);
         f.material.curvatureGain = 0;
