@@ -415,12 +415,23 @@ class Builder {
         }
         if (bad && !normals.empty())
             warn("some normals are zero or not finite: these are made from the triangles");
+        size_t against = 0;  // triangles that face the other side than their normals
         if (uvs.empty() && scene_.materials[part.material].baseColorImage >= 0)
             warn("some parts have a texture and no texture coordinates: they get its first texel");
         uvsAnywhere_ |= !uvs.empty();
-        for (size_t i = 0; i < part.triangles.size(); i += 3)
-            for (const size_t k : {size_t{0}, size_t{mirrored ? 2u : 1u}, size_t{mirrored ? 1u : 2u}})
-                mesh.triangles.push_back(uint32_t(first + part.triangles[i + k]));
+        for (size_t i = 0; i < part.triangles.size(); i += 3) {
+            std::array<size_t, 3> corner;
+            for (size_t k = 0; k < 3; ++k)
+                corner[k] = first + part.triangles[i + (mirrored && k ? 3 - k : k)];
+            mesh.triangles.insert(mesh.triangles.end(), corner.begin(), corner.end());
+            const auto at = [&](size_t k) { return vectorOf(&mesh.positions[3 * corner[k]]); };
+            const auto normal = [&](size_t k) { return vectorOf(&mesh.normals[3 * corner[k]]); };
+            against += (at(1) - at(0)).cross(at(2) - at(0)).dot(normal(0) + normal(1) + normal(2)) < 0;
+        }
+        if (6 * against > part.triangles.size())
+            warn(
+                "most normals of a part point to the side from which the corners of its triangles run "
+                "clockwise: one of both is inside out");
         scene_.materialOf.insert(scene_.materialOf.end(), part.triangles.size() / 3, part.material);
     }
 

@@ -110,8 +110,12 @@ GltfLook lookOf(GltfMaterial m, const std::string& name, uint32_t id, const std:
     p.specularModel = PEL_SPECULAR_GGX;
     p.lobeMix = 0;
     p.roughness = float(std::max(m.roughness * m.roughness, 0.01));
-    p.f0 = float(ratio * ratio * m.specular * (1 - m.metallic) + metal * m.metallic);
-    p.specular = 1;
+    // specularFactor scales all of a dielectric's gloss, also at grazing angles.
+    const double strength = m.specular * (1 - m.metallic) + m.metallic;
+    p.specular = float(strength);
+    p.f0 = strength > 0
+               ? float((ratio * ratio * m.specular * (1 - m.metallic) + metal * m.metallic) / strength)
+               : 0;
     for (size_t c = 0; c < 3; ++c) p.albedo[c] = float(look.albedo[c]);
     return look;
 }

@@ -99,8 +99,8 @@ void addImport(CLI::App& app) {
     option(command, "-o,--output", a.output,
            "folder for scene.toml, mesh.obj, gbuffer.exr; created if missing", required);
     option(command, "--profile", a.profiles,
-           "PROFILE of all materials, or MATERIAL=PROFILE of one, instead of the file's", Word{profileWord},
-           oneEach);
+           "PROFILE of all materials, or MATERIAL=PROFILE of one, instead of the file's; several times",
+           Word{profileWord}, oneEach);
     option(command, "--unit-mm", a.unitMm, "millimetres per unit; glTF's unit is the metre",
            inRange(1e-6, 1e9), shown);
     option(command, "--size", a.size, "pixels of the G-buffer, WxH (default: 1024 wide, the camera's shape)",

@@ -95,11 +95,13 @@ void applyTextures(Run& run, const io::GltfScene& v, sample::GBuffer& g) {
 void addShadowMap(const std::string& folder, const sample::Scene& scene, size_t number,
                   io::SceneLight& light) {
     PelLight& p = light.light;
+    const sample::Bounds bounds = scene.bounds();
+    const double diagonal = bounds.empty() ? 0 : length(bounds.high - bounds.low);  // mm
     sample::ShadowMap map;
     if (p.type == PEL_LIGHT_DIRECTIONAL) {
         map = sample::renderShadowMap(scene,
                                       sample::DirectionalLight{{p.toLight[0], p.toLight[1], p.toLight[2]}},
-                                      importedShadowMapSize);
+                                      importedShadowMapSize, std::min(0.01 * diagonal, 1.0));
         p.shadowProjection = PEL_SHADOW_PARALLEL;
         p.shadowDepthRange = float(map.depthRange);
     } else if (p.type == PEL_LIGHT_SPOT) {

@@ -5,6 +5,7 @@
 #include "io/atomic_file.h"
 #include "io/lut/profile_file.h"
 #include "io/mesh/mesh_parts.h"
+#include "io/shortest.h"
 #include "mesh_curvature.h"
 #include "sample/random_walk.h"
 #include "scene/scene_frame.h"
@@ -166,8 +167,10 @@ sample::WalkedLight walk(Run& run, const WalkArguments& walk, const sample::Walk
                                    {"noise", light.noise}});
     const double walks = 6.0 * double(points.size()) * light.samples;
     if (double(light.lost) > 0.001 * walks)
-        run.warn(io::concat(100 * double(light.lost) / walks, " % of the walks in ", material,
-                            " left through holes of the mesh and count as dark"));
+        run.warn(
+            io::concat(io::printed("%.2g", 100 * double(light.lost) / walks), " % of the walks in ", material,
+                       " did not meet the mesh from inside and count as dark: it has holes, or triangles "
+                       "whose corners run clockwise seen from outside"));
     return light;
 }
 

@@ -48,7 +48,7 @@ ShadowMap renderShadowMap(const Scene& scene, const DirectionalLight& light, int
         seen.add({dot(p, map.right), dot(p, map.down), dot(p, map.forward)});
     }
     if (seen.empty()) seen.add({});
-    margin = std::max(margin, 1e-3);
+    if (!(margin > 0)) margin = 1e-3;
     const Vec3 centre = seen.centre();
     map.extent = std::max(seen.high.x - seen.low.x, seen.high.y - seen.low.y) + 2 * margin;
     map.nearDistance = seen.low.z - margin;

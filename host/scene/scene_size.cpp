@@ -9,6 +9,8 @@
 namespace pellucid::io {
 namespace {
 
+constexpr float fingertip = 20;  // mm
+
 std::string shown(float value) {
     return printed("%.4g", value);
 }
@@ -76,8 +78,9 @@ std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene, 
     for (const SceneMaterial& m : scene.materials) {
         if (m.profile.empty()) continue;
         const float reach = findProfile(m.profile).profile.info().reach;
-        // An object of skin is not smaller than a fingertip, nor larger than a few people.
-        if (size > 2.3f * reach && size < 500 * reach) continue;
+        // An object of skin is not smaller than a fingertip, nor larger than a few people; through wax light
+        // travels further.
+        if (size > std::min(2.3f * reach, fingertip) && size < 500 * reach) continue;
         found.push_back(
             concat("the visible scene is ", shown(size),
                    " mm across with unit_mm = ", shown(scene.options.millimetresPerUnit),

@@ -35,9 +35,9 @@ MapLengths lengthsOf(const ShaderLight& light) {
     return lengths;
 }
 
-// A lit body of skin is at least as large as a fingertip: a map that spans less than two reaches of the
-// profile cannot hold it.
-constexpr double leastReaches = 2;
+// A lit body of skin is at least as large as a fingertip: a map that spans less than that, and less than two
+// reaches of the profile, cannot hold it.
+constexpr double leastReaches = 2, fingertip = 20;  // mm
 
 // The settings that have no effect with the material's method; "" if there are none.
 std::string withoutEffect(const ShaderMaterial& material) {
@@ -145,7 +145,8 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
                      ": light through thin parts is inaccurate; use a finer map, or check that "
                      "millimetresPerUnit is ",
                      state.options.millimetresPerUnit);
-            if (map.span > 0 && map.span < leastReaches * reach)
+            if (map.span > 0 &&
+                map.span < std::min(leastReaches * reach, fingertip / state.options.millimetresPerUnit))
                 warn("the shadow map of light ", i, " spans ", map.span, ", but light travels ", reach,
                      " in material ", id,
                      ", too far for an object of that size: check PelShaderOptions.millimetresPerUnit (",

@@ -190,8 +190,11 @@ TEST(Gltf, WithoutASceneAllRootsAreShown) {
 // Whatever the rotation of a node, its triangles face in the direction of its normals, mirrored or not, and
 // whether the normals are in the file or made from the triangles.
 TEST(Gltf, TurnedAndMirroredFacesKeepTheirFront) {
-    std::string buffer = squareBuffer();
-    for (int v = 0; v < 4; ++v) buffer += gltf::bytesOf<float>({0, 0, 1});
+    std::string buffer = squareBuffer(), insideOut = buffer;
+    for (int v = 0; v < 4; ++v) {
+        buffer += gltf::bytesOf<float>({0, 0, 1});
+        insideOut += gltf::bytesOf<float>({0, 0, -1});
+    }
     for (const json& turn : R"([[0, 0, 0, 1], [0, 0, 0.70710678, 0.70710678], [0, 0.70710678, 0, 0.70710678],
              [0.70710678, 0, 0, 0.70710678], [0.5, 0.5, 0.5, 0.5], [0.1826, 0.3651, 0.5477, 0.7303]])"_json)
         for (const json& scale : "[[1, 1, 1], [-1, 1, 1], [1, -2, 1], [1, 1, -3], [-1, -1, -1]]"_json) {
@@ -204,9 +207,14 @@ TEST(Gltf, TurnedAndMirroredFacesKeepTheirFront) {
                           {"/buffers/0/byteLength", buffer.size()},
                           {"/bufferViews/3",
                            {{"buffer", 0}, {"byteOffset", 92}, {"byteLength", buffer.size() - 92}}}});
-            for (const MeshData& m : {decoded(square(made)).mesh, decoded(square(given, buffer)).mesh})
+            for (const MeshData& m : {decoded(square(made)).mesh, decoded(square(given, buffer)).mesh}) {
+                EXPECT_TRUE(m.warnings.empty()) << turn << " times " << scale;
                 for (size_t t = 0; t < m.triangles.size(); t += 3)
                     EXPECT_GT(facing(m, t), 0.9) << turn << " times " << scale;
+            }
+            const MeshData inside = decoded(square(given, insideOut)).mesh;
+            ASSERT_EQ(inside.warnings.size(), 1u) << turn << " times " << scale;
+            EXPECT_NE(inside.warnings[0].find("inside out"), std::string::npos);
         }
 }
 
@@ -360,6 +368,18 @@ TEST(Gltf, MaterialsThatScatter) {
     EXPECT_EQ(lookOf(metal, "m", 1, "skin").material.profile, "skin");
     EXPECT_EQ(named.albedo[0], 1) << "the base colour's, as of no metal";
     EXPECT_LT(named.f0, 0.1f);
+    const auto glossOf = [&](double specular, double metallic) {
+        GltfMaterial m = metal;
+        m.specular = specular, m.metallic = metallic, m.ior = 1.5;
+        m.baseColor = {0.9, 0.6, 0.3};
+        const PelMaterial p = lookOf(m, "m", 1, "").material.material;
+        return std::pair{p.specular, p.specular * p.f0};  // at grazing angles, and from the front
+    };
+    EXPECT_EQ(glossOf(0, 0).first, 0) << "no gloss at any angle";
+    EXPECT_FLOAT_EQ(glossOf(0.5, 0).first, 0.5f);
+    EXPECT_NEAR(glossOf(0.5, 0).second, 0.5 * 0.04, 1e-6);
+    EXPECT_FLOAT_EQ(glossOf(0, 0.25).first, 0.25f);
+    EXPECT_NEAR(glossOf(0.5, 0.25).second, 0.75 * 0.5 * 0.04 + 0.25 * 0.6, 1e-6);
     const json textured = R"({"pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 0}}})"_json;
     EXPECT_EQ(lookOf(material(textured), "m", 1, "").how, "plain") << "its metalness is not read";
     EXPECT_EQ(lookOf(material(R"({"pbrMetallicRoughness": {"metallicFactor": 0}})"_json), "m", 1, "")
