@@ -275,6 +275,7 @@ constexpr double lightHead[3] = {28, 12.8, 9};
 constexpr double lightFour[3] = {106, 67, 52};
 constexpr double gain = 6e-3;  // curvature by differences of float positions over a window
 // against random walks: 58; 84 without directions and gain; 42; 49 without; 49; 49 without
+constexpr double parallelView = 1e-3;  // a ball of 12 at a distance of 4000 is seen 0.003 to the side
 constexpr double walkBalls[] = {123, 65, 54, 36, 19, 12};  // 1e-4 of white: 5 % above 117, 62, 52, 34, 17, 10
 constexpr double walkHead[3] = {61, 45, 51};
 // against random walks: 178; 212 without directions and gain; 75; 107 without; 50; 69 without

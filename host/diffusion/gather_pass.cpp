@@ -64,6 +64,7 @@ class GatherPass final : public Pass {
     size_t upload(Device&, ShaderPlan& plan) override {
         ScatterView view;
         std::copy_n(plan.state.camera.inverseViewProjection, 16, view.inverseViewProjection);
+        std::copy_n(plan.state.camera.position, 3, view.position);
         view.everywhere = plan.state.options.disableSkipping != 0;
         scatter_->prepare(materials_, sources_, images_, view, plan.state.options.frameIndex);
         return 0;

@@ -33,22 +33,6 @@ void takeLineSpread(ProfileNodes& nodes, const ProfileShape& shape, double scale
     }
 }
 
-void lookAlong(PelGatherFrame& frame, const float inverse[16]) {
-    std::fill_n(frame.origin, 3, 0.0f);
-    std::fill_n(frame.direction, 3, 0.0f);
-    frame.view = PEL_VIEW_UNKNOWN;
-    if (eyeOf(inverse, frame.origin)) {
-        frame.view = PEL_VIEW_POINT;
-        return;
-    }
-    const double x = inverse[2], y = inverse[6], z = inverse[10], length = std::sqrt(x * x + y * y + z * z);
-    if (inverse[14] != 0 || !(length > 0) || !std::isfinite(length)) return;
-    frame.view = PEL_VIEW_DIRECTION;
-    frame.direction[0] = float(x / length);
-    frame.direction[1] = float(y / length);
-    frame.direction[2] = float(z / length);
-}
-
 enum Program { SURFACE, GATHER, HISTORY };
 
 }  // namespace
@@ -99,7 +83,10 @@ void GatherScatter::prepare(const std::map<uint32_t, Material>& materials, const
     frame_.width = of.irradiance.width, frame_.height = of.irradiance.height;
     frame_.tilesX = (frame_.width + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE;
     frame_.tilesY = (frame_.height + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE;
-    lookAlong(frame_, view.inverseViewProjection);
+    const Sight sight = sightOf(view);
+    frame_.view = sight.view;
+    std::ranges::copy(sight.origin, frame_.origin);
+    std::ranges::copy(sight.direction, frame_.direction);
     const GatherImages::History& history = images.history;
     if (history.weight > 0 && frame_.view == PEL_VIEW_UNKNOWN)
         invalidArgument("PelShaderOptions.historyWeight is ", history.weight,

@@ -10,11 +10,43 @@
 
 namespace pel {
 
+namespace {
+
+// The point that a perspective matrix maps to infinite depth.
 bool eyeOf(const float inverse[16], float eye[3]) {
     const float w = inverse[14];
     if (!(std::abs(w) > 1e-20f)) return false;
     for (int k = 0; k < 3; ++k) eye[k] = inverse[4 * k + 2] / w;
     return std::isfinite(eye[0]) && std::isfinite(eye[1]) && std::isfinite(eye[2]);
+}
+
+bool isKnown(const float position[3]) {
+    return position[0] != 0 || position[1] != 0 || position[2] != 0;
+}
+
+}  // namespace
+
+Sight sightOf(const ScatterView& view) {
+    const float* inverse = view.inverseViewProjection;
+    Sight sight;
+    if (eyeOf(inverse, sight.origin)) {
+        sight.view = PEL_VIEW_POINT;
+        return sight;
+    }
+    std::fill_n(sight.origin, 3, 0.0f);
+    const double x = inverse[2], y = inverse[6], z = inverse[10], length = std::sqrt(x * x + y * y + z * z);
+    if (inverse[14] != 0 || !(length > 0) || !std::isfinite(length)) return sight;
+    sight.view = PEL_VIEW_DIRECTION;
+    double ahead = 0;  // of the middle of the picture at half depth
+    for (int k = 0; k < 3; ++k) {
+        sight.direction[k] = float(inverse[4 * k + 2] / length);
+        const double middle = (0.5 * inverse[4 * k + 2] + inverse[4 * k + 3]) / inverse[15];
+        ahead += sight.direction[k] * (middle - view.position[k]);
+    }
+    sight.away = isKnown(view.position) && std::abs(ahead) > 0;
+    if (sight.away && ahead < 0)
+        for (float& d : sight.direction) d = -d;
+    return sight;
 }
 
 bool samePixels(const ImageView& a, const ImageView& b) {
@@ -33,7 +65,7 @@ enum ScreenProgram { PYRAMIDS, SUMS, CLASSIFY };
 void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
     const std::vector<Material> distinct = distinctOf(materials, frame_.tableOf);
     frame_.tables = uint32_t(distinct.size());
-    const bool hasSides = frame_.facing && frame_.curvature.rowStride;
+    const bool hasSides = frame_.view != PEL_VIEW_UNKNOWN && frame_.curvature.rowStride;
     if (materials == materials_ && hasSides == hasSides_ && lights_.alone == byTexels_ && tables_) return;
     narrowest_ = widest_ = 0;
     std::vector<PelProfileTable> tables;
@@ -134,8 +166,16 @@ void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const
     frame_.levels = PEL_PYRAMID_LEVELS;
     frame_.everyTile = view.everywhere;
     frame_.inPlace = samePixels(images.irradiance, images.out);
-    frame_.facing = eyeOf(view.inverseViewProjection, frame_.origin);
-    if (!frame_.facing) std::fill_n(frame_.origin, 3, 0.0f);
+    Sight sight = sightOf(view);
+    if (images.positions && isKnown(view.position) &&
+        std::ranges::equal(view.inverseViewProjection, pelCameraDefaults().inverseViewProjection)) {
+        // No matrix was set, which positions do not need.
+        sight.view = PEL_VIEW_POINT;
+        std::ranges::copy(view.position, sight.origin);
+    }
+    std::ranges::copy(sight.origin, frame_.origin);
+    std::ranges::copy(sight.direction, frame_.direction);
+    frame_.view = sight.view == PEL_VIEW_DIRECTION && !sight.away ? PEL_VIEW_UNKNOWN : sight.view;
     frame_.tolerance = view.tolerance;
     std::copy_n(view.inverseViewProjection, 16, frame_.inverseViewProjection);
     frame_.irradiance = describeImage(images.irradiance);

@@ -9,13 +9,20 @@ namespace pel {
 
 struct ScatterView {
     float inverseViewProjection[16] = {};  // clip to world; all zero: not known, with positions
+    float position[3] = {};                // of the camera; all zero: not known
     float tolerance = 0;                   // of irradiance
     bool everywhere = false;               // leave nothing out
 };
 
-// The point that a perspective matrix maps to infinite depth. Returns false for parallel views and without
-// a matrix.
-bool eyeOf(const float inverse[16], float eye[3]);
+// From where, or in which direction, a picture is seen.
+struct Sight {
+    PelUint32 view = PEL_VIEW_UNKNOWN;
+    float origin[3] = {};     // of PEL_VIEW_POINT
+    float direction[3] = {};  // unit, of PEL_VIEW_DIRECTION
+    // Whether that is away from the camera, which its position tells; else it is that of increasing depth.
+    bool away = false;
+};
+Sight sightOf(const ScatterView& view);
 bool samePixels(const ImageView& a, const ImageView& b);
 
 // Lights whose shadow maps serve as lit surface.

@@ -127,6 +127,13 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
             std::ranges::equal(state.camera.inverseViewProjection, pelCameraDefaults().inverseViewProjection))
             warn("material ", id,
                  " scatters by taps, placed by PelCamera.inverseViewProjection, which is the default");
+        const bool summed = m.scattering == PEL_SCATTERING_SCREEN || m.scattering == PEL_SCATTERING_LIGHT;
+        if (summed && material.gain[0] > 0 && state.camera.inverseViewProjection[14] == 0 &&
+            std::ranges::all_of(state.camera.position, [](float v) { return v == 0; }))
+            warn("material ", id,
+                 " scatters less accurately on curved parts, because it is not known from where they are "
+                 "seen: "
+                 "set PelCamera.position, for a parallel view to a point far behind the camera");
         if (m.scattering == PEL_SCATTERING_LIGHT && !lightIsMapped(state))
             warn("material ", id,
                  " scatters by \"light\", but not all light comes from shadow maps: ambient light and lights "
@@ -134,7 +141,6 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
                  "and remove ambient light to avoid this");
         if (!material.profile) continue;
         const bool byMap = (features & PEL_FEATURE_TRANSMISSION) && !thickness && m.transmission != 0;
-        const bool summed = m.scattering == PEL_SCATTERING_SCREEN || m.scattering == PEL_SCATTERING_LIGHT;
         // Another radius than the profile's own stretches its reach too.
         const double reach = material.profile->reach() * m.diffusionRadius / material.profile->radius();
         for (size_t i = 0; i < state.lights.size(); ++i) {

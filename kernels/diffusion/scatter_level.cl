@@ -38,7 +38,7 @@ static inline void fetchNextBlocks(__global const float* at, uint stride) {
 
 static inline Slope slopeOfBlocks(__global const PelDiffusionFrame* frame, __global const float* at,
                                   uint stride, const Blocks* here, maskw on) {
-    return slopeAt(at, stride, here, loadPlanes3(at + PEL_PLANE_RED * stride, stride), frame->facing, on);
+    return slopeAt(frame, at, stride, here, loadPlanes3(at + PEL_PLANE_RED * stride, stride), on);
 }
 
 // Adds what comes in from the blocks' own level.

@@ -83,7 +83,7 @@ static PEL_OUT_OF_LINE Vec3w scatterPixels(__global const PelDiffusionFrame* fra
     const uint stride = frame->level[0].stride;
     __global const float* at = pyramid + pyramidRow(&frame->level[0], (int)y) + x;
     const Vec3w e = loadPlanes3(at + PEL_PLANE_RED * stride, stride);
-    Slope slope = slopeAt(at, stride, here, e, frame->facing, active);
+    Slope slope = slopeAt(frame, at, stride, here, e, active);
     if (PEL_FORMAT_MEAN_CURVATURE) slope.curvature = loadw(PEL_PLANE_CURVATURE * stride, at);
     // Computed first, so that fewer values are live.
     Sums single = noSums();

@@ -133,8 +133,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void surface_are
         const Vec3w cross = cross3(right.v, down.v);
         const maskw noRight = right.length2 == FLT_MAX, noDown = down.length2 == FLT_MAX;
         area = sqrt(dot3(cross, cross));
-        if (frame->facing) {
-            const floatw cosine = fabs(dot3(cross, p)) * inverseRootw(dot3(cross, cross) * dot3(p, p));
+        if (frame->view != PEL_VIEW_UNKNOWN) {
+            const Vec3w sight = sightTo(frame, p);
+            const floatw cosine =
+                fabs(dot3(cross, sight)) * inverseRootw(dot3(cross, cross) * dot3(sight, sight));
             area *= fmin(cosine * (1.0f / MIN_FACING), (floatw)(1.0f));
         }
         // A line of pixels counts as facing the camera. A single pixel has no size.

@@ -93,6 +93,11 @@ typedef struct PelPyramidLevel {
     PelUint32 height;
 } PelPyramidLevel;
 
+// How a picture is seen.
+#define PEL_VIEW_UNKNOWN 0
+#define PEL_VIEW_POINT 1      // from `origin`
+#define PEL_VIEW_DIRECTION 2  // along `direction`
+
 typedef struct PelDiffusionFrame {
     PelUint32 width;  // pixels
     PelUint32 height;
@@ -102,9 +107,10 @@ typedef struct PelDiffusionFrame {
     PelUint32 everyTile;  // 1: all tiles and all levels are computed
     PelUint32 inPlace;    // 1: `out` is `irradiance`
     PelUint32 tables;
-    PelUint32 facing;  // 1: `origin` is the camera, so grazing angles are known
-    float tolerance;   // of irradiance
-    float origin[3];   // length, world; of the pyramid's positions
+    PelUint32 view;      // PEL_VIEW_...
+    float tolerance;     // of irradiance
+    float origin[3];     // length, world; of the pyramid's positions
+    float direction[3];  // unit, away from the camera
     float inverseViewProjection[16];
     PelShadeImage irradiance, position, ids, out, curvature, radii;  // position: or depth
     PelPyramidLevel level[PEL_PYRAMID_LEVELS];
@@ -124,5 +130,5 @@ typedef struct PelDiffusionFrame {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelProfileTable) == 56 && sizeof(PelPyramidLevel) == 16);
 static_assert(sizeof(PelDiffusionFrame) ==
-              4 * (10 + 3 + 16 + PEL_DIFFUSION_IDS) + 6 * 32 + PEL_PYRAMID_LEVELS * 16);
+              4 * (10 + 3 + 3 + 16 + PEL_DIFFUSION_IDS) + 6 * 32 + PEL_PYRAMID_LEVELS * 16);
 #endif

@@ -34,10 +34,6 @@ typedef struct PelGatherMaterial {
     PelUint32 pad;
 } PelGatherMaterial;
 
-#define PEL_VIEW_UNKNOWN 0
-#define PEL_VIEW_POINT 1      // the view is from PelGatherFrame.origin
-#define PEL_VIEW_DIRECTION 2  // along PelGatherFrame.direction
-
 typedef struct PelGatherFrame {
     PelUint32 width;  // pixels
     PelUint32 height;

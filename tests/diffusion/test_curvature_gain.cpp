@@ -250,6 +250,61 @@ TEST(CurvatureGain, LightTakesItsWayThroughTheBody) {
     }
 }
 
+// A parallel view, with ordinary and reversed depth, and a camera without a matrix are like a view from afar:
+// the camera's position tells which side of the surface is outside.
+TEST(CurvatureGain, ParallelViewsAreLikeThoseFromAfar) {
+    const uint32_t side = 64;
+    const double size = 0.4, radius = 12;
+    scatter_scene::Picture p(side, side);
+    std::vector<float> normals;
+    for (uint32_t row = 0; row < side; ++row)
+        for (uint32_t column = 0; column < side; ++column) {
+            const double x = (column + 0.5 - 0.5 * side) * size, y = (0.5 * side - row - 0.5) * size,
+                         z2 = radius * radius - x * x - y * y, z = std::sqrt(std::max(z2, 0.0)),
+                         e = std::max(0.8 * x + 0.6 * z, 0.0) / radius;
+            p.set(p.at(column, row), {x, y, z}, {e, e, e}, z2 > 0);
+            for (double v : {x, y, z}) normals.push_back(float(v / radius));
+        }
+    const float far_ = 4000, half = float(side * size / 2);
+    const auto parallel = [&](float depth, float distance) {
+        PelCamera camera = pelCameraDefaults();
+        const float matrix[16] = {half, 0, 0, 0, 0, half, 0, 0, 0, 0, depth, -depth / 2, 0, 0, 0, 1};
+        if (depth != 0) std::copy_n(matrix, 16, camera.inverseViewProjection);
+        camera.position[2] = distance;
+        return camera;
+    };
+    for (PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_AUTO}) {
+        std::string warnings;
+        const auto lightFrom = [&](const PelCamera& camera) {
+            scatter_scene::Frame f(p, method);
+            f.images[PEL_SLOT_NORMAL_SHADING] = normals;
+            f.profile = profile();
+            f.material.specular = 0;
+            f.material.curvatureGain = 1;
+            scatter_scene::ShownImages shown(Device(""), 1, 1);
+            shown.shader.set(camera);
+            const std::vector<float> light = f.shade(shown).light;
+            warnings = shown.shader.warnings();
+            return light;
+        };
+        const std::vector<float> expected = lightFrom(scatter_scene::standingAt({0, 0, far_}));
+        const auto differenceFrom = [&](const PelCamera& camera) {
+            const std::vector<float> light = lightFrom(camera);
+            double most = 0;
+            for (size_t i = 0; i < light.size(); ++i)
+                most = std::max(most, double(std::abs(light[i] - expected[i])));
+            return most;
+        };
+        for (float depth : {-40.0f, 40.0f, 0.0f}) {
+            EXPECT_LT(differenceFrom(parallel(depth, far_)), tolerance::parallelView)
+                << "method " << int(method) << ", depth " << depth;
+            EXPECT_EQ(warnings.find("PelCamera.position"), std::string::npos) << warnings;
+        }
+        EXPECT_GT(differenceFrom(parallel(-40, 0)), 5 * tolerance::parallelView) << "nothing to tell apart";
+        EXPECT_NE(warnings.find("PelCamera.position"), std::string::npos) << warnings;
+    }
+}
+
 // No method is further from the random walk than Lambert, whatever the ball's radius.
 TEST(CurvatureGain, BallsAgainstRandomWalks) {
     if (!hasData()) GTEST_SKIP() << "PELLUCID_RULER_DIR or PELLUCID_GBUFFER_DIR is not set: no reference";

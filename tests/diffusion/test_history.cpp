@@ -281,6 +281,26 @@ TEST(History, FollowsTheCamera) {
     }
 }
 
+// In a parallel view too, motion along the view is how much farther away a surface was, whichever way depth
+// grows.
+TEST(History, ParallelViewsKnowWhatIsFar) {
+    const Picture p = plane(32, 24, 0.25, [](double x, double y) { return Vec3{x / 8, y / 6, 0.5}; });
+    Picture nearer = p;
+    for (size_t i = 0; i < p.pixels(); ++i) nearer.positions[3 * i + 2] += 8;
+    for (const auto& [depth, motion] :
+         {std::pair{-40.0f, 8.0}, {40.0f, 8.0}, {-40.0f, -8.0}, {40.0f, -8.0}}) {
+        PelCamera camera = pelCameraDefaults();
+        camera.position[2] = 500;
+        camera.inverseViewProjection[10] = depth;
+        ShownImages shown(device(), 1, 1);
+        shown.shader.set(camera);
+        shade(clipFrame(p, screen, 8, 0, {0, 0, 1e-6}), shown);
+        EXPECT_EQ(shade(clipFrame(nearer, screen, 8, 1, {0, 0, motion}), shown).stats.pixelsHistory,
+                  motion > 0 ? p.pixels() : 0)
+            << "depth " << depth << ", motion " << motion;
+    }
+}
+
 TEST(History, BadMotionAndLightAreThePixelsOwn) {
     const Picture p = movedBall({}, 40);
     constexpr double bad[] = {notANumber, infinity, -infinity, 1e30, -1e30};

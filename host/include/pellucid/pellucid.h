@@ -1112,7 +1112,9 @@ typedef struct PelAmbient {
 
 typedef struct PelCamera {
     uint32_t structSize;
-    float position[3]; /* world, up to 1e18; needed by specular */
+    /* world, up to 1e18; needed by specular and, with a parallel or default matrix, by methods that sum light
+     * (which side of a surface is outside). Parallel views: a point far behind the camera */
+    float position[3];
     /* clip to world, for PEL_SLOT_DEPTH, historyWeight, PEL_SCATTERING_SEPARABLE and scatterTaps. x and y in
      * [-1, 1], y up, row 0 on top; z as in the depth image, so that ordinary and reversed depth both work */
     float inverseViewProjection[16];
@@ -1498,8 +1500,9 @@ typedef struct PelScatterParams {
     float targetError;
     float white;         /* irradiance that counts as white; 1 */
     uint32_t everywhere; /* 1: leave nothing out anywhere; 0 */
-    /* clip to world, as in PelCamera. Needed with depth; with positions it finds surfaces seen at a grazing
-     * angle, and may be all zero; default */
+    /* clip to world, as in PelCamera. Needed with depth. With positions a perspective matrix tells grazing
+     * angles and which side of a surface is outside, so curved parts are more accurate; it may be all zero;
+     * default */
     float inverseViewProjection[16];
     /* 1: the result is added to `out`, which then is another image than the irradiance; 0 */
     uint32_t accumulate;
