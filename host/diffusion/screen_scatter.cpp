@@ -24,6 +24,24 @@ bool isKnown(const float position[3]) {
     return position[0] != 0 || position[1] != 0 || position[2] != 0;
 }
 
+// Positions relative to a camera at more than this many reaches of the profile would be too coarse.
+constexpr double farthestCamera = 1e4;
+
+// As seen from a point that is not 0, which far away counts as a direction.
+Sight seenFrom(const float position[3], double reach) {
+    Sight sight;
+    const double distance = std::hypot(position[0], position[1], position[2]);
+    if (distance < farthestCamera * reach) {
+        sight.view = PEL_VIEW_POINT;
+        std::copy_n(position, 3, sight.origin);
+    } else {
+        sight.view = PEL_VIEW_DIRECTION;
+        for (int k = 0; k < 3; ++k) sight.direction[k] = float(-position[k] / distance);
+        sight.away = true;
+    }
+    return sight;
+}
+
 }  // namespace
 
 Sight sightOf(const ScatterView& view) {
@@ -170,8 +188,10 @@ void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const
     if (images.positions && isKnown(view.position) &&
         std::ranges::equal(view.inverseViewProjection, pelCameraDefaults().inverseViewProjection)) {
         // No matrix was set, which positions do not need.
-        sight.view = PEL_VIEW_POINT;
-        std::ranges::copy(view.position, sight.origin);
+        double reach = 0;
+        for (const auto& [id, material] : materials)
+            reach = std::max(reach, material.profile->reach() * material.scale);
+        sight = seenFrom(view.position, reach);
     }
     std::ranges::copy(sight.origin, frame_.origin);
     std::ranges::copy(sight.direction, frame_.direction);

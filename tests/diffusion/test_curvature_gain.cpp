@@ -295,11 +295,12 @@ TEST(CurvatureGain, ParallelViewsAreLikeThoseFromAfar) {
                 most = std::max(most, double(std::abs(light[i] - expected[i])));
             return most;
         };
-        for (float depth : {-40.0f, 40.0f, 0.0f}) {
-            EXPECT_LT(differenceFrom(parallel(depth, far_)), tolerance::parallelView)
-                << "method " << int(method) << ", depth " << depth;
-            EXPECT_EQ(warnings.find("PelCamera.position"), std::string::npos) << warnings;
-        }
+        for (float depth : {-40.0f, 40.0f, 0.0f})
+            for (float distance : {far_, 1e8f}) {
+                EXPECT_LT(differenceFrom(parallel(depth, distance)), tolerance::parallelView)
+                    << "method " << int(method) << ", depth " << depth << ", from " << distance;
+                EXPECT_EQ(warnings.find("PelCamera.position"), std::string::npos) << warnings;
+            }
         EXPECT_GT(differenceFrom(parallel(-40, 0)), 5 * tolerance::parallelView) << "nothing to tell apart";
         EXPECT_NE(warnings.find("PelCamera.position"), std::string::npos) << warnings;
     }
