@@ -281,8 +281,8 @@ constexpr double walkBalls[] = {123, 65, 54, 36, 19, 12};  // 1e-4 of white: 5 %
 constexpr double walkHead[3] = {61, 45, 51};
 // against random walks: 178; 212 without directions and gain; 75; 107 without; 50; 69 without
 constexpr double walkHeadTimesFour[3] = {187, 79, 54};
-// 4.5 measured; Lambert 42; 1.4 measured; Lambert 8.7; 1.0 measured; Lambert 3.1
-constexpr double lightBall[3] = {7, 2, 1.3};  // 6.1, 1.6 and 0.6 measured
+// 6.1, 1.6 and 0.6 measured; Lambert 42, 8.7, 3.1
+constexpr double lightBall[3] = {7, 2, 1.3};
 // scattering `light`; 6.7 measured; 5.6 measured; 5.2 measured: triangles lean from the ball by up to 0.026
 constexpr double lightBallOfLight[3] = {8, 6.5, 6};
 // scattering `light`; 14.1 measured; 8.7 measured; 7.9 measured
