@@ -132,8 +132,7 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
             std::ranges::all_of(state.camera.position, [](float v) { return v == 0; }))
             warn("material ", id,
                  " scatters less accurately on curved parts, because it is not known from where they are "
-                 "seen: "
-                 "set PelCamera.position, for a parallel view to a point far behind the camera");
+                 "seen: set PelCamera.position, for a parallel view to a point far behind the camera");
         if (m.scattering == PEL_SCATTERING_LIGHT && !lightIsMapped(state))
             warn("material ", id,
                  " scatters by \"light\", but not all light comes from shadow maps: ambient light and lights "
