@@ -109,12 +109,12 @@ constexpr double faceWorksUvScale = 1e-5;  // FaceWorks adds up logarithms in fl
 // --- shading, absolute per channel, from the same inputs and tables ---
 constexpr double shadeTerm = 5e-5;  // one term alone: bilinear weights and a few dozen float operations
 constexpr double shadeSum = 2e-4;   // all terms added and multiplied by light and albedo
-// lights with a size, over the RMS of 1,024 small lights for each. Spheres: what these leave of the integral;
-// rectangles: those that the horizon cuts count as spheres
-constexpr double areaSphere = 1e-4, areaRectangle = 1e-2;
+// lights with a size, over the RMS of 1,024 small lights for each: what these leave of the integral
+constexpr double areaDiffuse = 3e-4;
 constexpr double areaTables = 0.05;  // by the size over the distance: two places of the table for all
-// radius over distance up to 0.05, 0.3, 0.6: one point of the light for all of it
-constexpr double areaHighlightSmall = 6e-3, areaHighlight = 0.08, areaHighlightLarge = 0.2;
+// radius over distance up to 0.05, 0.3, 0.6, 4: nine points of the light for all of it
+constexpr double areaHighlightSmall = 5e-4, areaHighlight = 0.012, areaHighlightLarge = 0.04,
+                 areaHighlightWall = 0.1;
 // share of light in a penumbra: the filter is rounder than a disk's edge response, and 32 taps find its width
 constexpr double softShadow = 0.02;
 // the same: texels of a cube's face lie elsewhere, so that other taps meet the edge

@@ -267,8 +267,7 @@ static PEL_OUT_OF_LINE uint2 shadowTile(__global const PelShadeFrame* frame,
 #if PEL_AREA_LIGHTS
         // If only the light's centre is below the horizon, its map does not show the occluders of the rest:
         // no shadow. If all of it is, shading normals may still face it: shadow.
-        const floatw cosine = dot3(n, sample.direction);
-        if (isArea(from)) left &= (cosine > 0.0f) | (cosine * cosine > sample.sin2);
+        if (isArea(from)) left &= (dot3(n, sample.direction) > 0.0f) | notw(facesLight(from, sample, p, n));
         const floatw penumbra =
             penumbraOfLight(wideShadow, from, PEL_LIGHT_BUFFER_OF(from->mapBuffer), p, n, shape.bias, left);
         shape.width = sqrt(fma(shape.width, shape.width, penumbra * penumbra));

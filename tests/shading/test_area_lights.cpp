@@ -91,6 +91,12 @@ Errors errorsOf(const Frame& f) {
     return e;
 }
 
+double largestDifference(const std::vector<float>& a, const std::vector<float>& b, double scale = 1) {
+    double largest = 0;
+    for (size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(scale * b[i] - double(a[i])));
+    return largest;
+}
+
 // Normals by which most pixels show the light: halfway between it and the camera, and up to `aside` off.
 void showHighlights(Frame& f, float aside) {
     Random random(7);
@@ -117,9 +123,8 @@ class AreaSizes : public testing::TestWithParam<Size> {};
 
 TEST_P(AreaSizes, DiffuseLightAgainstManySmallLights) {
     const Errors e = errorsOf(areaFrame(3, GetParam().type, GetParam().size, 2));
-    const bool sphere = GetParam().type == PEL_LIGHT_SPHERE;
-    EXPECT_LE(e.rms, sphere ? tolerance::areaSphere : tolerance::areaRectangle);
-    EXPECT_LE(e.worst, 4 * (sphere ? tolerance::areaSphere : tolerance::areaRectangle));
+    EXPECT_LE(e.rms, tolerance::areaDiffuse);
+    EXPECT_LE(e.worst, 4 * tolerance::areaDiffuse);
 }
 
 // Of normals by which the horizon goes through the light.
@@ -133,7 +138,30 @@ TEST(AreaLights, OfASmallSphereAtTheHorizon) {
         f.slots[PEL_SLOT_NORMAL_SHADING].set(
             i, reference::normalized(aside + size * (double(i % 41) / 20 - 1) * to));
     }
-    EXPECT_LE(errorsOf(f).rms, 10 * tolerance::areaSphere) << "normals are floats";
+    EXPECT_LE(errorsOf(f).rms, 4 * tolerance::areaDiffuse) << "normals are floats";
+}
+
+// A strip near a ball: at most places the horizon cuts it. The truth: 400 short rectangles, each far away.
+TEST(AreaLights, StripsAtTheHorizon) {
+    Frame f = areaFrame(3, PEL_LIGHT_RECTANGLE, 0.1f);
+    PelLight& l = f.lights[0].params;
+    for (size_t i = 0; i < f.pixels(); ++i)
+        f.slots[PEL_SLOT_POSITION].set(i, f.slots[PEL_SLOT_NORMAL_SHADING].vec(i));
+    copyTo(l.position, {0, 1.5, 0});
+    std::fill_n(l.color, 3, 1.0f);
+    const float length = 2, half = 0.03f;
+    copyTo(l.halfHeight, {0, 0, half}), copyTo(l.halfWidth, {length, 0, 0});
+    const auto strip = shade(f);
+    std::vector<float> sum(strip.size());
+    const int parts = 400;
+    copyTo(l.halfWidth, {length / parts, 0, 0});
+    for (float& c : l.color) c /= parts;
+    for (int k = 0; k < parts; ++k) {
+        l.position[0] = length * ((2 * k + 1.0f) / parts - 1);
+        const auto part = shade(f);
+        for (size_t i = 0; i < sum.size(); ++i) sum[i] += part[i];
+    }
+    EXPECT_LE(largestDifference(strip, sum), 3e-4 * *std::ranges::max_element(sum));
 }
 
 TEST_P(AreaSizes, TablesAgainstManySmallLights) {
@@ -141,7 +169,7 @@ TEST_P(AreaSizes, TablesAgainstManySmallLights) {
     f.slots[PEL_SLOT_CURVATURE] = randomFrame(4, 64, 24, 1).slots[PEL_SLOT_CURVATURE];
     const Errors e = errorsOf(f);
     EXPECT_LE(e.rms, tolerance::areaTables * GetParam().size);
-    EXPECT_LE(std::abs(e.sum), 0.2 * tolerance::areaTables * GetParam().size);
+    EXPECT_LE(std::abs(e.sum), 0.25 * tolerance::areaTables * GetParam().size);
 }
 
 TEST_P(AreaSizes, SpecularLightAgainstManySmallLights) {
@@ -162,13 +190,9 @@ INSTANTIATE_TEST_SUITE_P(All, AreaSizes,
                                          Size{PEL_LIGHT_SPHERE, 0.6f, tolerance::areaHighlightLarge},
                                          Size{PEL_LIGHT_RECTANGLE, 0.05f, tolerance::areaHighlightSmall},
                                          Size{PEL_LIGHT_RECTANGLE, 0.3f, tolerance::areaHighlight},
-                                         Size{PEL_LIGHT_RECTANGLE, 0.6f, tolerance::areaHighlightLarge}));
-
-double largestDifference(const std::vector<float>& a, const std::vector<float>& b, double scale = 1) {
-    double largest = 0;
-    for (size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(scale * b[i] - double(a[i])));
-    return largest;
-}
+                                         Size{PEL_LIGHT_RECTANGLE, 0.6f, tolerance::areaHighlightLarge},
+                                         Size{PEL_LIGHT_SPHERE, 4, tolerance::areaHighlightWall},
+                                         Size{PEL_LIGHT_RECTANGLE, 4, tolerance::areaHighlightWall}));
 
 TEST(AreaLights, OfNoSizeArePoints) {
     Frame f = randomFrame(6, 64, 24, 2);
