@@ -164,7 +164,7 @@ void TextureScatter::execute(const PelTextureScatterParams& params, const Ref<Pr
         fail(PEL_ERROR_INVALID_STATE,
              "the mesh has no positions yet: pelTextureScatterSetPositions comes first");
     checkParams(params, *profile, albedo);
-    checkImage(PEL_SLOT_ALBEDO, irradiance);
+    checkImage(PEL_SLOT_IRRADIANCE, irradiance);
     checkSize(irradiance, "irradiance");
     checkImage(PEL_SLOT_RADIANCE, out);
     checkSize(out, "output");

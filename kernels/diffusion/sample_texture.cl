@@ -1,5 +1,5 @@
 // Replaces the irradiance of one material by light that was scattered in texture space: bilinear, repeated
-// beyond [0, 1].
+// beyond [0, 1]. Where the texture is black, irradiance stays.
 //
 // Inputs: texture, texture coordinates, ids, irradiance. Output: an image like the irradiance. One
 // work-group takes a tile. Variants: PEL_FORMAT_....
@@ -42,14 +42,20 @@ static inline uint samplePixel(__global const PelTextureSample* s, __global ucha
 #if PEL_FORMAT_MATERIAL
     id = loadId(PEL_FORMAT_MATERIAL, imageSpan(ids, &s->ids, x, y));
 #endif
-    const bool takes = id == s->id;
-    if (!takes && !s->copies) return 0;
-    const Span at = imageSpan(uv, &s->uv, x, y);
-    storeColor(PEL_FORMAT_OUT, imageSpan(out, &s->out, x, y),
-               takes ? sampleAt(s, texture, gatherComponent(PEL_FORMAT_UV, at, 0),
-                                gatherComponent(PEL_FORMAT_UV, at, 1))
-                     : loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &s->irradiance, x, y)),
-               1);
+    bool takes = id == s->id;
+    Vec3w color;
+    if (takes) {
+        const Span at = imageSpan(uv, &s->uv, x, y);
+        color = sampleAt(s, texture, gatherComponent(PEL_FORMAT_UV, at, 0),
+                         gatherComponent(PEL_FORMAT_UV, at, 1));
+        // Texels without the mesh are black: an island that is narrower than a texel may have no others.
+        takes = color.x != 0.0f || color.y != 0.0f || color.z != 0.0f;
+    }
+    if (!takes) {
+        if (!s->copies) return 0;
+        color = loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &s->irradiance, x, y));
+    }
+    storeColor(PEL_FORMAT_OUT, imageSpan(out, &s->out, x, y), color, 1);
     return takes;
 }
 

@@ -341,8 +341,9 @@ TEST(TextureScatter, ShadersSampleIt) {
     reference::NormalLevel exact{8, 8, {}};
     for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 8; ++x) {
-            exact.texels.push_back({double(x), double(y), 1});
-            texture.insert(texture.end(), {float(x), float(y), 1});
+            const bool covered = y > 2;  // else an island narrower than a texel
+            exact.texels.push_back(covered ? Vec3{double(x), double(y), 1} : Vec3{});
+            texture.insert(texture.end(), {covered * float(x), covered * float(y), float(covered)});
         }
     std::vector<uint8_t> ids;
     for (uint32_t y = 0; y < side; ++y)
@@ -366,13 +367,18 @@ TEST(TextureScatter, ShadersSampleIt) {
     EXPECT_THROW(shader.commit(), pellucid::Error);  // no coordinates
     shown.set(PEL_SLOT_UV, uvs);
     const auto result = shown.execute();
+    uint32_t taken = 0;
     for (size_t k = 0; k < ids.size(); ++k) {
         const Vec3 sampled = reference::sampleRepeated(exact, uvs[2 * k], uvs[2 * k + 1]);
+        const bool takes = ids[k] == 1 && length(sampled) > 0;
+        taken += takes;
         for (int c = 0; c < 3; ++c)
-            ASSERT_NEAR(result[3 * k + c], 0.5 * (ids[k] == 1 ? sampled[c] : 9), 1e-4) << k;
+            ASSERT_NEAR(result[3 * k + c], 0.5 * (takes ? sampled[c] : 9), 1e-4) << k;
     }
+    EXPECT_GT(taken, 100u);
+    EXPECT_LT(taken, 300u);
     const PelShaderStats stats = shader.stats();
     EXPECT_EQ(stats.tilesByScattering[PEL_SCATTERING_TEXTURE], 2u);
-    EXPECT_EQ(stats.pixelsScattered, 16u * 24);
-    EXPECT_EQ(stats.scatterTaps, 4u * 16 * 24);
+    EXPECT_EQ(stats.pixelsScattered, taken);
+    EXPECT_EQ(stats.scatterTaps, 4 * taken);
 }

@@ -1370,7 +1370,7 @@ PEL_API PelError pelShaderSetNormalMap(PelShader shader, uint32_t id, const PelI
 /* Light that was scattered in the texture of material `id`, which must be set, by pelTextureScatterExecute or
  * otherwise: RGB, float or half or unorm. Read by materials of PEL_SCATTERING_TEXTURE instead of their
  * irradiance: bilinear at PEL_SLOT_UV, which they need, texel centres at (i + 1/2) / size, row 0 at v = 0,
- * repeated beyond [0, 1]. Read at each execution. NULL removes it. */
+ * repeated beyond [0, 1]. Where it is black, irradiance stays. Read at each execution. NULL removes it. */
 PEL_API PelError pelShaderSetScatteredTexture(PelShader shader, uint32_t id, const PelImageDesc* texture);
 /* Makes material `id`, which must be set, an eye; at most 64 are. The material is its sclera; iris, pupil,
  * limbus and film of tears come from `eye`. Needs PEL_SLOT_POSITION or _DEPTH, and PelCamera.position.
