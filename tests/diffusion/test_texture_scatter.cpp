@@ -372,8 +372,7 @@ TEST(TextureScatter, ShadersSampleIt) {
         const Vec3 sampled = reference::sampleRepeated(exact, uvs[2 * k], uvs[2 * k + 1]);
         const bool takes = ids[k] == 1 && length(sampled) > 0;
         taken += takes;
-        for (int c = 0; c < 3; ++c)
-            ASSERT_NEAR(result[3 * k + c], 0.5 * (takes ? sampled[c] : 9), 1e-4) << k;
+        for (int c = 0; c < 3; ++c) ASSERT_NEAR(result[3 * k + c], 0.5 * (takes ? sampled[c] : 9), 1e-4) << k;
     }
     EXPECT_GT(taken, 100u);
     EXPECT_LT(taken, 300u);
