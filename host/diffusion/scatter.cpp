@@ -106,9 +106,8 @@ Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImage
     const bool curved = plan.curvature || image(PEL_SLOT_NORMAL_GEOMETRIC);
     for (const auto& [id, material] : materials_) {
         ScreenScatter::Material curving = material;
-        const PelProfileInfo info = material.profile->info();
         for (int k = 0; curved && k < 3; ++k) {
-            const double path = meanFreePath(info, k) * material.scale;
+            const double path = meanFreePath(*material.profile, k) * material.scale;
             curving.gain[size_t(k)] = float(path);
             if (path > 0) plan.windows[id] = std::max(plan.windows[id], float(windowOfPath * path));
         }
@@ -139,6 +138,7 @@ Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImage
         for (int k = 0; k < 3; ++k) blend.through[k] = float(through[k]);
         blend.weighs = !taps && plan.weight;
         std::ranges::copy(curving.gain, blend.gain);
+        describeGain(*material.profile, blend.gainSlope, blend.gainSaturation);
         plan.blend[id] = blend;
         plan.prepares |= c.albedoBefore > 0 || c.thinThickness > 0;
         plan.finishes |= blend.weighs != 0 || curving.gain[0] > 0;

@@ -91,8 +91,7 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
     for (const Material& material : distinct) {
         // Without sides, the outward direction is unknown.
         Rgb path{};
-        const PelProfileInfo info = material.profile->info();
-        for (int c = 0; hasSides && c < 3; ++c) path[c] = meanFreePath(info, c) * material.scale;
+        for (int c = 0; hasSides && c < 3; ++c) path[c] = meanFreePath(*material.profile, c) * material.scale;
         const double strength = path[0] > 0 ? material.gain[0] / path[0] : 0;
         ProfileNodes nodes = profileNodes(material.profile->shape(), material.scale, path, strength);
         nodes.table.offset = uint32_t(values.size() / 4);

@@ -36,7 +36,13 @@ class ProfileShape {
     // The share of R beyond a distance; > 0.
     virtual Rgb transmission(double distance) const = 0;
     virtual Rgb meanFreePath() const { return {}; }  // length; 0: unknown
+    // The same of the medium that reflects as much as the profile's, with isotropic scattering.
+    virtual Rgb mediumPath() const { return meanFreePath(); }
 };
+
+// The mean free path over Burley's length of the medium with s = sqrt(1 - its albedo) (docs/mathematics.md,
+// section 14).
+double mediumPathOver(double s);
 
 class Profile final : public Object {
   public:

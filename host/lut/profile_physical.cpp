@@ -48,8 +48,11 @@ std::vector<GaussianTerm> mixture(double first, double last, Weight&& weight) {
 
 class BurleyShape final : public ProfileShape {
   public:
-    BurleyShape(const Rgb& decay, const Rgb& meanFreePath)
-        : decay_(decay), meanFreePath_(meanFreePath), terms_(GaussianShape(mixtureOf(decay)).gaussians()) {}
+    BurleyShape(const Rgb& decay, const Rgb& meanFreePath, const Rgb& mediumPath)
+        : decay_(decay),
+          meanFreePath_(meanFreePath),
+          mediumPath_(mediumPath),
+          terms_(GaussianShape(mixtureOf(decay)).gaussians()) {}
     Rgb radial(double d) const override {
         Rgb value;
         for (int c = 0; c < 3; ++c)
@@ -74,6 +77,7 @@ class BurleyShape final : public ProfileShape {
         return value;
     }
     Rgb meanFreePath() const override { return meanFreePath_; }
+    Rgb mediumPath() const override { return mediumPath_; }
 
   private:
     static std::vector<GaussianTerm> mixtureOf(const Rgb& decay) {
@@ -86,8 +90,8 @@ class BurleyShape final : public ProfileShape {
             return (std::exp(-x * x) + std::exp(-x * x / 9)) * b / t;
         });
     }
-    Rgb decay_;         // length, the shorter of the two decay lengths
-    Rgb meanFreePath_;  // length; 0: unknown
+    Rgb decay_;                      // length, the shorter of the two decay lengths
+    Rgb meanFreePath_, mediumPath_;  // length; 0: unknown
     std::vector<GaussianTerm> terms_;
 };
 
@@ -148,22 +152,35 @@ double burleyScale(PelBurleyFit fit, double albedo) {
     invalidArgument("fit ", int(fit), " of the Burley profile is unknown; it must be 0, 1 or 2");
 }
 
+// s = sqrt(1 - albedo) of the medium whose half-space has this reflectance [van de Hulst, Multiple Light
+// Scattering, 1980]: reflectance = (1 - s) (1 - 0.139 s) / (1 + 1.17 s).
+double absorptionAt(double reflectance) {
+    const double p = 0.139, q = 1.139 + 1.17 * reflectance;
+    return (q - std::sqrt(q * q - 4 * p * (1 - reflectance))) / (2 * p);
+}
+
 double largest(const Rgb& width) {
     return std::max({width[0], width[1], width[2]});
 }
 
 }  // namespace
 
+double mediumPathOver(double s) {
+    return 0.6663 + s * (4.7276 + s * (-4.9721 + s * (7.2062 - s * 3.3091)));
+}
+
 Ref<Profile> Profile::burley(const float* meanFreePath, const float* albedo, PelBurleyFit fit) {
     checkPositive(meanFreePath, "mean free path");
     if (!albedo) invalidArgument("three albedos are needed, not NULL");
-    Rgb decay;
+    Rgb decay, mediumPath;
     for (int c = 0; c < 3; ++c) {
         if (!(albedo[c] >= 0 && albedo[c] <= 1))
             invalidArgument("the ", channelNames[c], " albedo is ", albedo[c], "; 0 to 1 is needed");
         decay[c] = meanFreePath[c] / burleyScale(fit, albedo[c]);
+        mediumPath[c] = mediumPathOver(absorptionAt(albedo[c])) * decay[c];
     }
-    auto shape = std::make_unique<BurleyShape>(decay, Rgb{meanFreePath[0], meanFreePath[1], meanFreePath[2]});
+    auto shape = std::make_unique<BurleyShape>(decay, Rgb{meanFreePath[0], meanFreePath[1], meanFreePath[2]},
+                                               mediumPath);
     const double radius = largest(shape->width());
     Ref<Profile> profile = make<Profile>(PEL_PROFILE_BURLEY, radius, std::move(shape));
     std::copy_n(meanFreePath, 3, profile->recipe_.first);
@@ -174,7 +191,7 @@ Ref<Profile> Profile::burley(const float* meanFreePath, const float* albedo, Pel
 
 Ref<Profile> Profile::burleyDistance(const float* distance) {
     checkPositive(distance, "distance");
-    auto shape = std::make_unique<BurleyShape>(Rgb{distance[0], distance[1], distance[2]}, Rgb{});
+    auto shape = std::make_unique<BurleyShape>(Rgb{distance[0], distance[1], distance[2]}, Rgb{}, Rgb{});
     const double radius = largest(shape->width());
     Ref<Profile> profile = make<Profile>(PEL_PROFILE_BURLEY, radius, std::move(shape));
     std::copy_n(distance, 3, profile->recipe_.first);

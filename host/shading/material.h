@@ -23,10 +23,13 @@ class ProfileTables {
 };
 
 // The mean free path of the profile's medium in the profile's unit, per channel; 0: unknown.
-double meanFreePath(const PelProfileInfo& profile, int channel);
+double meanFreePath(const Profile& profile, int channel);
 // sqrt(1 - albedo of a single scattering), 0.02 to 0.95, of the medium with a mean free path of `lengths`
 // times Burley's length (docs/mathematics.md, section 14).
 double mediumAbsorption(double lengths);
+double mediumAbsorption(const Profile& profile, int channel);
+// The slope and the saturation of the gain of a curved body (kernels/lib/shading/curvature_gain.clh).
+void describeGain(const Profile& profile, float (&slope)[3], float (&saturation)[3]);
 constexpr double windowOfPath = 2.75;  // length over which curvature is measured, in mean free paths
 
 // The thickness at the end of the transmission's row, mm, where no light comes through.

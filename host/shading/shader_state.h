@@ -33,7 +33,8 @@ struct ShaderMaterial {
     float through[3];     // share of the light on a sheet's other side
     float gain[3];        // length: mean free path times curvatureGain; 0: no gain
     float absorption[3];  // sqrt(1 - albedo of a single scattering) of that medium
-    float gainWindow;     // length over which the mean curvature is measured
+    float gainSlope[3], gainSaturation[3];
+    float gainWindow;  // length over which the mean curvature is measured
     // Of the wide shadow, where a light leaves them to the profile.
     float shadowBias, shadowSoftness, shadowConeSlope;
     std::vector<ImageView> normalMap;  // its levels, the finest first

@@ -201,6 +201,8 @@ std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(
             to.transmissionShare = m.transmission;
         }
         copy(to.gain, from.gain);
+        copy(to.gainSlope, from.gainSlope);
+        copy(to.gainSaturation, from.gainSaturation);
         copy(to.absorption, from.absorption);
         to.hasNormalMap = !from.normalMap.empty();
         if (from.eye) to.eye = ++eyes;

@@ -61,7 +61,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void finish_scat
 #if PEL_FORMAT_MEAN_CURVATURE
     if (material->gain[0] > 0.0f) {
         const float h = loadScalar(PEL_FORMAT_MEAN_CURVATURE, imageSpan(curvature, &frame->curvature, x, y));
-        s = mul3(s, curvatureGain(material->gain, isfinite(h) ? h : 0.0f));
+        s = mul3(s, curvatureGain(material->gain, material->gainSlope, material->gainSaturation,
+                                  isfinite(h) ? h : 0.0f));
     }
 #endif
 #if PEL_FORMAT_SCATTER_WEIGHT

@@ -9,6 +9,8 @@ typedef struct PelBlendMaterial {
     float through[3];  // share of the light on the other side
     PelUint32 weighs;  // 1: the weights per pixel are still to be applied
     float gain[3];     // length: mean free path; 0: none
+    float gainSlope[3], gainSaturation[3];
+    PelUint32 pad[2];
 } PelBlendMaterial;
 
 typedef struct PelBlendFrame {
@@ -21,5 +23,5 @@ typedef struct PelBlendFrame {
 } PelBlendFrame;
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(PelBlendMaterial) == 48 && sizeof(PelBlendFrame) == 16 + 8 * 32 + 4 * PEL_DIFFUSION_IDS);
+static_assert(sizeof(PelBlendMaterial) == 80 && sizeof(PelBlendFrame) == 16 + 8 * 32 + 4 * PEL_DIFFUSION_IDS);
 #endif

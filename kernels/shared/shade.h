@@ -97,7 +97,8 @@ typedef struct PelShadeMaterial {
     PelShadeLut transmission;     // one row over the root of thickness: layout.width 0: none
     float transmissionPerLength;  // 1 / the thickness at its end, 1/length
     float transmissionShare;
-    float gain[3];         // length: mean free path for lib/shading/curvature_gain.clh; all 0: none
+    float gain[3];  // length: mean free path for lib/shading/curvature_gain.clh; all 0: none
+    float gainSlope[3], gainSaturation[3];
     float absorption[3];   // sqrt(1 - albedo) of that medium
     PelUint32 needs;       // PEL_BIT_...: features of this material
     PelUint32 scattering;  // PelScattering; auto is replaced by the chosen method
@@ -184,7 +185,7 @@ typedef struct PelShadeLight {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelShadeImage) == 32 && sizeof(PelShadeLut) == 40);
 static_assert(sizeof(PelShadeFrame) == 4 * (8 + 8 + 3 + 16 + 27 + 3 + 2) + PEL_IMAGE_SLOTS * 32);
-static_assert(sizeof(PelShadeMaterial) == 4 * 47 + 3 * sizeof(PelShadeLut));
+static_assert(sizeof(PelShadeMaterial) == 4 * 53 + 3 * sizeof(PelShadeLut));
 static_assert(sizeof(PelTapCells) == 24);
 static_assert(sizeof(PelShadeCascade) == 4 * (16 + 4) + 32 + PEL_TAP_DISKS * sizeof(PelTapCells));
 static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64 + 8 + PEL_CASCADES * sizeof(PelShadeCascade) +

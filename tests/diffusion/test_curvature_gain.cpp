@@ -70,8 +70,7 @@ Shown gainsOf(const Surface& surface, uint32_t side, double size, PelScattering 
 }
 
 double gainAt(double curvature, int channel, double strength = 1) {
-    const double x = strength * meanFreePath[channel] * curvature;
-    return 1 + 1.35 * x / (1 + 3 * std::abs(x));
+    return reference::curvatureGain(strength * meanFreePath[channel] * curvature, 1.087);
 }
 
 // Radiance of random walks at some pixels: of each channel two estimates.

@@ -312,7 +312,7 @@ TEST(LightSpace, ThroughABallIsTheSurfaceIntegralForEveryFormOfMap) {
         // Section 12: the gain of a curved body, over what the factor makes of even light, 1.16 at most.
         const double directed = known ? 0.92 : 0, h = known ? 1.085 * d / radius : 0,
                      even = std::min(1 + directed / 2 * 2.5 * d / radius, 1.16),
-                     gain = (1 + 1.35 * h / (1 + 3 * h)) / even;
+                     gain = reference::curvatureGain(h, 1.087) / even;
         if (truth.empty())
             for (size_t i : dark)
                 truth.push_back(gain *

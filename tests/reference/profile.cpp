@@ -234,6 +234,39 @@ double burleyScale(BurleyFit fit, double albedo) {
     throw std::invalid_argument("unknown fit of s(A)");
 }
 
+namespace {
+
+// Mean free path over Burley's length of the medium with s = sqrt(1 - albedo).
+double pathOverLengthOf(double s) {
+    return 0.6663 + 4.7276 * s - 4.9721 * s * s + 7.2062 * std::pow(s, 3) - 3.3091 * std::pow(s, 4);
+}
+
+// Where a monotonic function takes a value.
+template <class F>
+double inverse(double value, bool rises, const F& f) {
+    double least = 0, most = 1;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = (least + most) / 2;
+        ((f(middle) < value) == rises ? least : most) = middle;
+    }
+    return least;
+}
+
+}  // namespace
+
+double mediumPath(double burleyLength, double reflectance) {
+    const double s =
+        inverse(reflectance, false, [](double v) { return (1 - v) * (1 - 0.139 * v) / (1 + 1.17 * v); });
+    return pathOverLengthOf(s) * burleyLength;
+}
+
+double curvatureGain(double x, double pathOverLength) {
+    const double s = inverse(pathOverLength, true, pathOverLengthOf);
+    double saturation = 0.072 * std::pow(s, -1.6);
+    if (x < 0) saturation = std::max(saturation, 3.0);
+    return std::max(0.0, 1 + (1.3 + 0.6 * s) * x / (1 + saturation * std::abs(x)));
+}
+
 ProfilePtr burleyProfile(Rgb meanFreePath, Rgb albedo, BurleyFit fit) {
     Rgb decay;
     for (int c = 0; c < 3; ++c) decay[c] = meanFreePath[c] / burleyScale(fit, albedo[c]);

@@ -49,6 +49,13 @@ enum class BurleyFit {
     diffuseMeanFreePath,  // eq. 8: diffuse mean free path on the surface, perpendicular beam
 };
 double burleyScale(BurleyFit fit, double albedo);
+
+// The mean free path of the medium whose half-space has this reflectance (docs/mathematics.md, section 14).
+double mediumPath(double burleyLength, double reflectance);
+
+// The gain of a curved body (docs/mathematics.md, section 12, "On the screen"). x: mean free path times mean
+// curvature; pathOverLength: mean free path over Burley's length.
+double curvatureGain(double x, double pathOverLength);
 // Radius: the root mean square of the widest channel's line spread, here and in the next two.
 ProfilePtr burleyProfile(Rgb meanFreePath, Rgb albedo, BurleyFit fit = BurleyFit::diffuseTransmission);
 

@@ -272,13 +272,14 @@ TEST(ShadeProfile, UnitsOfTheSceneDoNotMatter) {
 }
 
 TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
-    const float path[3] = {1, 0.5f, 0.25f}, albedo[3] = {0.8f, 0.8f, 0.8f};
+    const float path[3] = {1, 0.5f, 0.25f}, albedo[3] = {0.9f, 0.8f, 0.3f};
     const Profile profile = Profile::burley(path, albedo);
     Inputs in{.thickness = false};
     const auto plain = Shading(materialOf(profile), in).execute();
     in.meanCurvature = true;
     PelMaterial material = materialOf(profile);
-    const auto expectGain = [&](const Profile& of, double strength, const auto& pathOf) {
+    const auto expectGain = [&](const Profile& of, double strength, const auto& pathOf,
+                                const auto& lengthOf) {
         material.profile = of.get();
         material.curvatureGain = float(strength);
         Shading shading(material, in);
@@ -288,18 +289,23 @@ TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
         for (size_t i = 0; i < width * height; ++i)
             for (size_t c = 0; c < 3; ++c) {
                 const double x = strength * pathOf(c) * shading.scene.meanCurvature[i],
-                             gain = std::max(0.0, 1 + 1.35 * x / (1 + 3 * std::abs(x)));
+                             gain = reference::curvatureGain(x, pathOf(c) / lengthOf(c));
                 EXPECT_NEAR(gained[3 * i + c], without[3 * i + c] * gain, tolerance::unitRoundTrip);
             }
         return without;
     };
-    const auto ofBurley = [&](size_t c) { return path[c]; };
-    EXPECT_EQ(expectGain(profile, 1, ofBurley), plain);
-    expectGain(profile, 0.5, ofBurley);
+    const auto lengthOf = [&](size_t c) {
+        return path[c] / reference::burleyScale(reference::BurleyFit::diffuseTransmission, albedo[c]);
+    };
+    const auto ofBurley = [&](size_t c) { return reference::mediumPath(lengthOf(c), albedo[c]); };
+    EXPECT_EQ(expectGain(profile, 1, ofBurley, lengthOf), plain);
+    expectGain(profile, 0.5, ofBurley, lengthOf);
     // Of Burley's distance d the path is 1.087 d. Sums of Gaussians say nothing of it.
-    expectGain(Profile::burleyDistance(burleyDistance), 1,
-               [&](size_t c) { return 1.087 * burleyDistance[c]; });
-    expectGain(Profile::skin(), 1, [](size_t) { return 0.0; });
+    expectGain(
+        Profile::burleyDistance(burleyDistance), 1, [&](size_t c) { return 1.087 * burleyDistance[c]; },
+        [&](size_t c) { return burleyDistance[c]; });
+    expectGain(
+        Profile::skin(), 1, [](size_t) { return 0.0; }, [](size_t) { return 1.0; });
 }
 
 TEST(ShadeProfile, WhatHasNoEffectIsSaid) {

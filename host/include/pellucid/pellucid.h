@@ -1078,8 +1078,8 @@ typedef struct PelMaterial {
      * profile, and a thickness image or a shadow map with thicknessTaps; a deepScatterColor replaces it; 1 */
     float transmission;
     /* a curved body reflects more than a half-space of its medium, a hollow less: diffuse light is multiplied
-     * by max(0, 1 + 1.35 x / (1 + 3 |x|)), x = curvatureGain * mean free path * H, H the mean curvature
-     * (PEL_SLOT_MEAN_CURVATURE). All methods that scatter (by tables: with PEL_SLOT_CURVATURE), where there
+     * by max(0, 1 + a x / (1 + b |x|)), x = curvatureGain * mean free path * H, H the mean curvature
+     * (PEL_SLOT_MEAN_CURVATURE); a and b follow from the medium's albedo, 1.36 and 3 at a reflectance of 0.8. All methods that scatter (by tables: with PEL_SLOT_CURVATURE), where there
      * are positions, depth or H, and the profile is burley or dipole: other profiles have no known mean free
      * path, and get no gain. 0: no gain; 1 */
     float curvatureGain;
