@@ -85,8 +85,8 @@ double mediumAbsorption(const Profile& profile, int channel) {
     return mediumAbsorption(widthOfBurley * meanFreePath(profile, channel) / profile.info().width[channel]);
 }
 
-// Fitted to random walks in balls of 3.5 to 24 mean free paths with reflectances from 0.15 to 0.95; at 0.8 also
-// to a head.
+// Fitted to random walks in balls of 3.5 to 24 mean free paths with reflectances from 0.15 to 0.95; at 0.8
+// also to a head.
 void describeGain(const Profile& profile, float (&slope)[3], float (&saturation)[3]) {
     for (int c = 0; c < 3; ++c) {
         if (!(meanFreePath(profile, c) > 0)) continue;
@@ -146,7 +146,7 @@ void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const 
     for (int c = 0; c < 3; ++c) {
         const double path = profile ? meanFreePath(*profile, c) * stretch : 0;
         material.gain[c] = m.scattering == PEL_SCATTERING_NONE ? 0 : float(m.curvatureGain * path);
-        material.absorption[c] = path > 0 ? float(mediumAbsorption(*profile, c)) : 0;
+        material.absorption[c] = profile && path > 0 ? float(mediumAbsorption(*profile, c)) : 0;
         material.gainWindow = std::max(material.gainWindow, float(windowOfPath * path));
     }
     if (profile) describeGain(*profile, material.gainSlope, material.gainSaturation);

@@ -261,6 +261,7 @@ double mediumPath(double burleyLength, double reflectance) {
 }
 
 double curvatureGain(double x, double pathOverLength) {
+    if (x == 0) return 1;
     const double s = inverse(pathOverLength, true, pathOverLengthOf);
     double saturation = 0.072 * std::pow(s, -1.6);
     if (x < 0) saturation = std::max(saturation, 3.0);

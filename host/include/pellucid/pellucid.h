@@ -1079,9 +1079,10 @@ typedef struct PelMaterial {
     float transmission;
     /* a curved body reflects more than a half-space of its medium, a hollow less: diffuse light is multiplied
      * by max(0, 1 + a x / (1 + b |x|)), x = curvatureGain * mean free path * H, H the mean curvature
-     * (PEL_SLOT_MEAN_CURVATURE); a and b follow from the medium's albedo, 1.36 and 3 at a reflectance of 0.8. All methods that scatter (by tables: with PEL_SLOT_CURVATURE), where there
-     * are positions, depth or H, and the profile is burley or dipole: other profiles have no known mean free
-     * path, and get no gain. 0: no gain; 1 */
+     * (PEL_SLOT_MEAN_CURVATURE); a and b follow from the medium's albedo, 1.36 and 3 at a reflectance of 0.8.
+     * All methods that scatter (by tables: with PEL_SLOT_CURVATURE), where there are positions, depth or H,
+     * and the profile is burley or dipole: other profiles have no known mean free path, and get no gain.
+     * 0: no gain; 1 */
     float curvatureGain;
     /* 0, or 8 to 256. PEL_SCATTERING_SEPARABLE: taps of each of the two filters; 0: 25.
      * PEL_SCATTERING_SCREEN: taps on a disk, placed by the profile; 0: the whole profile. Other methods
