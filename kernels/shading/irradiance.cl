@@ -71,10 +71,10 @@ static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMat
         valid &= finitew(w);
         const Vec3w color = loadUniform3(light->color);
         const floatw cosine = dot3(n, sample.direction), arrives = sample.strength * satw(w);
-        e = add3(e, scale3(color, arrives * lambertOf(light, sample, p, n, cosine)));
+        e = add3(e, scale3(color, arrives * lambertOf(light, sample.sin2, p, n, cosine)));
 #if PEL_THIN
         const Vec3w back = scale3(n, (floatw)(-1.0f));
-        e = add3(e, scale3(mul3(color, through), arrives * lambertOf(light, sample, p, back, -cosine)));
+        e = add3(e, scale3(mul3(color, through), arrives * lambertOf(light, sample.sin2, p, back, -cosine)));
 #endif
     }
 #if PEL_FORMAT_THICKNESS
