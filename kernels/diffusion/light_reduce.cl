@@ -166,7 +166,7 @@ static PEL_OUT_OF_LINE void reduceLight(__global const PelLightMap* map, uint to
     const maskw two = farthest > APART * APART * width2;
     Cluster a, b;
     a.flux = a.extent = b.flux = b.extent = 0.0f;
-    a.p = b.p = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    a.p = b.p = same3(0.0f);
     for (uint k = 0; k < count; ++k) {
         const Cluster c = CLUSTER(k);
         const maskw there = c.flux > 0.0f;

@@ -33,7 +33,7 @@ static inline Vec3w loadPositions(__global const PelDiffusionFrame* frame, __glo
     const Vec3w p = positionFromDepth(frame->inverseViewProjection, frame->width, frame->height, x, y,
                                       loadScalar(PEL_FORMAT_DEPTH, span));
 #endif
-    return sub3(p, vec3((floatw)(frame->origin[0]), (floatw)(frame->origin[1]), (floatw)(frame->origin[2])));
+    return sub3(p, loadUniform3(frame->origin));
 }
 
 #if PEL_WIDTH == 8

@@ -144,7 +144,7 @@ static PEL_OUT_OF_LINE void makeTexels(__global const PelLightMap* map, __global
         const Vec3w area = cross3(along, below);
         floatw extent = sqrt(dot3(area, area));
         extent = share * fmin(selectw(across, extent, finitew(extent)), MAX_SLOPE * across);
-        const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+        const Vec3w none = same3(0.0f);
         const Vec3w q = select3(none, p, there);
         storew(selectw((floatw)(0.0f), extent, there), at + PEL_LIGHT_EXTENT * stride, pyramid);
         if (!PEL_HIDDEN) storew(as_floatw(id), at + PEL_LIGHT_ID * stride, pyramid);

@@ -102,7 +102,7 @@ static inline floatw stepAlong(const Images* in, const Point* here, int x, int y
 static inline maskw differences(const Images* in, const Point* here, int x, int y, int dx, int dy,
                                 floatw far2, Vec3w* positions, Vec3w* normals) {
     maskw known = (maskw)(0);
-    *positions = *normals = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    *positions = *normals = same3(0.0f);
     for (int side = -1; side <= 1; side += 2) {
         const maskw inside = insideAt(in, x + side * dx, y + side * dy);
         if (!anyw(inside)) continue;
@@ -111,7 +111,7 @@ static inline maskw differences(const Images* in, const Point* here, int x, int 
         const maskw same = inside & (there.id == here->id) & (dot3(d, d) < far2) & finite3(there.n) &
                            (dot3(there.n, here->n) > SAME_SIDE);
         const floatw factor = selectw((floatw)(0.0f), (floatw)((float)side), same);
-        const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+        const Vec3w none = same3(0.0f);
         *positions = add3(*positions, scale3(select3(none, d, same), factor));
         *normals = add3(*normals, scale3(select3(none, turned, same), factor));
         known |= same;

@@ -100,7 +100,7 @@ static inline void addChild(Child* block, const Child* child, const Child* large
                        (dot3(between, between) <= MAX_DISTANCE * MAX_DISTANCE * largest->area);
     const floatw area = selectw((floatw)(0.0f), child->area, near);
     block->area += area;
-    const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    const Vec3w none = same3(0.0f);
     block->p = add3(block->p, scale3(select3(none, between, near), area));
     block->e = add3(block->e, scale3(select3(none, child->e, near), area));
     block->size += selectw((floatw)(0.0f), child->size, near) * area;
@@ -154,7 +154,7 @@ static PEL_OUT_OF_LINE void reduceBlocks(__global const PelDiffusionFrame* frame
     const Child largest = largerChild(largerChild(a.left, a.right), largerChild(b.left, b.right));
     Child block;
     block.area = block.size = block.radius = 0.0f;
-    block.p = block.e = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    block.p = block.e = same3(0.0f);
     addChild(&block, &a.left, &largest);
     addChild(&block, &a.right, &largest);
     addChild(&block, &b.left, &largest);

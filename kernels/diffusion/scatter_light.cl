@@ -62,7 +62,7 @@ typedef struct Texel {
 
 static inline Texel texelAt(__global const PelLightMap* map, float3 p, float3 normal) {
     floatw w;
-    texelOf(map, vec3((floatw)(p.x), (floatw)(p.y), (floatw)(p.z)), &w);
+    texelOf(map, spread3(p), &w);
     Texel texel;
 #if PEL_WIDTH == 1
     texel.width = map->texel * w;
@@ -311,8 +311,7 @@ __kernel PEL_WORK_GROUP(PEL_GROUP) void scatter_light(
             // One lane of the vector that holds the pixel.
             const uint start = vectorStart(x, frame->width);
             const maskw mine = lanesw() + (int)start == (intw)((int)x);
-            storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, start, y),
-                       vec3((floatw)(s.x), (floatw)(s.y), (floatw)(s.z)), mine);
+            storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, start, y), spread3(s), mine);
         }
     }
     PEL_ADD_COUNT(&counters[PEL_COUNT_LIGHT_PIXELS], pixels);

@@ -87,7 +87,7 @@ static PEL_OUT_OF_LINE Vec3w scatterPixels(__global const PelDiffusionFrame* fra
     if (PEL_FORMAT_MEAN_CURVATURE) slope.curvature = loadw(PEL_PLANE_CURVATURE * stride, at);
     // Computed first, so that fewer values are live.
     Sums single = noSums();
-    Vec3w own = single.light, gain = vec3((floatw)(1.0f), (floatw)(1.0f), (floatw)(1.0f));
+    Vec3w own = single.light, gain = same3(1.0f);
     if (near || PEL_FORMAT_MEAN_CURVATURE) {
         const intw table = selectw((intw)(0), tablesOf(frame, here->id), active);
         for (uint t = 1; t <= frame->tables; ++t) {

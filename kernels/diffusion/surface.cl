@@ -45,14 +45,14 @@ static PEL_OUT_OF_LINE void copyPoints(__global const PelDiffusionFrame* frame, 
         Vec3w p = positionFromDepth(frame->inverseViewProjection, frame->width, frame->height, x, y,
                                     loadScalar(PEL_FORMAT_DEPTH, span));
 #endif
-        p = sub3(p, vec3((floatw)(frame->origin[0]), (floatw)(frame->origin[1]), (floatw)(frame->origin[2])));
+        p = sub3(p, loadUniform3(frame->origin));
         Vec3w e = loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y));
         const maskw there = id != (uintw)(0), sound = usableLight(e) & finite3(p);
         *covered += countw(mine & there);
         *invalid += countw(mine & there & notw(sound));
         id = as_uintw(selectw((intw)(0), as_intw(id), there & sound));
         // Values with NaN or Inf, or far too large, are left out of all sums: zeros take their place.
-        const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+        const Vec3w none = same3(0.0f);
         p = select3(none, p, sound), e = select3(none, e, sound);
         storePlane(pyramid, row + PEL_PLANE_X * stride, p.x, mine);
         storePlane(pyramid, row + PEL_PLANE_Y * stride, p.y, mine);
@@ -96,7 +96,7 @@ typedef struct Step {
 static inline Step shorterStep(__global const float* pyramid, size_t here, long to, uint stride, Vec3w p,
                                uintw id) {
     Step step;
-    step.v = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    step.v = same3(0.0f);
     step.length2 = FLT_MAX;
     for (int side = -1; side <= 1; side += 2) {
         const size_t at = here + (size_t)(to * side);

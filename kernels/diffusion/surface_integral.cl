@@ -73,10 +73,6 @@ static inline floatw surfaceAsinh(floatw x) {
     return copysign(log(a + sqrt(fma(a, a, (floatw)(1.0f)))), x);
 }
 
-static inline Vec3w all3(float3 v) {
-    return vec3((floatw)(v.x), (floatw)(v.y), (floatw)(v.z));
-}
-
 // Gauss-Legendre, 4 points on [0, 1].
 __constant float surface_at[4] = {0.0694318442f, 0.3300094782f, 0.6699905218f, 0.9305681558f};
 __constant float surface_part[4] = {0.1739274226f, 0.3260725774f, 0.3260725774f, 0.1739274226f};
@@ -97,28 +93,28 @@ static inline Vec3w surfaceTriangle(SurfaceSum sum, __global const float4* table
     const float3 ab = corner[1] - corner[0], ac = corner[2] - corner[0], area = cross(ab, ac);
     const float twice = length(area);
     const float3 n = area / twice;
-    const Vec3w toPoint = sub3(x, all3(corner[0]));
-    floatw h = dot3(toPoint, all3(n));
+    const Vec3w toPoint = sub3(x, spread3(corner[0]));
+    floatw h = dot3(toPoint, spread3(n));
     // Points on the surface are off it only by rounding, which 1/r would amplify.
     const float extent =
         fmax(fmax(fabs(corner[0].x), fabs(corner[0].y)), fmax(fabs(corner[0].z), length(ab)));
     h = selectw(h, (floatw)(0.0f), fabs(h) < (floatw)(5e-7f * extent));
-    const Vec3w p = sub3(toPoint, scale3(all3(n), h)), atHeight = surfaceEnclosed(sum, table, fabs(h));
+    const Vec3w p = sub3(toPoint, scale3(spread3(n), h)), atHeight = surfaceEnclosed(sum, table, fabs(h));
     // E = light[0] + b beta + c gamma at p, and its gradient along the plane, per channel.
     // gradients of beta and gamma
     const float3 towardsB = cross(ac, n) / twice, towardsC = cross(n, ab) / twice;
-    const floatw beta = dot3(p, all3(towardsB)), gamma = dot3(p, all3(towardsC));
+    const floatw beta = dot3(p, spread3(towardsB)), gamma = dot3(p, spread3(towardsC));
     const float3 b = light[1] - light[0], c = light[2] - light[0];
-    Vec3w there = add3(all3(light[0]), add3(scale3(all3(b), beta), scale3(all3(c), gamma)));
-    Vec3w result = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    Vec3w there = add3(spread3(light[0]), add3(scale3(spread3(b), beta), scale3(spread3(c), gamma)));
+    Vec3w result = same3(0.0f);
     for (int k = 0; k < 3; ++k) {
         const float3 begin = corner[k] - corner[0], along = corner[k == 2 ? 0 : k + 1] - corner[k];
         const float edge = length(along);
         const float3 t = along / edge, m = cross(t, n);
-        const Vec3w from = sub3(all3(begin), p);
-        const floatw D = dot3(from, all3(m)), t0 = dot3(from, all3(t)), t1 = t0 + edge;
+        const Vec3w from = sub3(spread3(begin), p);
+        const floatw D = dot3(from, spread3(m)), t0 = dot3(from, spread3(t)), t1 = t0 + edge;
         const floatw distance = fmax(fabs(D), (floatw)(SURFACE_NARROW * edge));
-        Vec3w angle = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), length = angle;
+        Vec3w angle = same3(0.0f), length = angle;
         // From far away an edge spans 2 artanh of this; the difference of two asinh would cancel for small
         // triangles.
         const floatw root0 = sqrt(fma(t0, t0, distance * distance)),
@@ -145,13 +141,13 @@ static inline Vec3w surfaceTriangle(SurfaceSum sum, __global const float4* table
                 }
                 const Vec3w M = surfaceEnclosed(sum, table, sqrt(fma(h, h, rho2)));
                 angle = add3(angle, scale3(sub3(M, atHeight), turn));
-                length = add3(length, scale3(sub3(M, all3((float3)(sum.whole))), way));
+                length = add3(length, scale3(sub3(M, spread3((float3)(sum.whole))), way));
             }
         const float mb = dot(m, towardsB), mc = dot(m, towardsC);
         // An edge whose line contains the point spans no angle.
         const floatw sign =
             selectw(copysign((floatw)(1.0f), D), (floatw)(0.0f), fabs(D) < (floatw)(SURFACE_NARROW * edge));
-        result = add3(result, add3(mul3(there, scale3(angle, sign)), mul3(all3(mb * b + mc * c), length)));
+        result = add3(result, add3(mul3(there, scale3(angle, sign)), mul3(spread3(mb * b + mc * c), length)));
     }
     return result;
 }
@@ -186,13 +182,13 @@ static inline Vec3w surfaceSampled(SurfaceSum sum, __global const float4* table,
         light[k] = vload3(k, triangle->irradiance);
     }
     const float area = 0.5f * length(cross(corner[1] - corner[0], corner[2] - corner[0]));
-    const Vec3w from = sub3(all3(corner[0]), x);
-    Vec3w result = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    const Vec3w from = sub3(spread3(corner[0]), x);
+    Vec3w result = same3(0.0f);
     for (int q = 0; q < 7; ++q) {
         const float a = surface_corner[q][0], b = surface_corner[q][1], c = surface_corner[q][2];
-        const Vec3w d = add3(from, all3(b * (corner[1] - corner[0]) + c * (corner[2] - corner[0])));
+        const Vec3w d = add3(from, spread3(b * (corner[1] - corner[0]) + c * (corner[2] - corner[0])));
         const float3 E = (area * surface_weight[q]) * (a * light[0] + b * light[1] + c * light[2]);
-        result = add3(result, mul3(all3(E), surfaceEnded(sum, table, dot3(d, d))));
+        result = add3(result, mul3(spread3(E), surfaceEnded(sum, table, dot3(d, d))));
     }
     return result;
 }
@@ -221,13 +217,12 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void surface_int
     PEL_EACH_LANE(SURFACE_LANE_)
 #undef SURFACE_LANE_
     const maskw usable = finite3(x);
-    x = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), x, usable);
-    Vec3w total = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), lost = total;
+    x = select3(same3(0.0f), x, usable);
+    Vec3w total = same3(0.0f), lost = total;
     uint i = 0;
     while (i < sum.nodes) {
         __global const SurfaceNode* node = nodes + i;
-        const Vec3w d =
-            sub3(vec3((floatw)(node->centre[0]), (floatw)(node->centre[1]), (floatw)(node->centre[2])), x);
+        const Vec3w d = sub3(loadUniform3(node->centre), x);
         const floatw r2 = dot3(d, d);
         const float reach = sum.reach + node->radius;
         const maskw beyond = (r2 >= (floatw)(reach * reach));
@@ -240,9 +235,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void surface_int
             if (sum.cut[c] > 0.0f) near |= (fabs(sqrt(r2) - sum.cut[c]) < (floatw)(node->radius));
         if (!anyw(near)) {
             const Vec3w R = surfaceEnded(sum, table, r2);
-            surfaceAdd(&total, &lost,
-                       mul3(R, vec3((floatw)(node->weight[0]), (floatw)(node->weight[1]),
-                                    (floatw)(node->weight[2]))));
+            surfaceAdd(&total, &lost, mul3(R, loadUniform3(node->weight)));
             i = node->skip;
         } else if (node->triangle != PEL_SURFACE_NONE) {
             const float small = SURFACE_SMALL * node->radius;
@@ -255,7 +248,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void surface_int
             ++i;
         }
     }
-    total = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), total, usable);
+    total = select3(same3(0.0f), total, usable);
 #define SURFACE_LANE_(k, s)                                   \
     if (begin + k < end)                                      \
         vstore3((float3)(total.x s, total.y s, total.z s), 0, \

@@ -105,7 +105,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
     RingCursor ring = ringBegin(first, slots, slices);
     positions += positionOffset;
     normals += normalOffset;
-    const Vec3w zero = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    const Vec3w zero = same3(0.0f);
     const SlotFrame frame = slotFrame(ring.last, ring.self, positions, normals);
     const Vec3w n = frame.n, u = frame.u, v = frame.v;
     const maskw sound = frame.sound;

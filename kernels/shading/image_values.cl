@@ -20,7 +20,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void image_value
     if (y >= image->height) return;
     const uint x = vectorStart(itemOfFolded() % across * PEL_WIDTH, image->width);
     const Span s = imageSpan(pixels, image, x, y);
-    Vec3w v = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    Vec3w v = same3(0.0f);
     floatw fourth = 1.0f;  // of a tangent: the sign of the bitangent
 #if PEL_READ_AS == 3
     v.x = convert_floatw(loadId(PEL_FORMAT, s));

@@ -43,7 +43,7 @@ static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMat
     Vec3w p = n;
     if (HAS(PEL_BIT_POSITIONAL)) p = loadPosition(frame, scene->images.POSITION, scene->images.DEPTH, x, y);
     maskw valid = finite3(n) & finite3(p);
-    Vec3w e = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    Vec3w e = same3(0.0f);
     if (HAS(PEL_BIT_AMBIENT)) {
         e = ambientAlong(scene, n);
         if (PEL_FORMAT_AMBIENT_OCCLUSION)

@@ -43,7 +43,7 @@ static inline __attribute__((always_inline)) Vec3w shadeMaterial(const Scene* sc
     // Only inputs that its own material reads can make a pixel invalid, so other materials of the tile do not
     // matter.
     p->valid &= ((p->invalidBits & material->needs) == 0) | notw(active);
-    Vec3w diffuse = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), specular = diffuse;
+    Vec3w diffuse = same3(0.0f), specular = diffuse;
     parts->diffuse = parts->deepScatter = diffuse;
     Vec3w before = diffuse;  // light that includes the albedo
     parts->thickness = 0.0f;
@@ -72,8 +72,7 @@ static inline __attribute__((always_inline)) Vec3w shadeMaterial(const Scene* sc
             const Vec3w e = ambientAlong(scene, scale3(p->nb, (floatw)(-1.0f)));
             Vec3w deep = scale3(mul3(loadUniform3(material->deepScatterColor), e), through);
             // NaN in a cube must not affect pixels through which no light comes.
-            if (HAS(PEL_BIT_AMBIENT_CUBE))
-                deep = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), deep, through > 0.0f);
+            if (HAS(PEL_BIT_AMBIENT_CUBE)) deep = select3(same3(0.0f), deep, through > 0.0f);
             diffuse = add3(diffuse, deep);
             if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = deep;
         }
@@ -124,7 +123,7 @@ static inline __attribute__((always_inline)) void shadePixels(const Scene* scene
                                                               maskw active, Counts* counts) {
     __global const PelShadeFrame* frame = scene->frame;
     Pixels p = loadPixels(scene, x, y);
-    Vec3w result = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), specular = result;
+    Vec3w result = same3(0.0f), specular = result;
     Parts parts = {result, result, (floatw)(0.0f), false};
     if (PEL_FORMAT_MATERIAL) {
         // Nearly always one round: neighbours share their material.

@@ -111,7 +111,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void skin_maps(
     Vec3w pigments;
     loadTwo(PEL_FORMAT_SKIN, span, &pigments.x, &pigments.y);
 #endif
-    Vec3w color = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    Vec3w color = same3(0.0f);
     floatw radius = 1.0f;
 #if PEL_FORMAT_RADIUS
     radius = loadRadius(imageSpan(radii, &frame->radii, x, y));
