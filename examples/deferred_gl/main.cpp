@@ -20,12 +20,11 @@ using namespace pellucid;
 namespace {
 
 std::vector<Float3> normalsOf(const Device& device, const Mesh& mesh) {
-    const std::vector<uint32_t> indices = mesh.triangles();
     PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
     const auto count = uint32_t(mesh.positions.size());
     desc.numVertices = count;
-    desc.indices = indices.data();
-    desc.numIndices = uint32_t(indices.size());
+    desc.indices = mesh.triangles.data();
+    desc.numIndices = uint32_t(mesh.triangles.size());
     const MeshTopology topology(device, desc);
     const Buffer normals(device, count * sizeof(Float3));
     topology.normals(vertexView(Buffer(device, mesh.positions), count), vertexView(normals, count));
@@ -96,7 +95,7 @@ double median(std::vector<double>& values) {
 
 int main(int argc, char** argv) try {
     const Options o = parsed(argc, argv);
-    const Mesh head = subdivided(readObj(o.head));
+    const Mesh read = readObj(o.head), head = subdivided(read, normalsOf(Device(), read));
     try {
         gl::makeContext();
     } catch (const std::runtime_error& e) {
