@@ -25,11 +25,14 @@ GltfMaterial readGltfMaterial(const GltfDocument& document, const GltfValue& mat
         if (owner.has(key))
             warnOnce(warnings, "textures other than the base colour's are left out; only factors are used");
     };
+    const auto setBaseColor = [&](const GltfValue& owner, const char* key) {
+        double color[4] = {1, 1, 1, 1};
+        owner.numbers(key, color, 4, 0, 1);
+        m.baseColor = {color[0], color[1], color[2]};
+    };
     if (material.has("pbrMetallicRoughness")) {
         const GltfValue pbr = material["pbrMetallicRoughness"];
-        double color[4] = {1, 1, 1, 1};
-        pbr.numbers("baseColorFactor", color, 4, 0, 1);
-        m.baseColor = {color[0], color[1], color[2]};
+        setBaseColor(pbr, "baseColorFactor");
         m.metallic = pbr.number("metallicFactor", 1, 0, 1);
         m.roughness = pbr.number("roughnessFactor", 1, 0, 1);
         texture(pbr, "metallicRoughnessTexture");
@@ -94,15 +97,12 @@ GltfMaterial readGltfMaterial(const GltfDocument& document, const GltfValue& mat
             m.scatterAnisotropy = e.number("scatterAnisotropy", 0, -1, 1);
             texture(e, "multiscatterColorTexture");
         });
-    if (material.hasExtension("KHR_materials_pbrSpecularGlossiness")) {
-        const GltfValue e = material.extension("KHR_materials_pbrSpecularGlossiness");
-        double color[4] = {1, 1, 1, 1};
-        e.numbers("diffuseFactor", color, 4, 0, 1);
-        m.baseColor = {color[0], color[1], color[2]};
+    with("KHR_materials_pbrSpecularGlossiness", [&](const GltfValue& e) {
+        setBaseColor(e, "diffuseFactor");
         m.metallic = 0;
         m.roughness = 1 - e.number("glossinessFactor", 1, 0, 1);
         texture(e, "diffuseTexture");
-    }
+    });
     return m;
 }
 

@@ -1,5 +1,7 @@
 #include "gltf/import_view.h"
 
+#include <Imath/ImathFun.h>
+
 #include <numbers>
 
 #include "io/image/color_map.h"
@@ -18,35 +20,28 @@ sample::Vec3 vec(const io::Triple& t) {
 // Texels in linear light.
 struct Texture {
     int width = 0, height = 0;
-    std::vector<float> rgb;
+    std::vector<Imath::V3f> texels;
 
     // Bilinear, repeated; row 0 is at v = 0 [glTF 2.0, 3.8.3].
-    std::array<float, 3> at(double u, double v) const {
+    io::Triple at(double u, double v) const {
         const double x = (u - std::floor(u)) * width - 0.5, y = (v - std::floor(v)) * height - 0.5;
-        const double fx = x - std::floor(x), fy = y - std::floor(y);
-        const auto wrapped = [](double at, int size) { return (int(std::floor(at)) % size + size) % size; };
-        const int x0 = wrapped(x, width), x1 = (x0 + 1) % width, y0 = wrapped(y, height),
-                  y1 = (y0 + 1) % height;
-        const auto texel = [&](int tx, int ty, int c) {
-            return double(rgb[3 * (size_t(ty) * size_t(width) + size_t(tx)) + size_t(c)]);
+        const int left = int(std::floor(x)), top = int(std::floor(y));
+        const auto mixed = [&](int row) {
+            const Imath::V3f* from = &texels[size_t(Imath::modp(row, height)) * size_t(width)];
+            return Imath::lerp(io::Triple(from[Imath::modp(left, width)]),
+                               io::Triple(from[Imath::modp(left + 1, width)]), x - left);
         };
-        std::array<float, 3> out{};
-        for (int c = 0; c < 3; ++c)
-            out[size_t(c)] = float((1 - fy) * ((1 - fx) * texel(x0, y0, c) + fx * texel(x1, y0, c)) +
-                                   fy * ((1 - fx) * texel(x0, y1, c) + fx * texel(x1, y1, c)));
-        return out;
+        return Imath::lerp(mixed(top), mixed(top + 1), y - top);
     }
 };
 
 Texture textureOf(const io::GltfImage& image) {
     io::Image picture = io::decodeImage(image.name, image.bytes);
-    Texture t;
-    t.width = picture.width, t.height = picture.height;
+    Texture t{picture.width, picture.height, std::vector<Imath::V3f>(picture.pixelCount())};
     const bool grey = picture.channels.size() < 3;
-    t.rgb.resize(3 * picture.pixelCount());
     for (size_t i = 0; i < picture.pixelCount(); ++i)
-        for (size_t c = 0; c < 3; ++c)
-            t.rgb[3 * i + c] = io::decodeSrgb(picture.channels[grey ? 0 : c].pixels[i]);
+        for (int c = 0; c < 3; ++c)
+            t.texels[i][c] = io::decodeSrgb(picture.channels[grey ? 0 : size_t(c)].pixels[i]);
     return t;
 }
 
@@ -86,8 +81,8 @@ void applyTextures(Run& run, const io::GltfScene& v, sample::GBuffer& g) {
         }
         for (size_t p = 0; p < pixels; ++p) {
             if (!g.material[p] || v.materials[g.material[p] - 1].baseColorImage != int(i)) continue;
-            const auto color = texture.at(g.uv.data[p], g.uv.data[pixels + p]);
-            for (size_t c = 0; c < 3; ++c) g.albedo.data[c * pixels + p] *= color[c];
+            const io::Triple color = texture.at(g.uv.data[p], g.uv.data[pixels + p]);
+            for (size_t c = 0; c < 3; ++c) g.albedo.data[c * pixels + p] *= float(color[int(c)]);
         }
     }
 }

@@ -13,7 +13,7 @@ using nlohmann::json;
 namespace {
 
 // JSON pointers and the values to set there; null: removes the value.
-using Edits = std::vector<std::pair<const char*, json>>;
+using Edits = std::vector<std::pair<std::string, json>>;
 
 json edited(const Edits& edits) {
     json scene = json::parse(gltf::squareJson());
@@ -25,6 +25,23 @@ json edited(const Edits& edits) {
             scene[at] = value;
     }
     return scene;
+}
+
+// Appends values to the buffer, as accessor `index` with a view of its own.
+template <class T>
+void append(Edits& edits, std::string& buffer, size_t index, const std::string& type,
+            const std::vector<T>& values) {
+    const std::string bytes = gltf::bytesOf(values), number = std::to_string(index);
+    const size_t components = type == "MAT4" ? 16 : size_t(type[3] - '0');
+    edits.push_back({"/bufferViews/" + number,
+                     {{"buffer", 0}, {"byteOffset", buffer.size()}, {"byteLength", bytes.size()}}});
+    edits.push_back({"/accessors/" + number,
+                     {{"bufferView", index},
+                      {"componentType", sizeof(T) == 1 ? 5121 : 5126},
+                      {"count", values.size() / components},
+                      {"type", type}}});
+    buffer += bytes;
+    edits.push_back({"/buffers/0/byteLength", buffer.size()});
 }
 
 std::string square(const Edits& edits = {}, const std::string& buffer = squareBuffer()) {
@@ -119,26 +136,18 @@ TEST(Gltf, NodesMoveTurnScaleAndMirror) {
 // Two joints. The second was bound at (1, 0, 0) and is turned there by a quarter about z. The node of the
 // mesh moves too, which a skin ignores.
 TEST(Gltf, SkinsTakeThePoseOfTheirJoints) {
-    const std::string buffer = squareBuffer() +
-                               gltf::bytesOf<uint8_t>({0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}) +
-                               gltf::bytesOf<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, .5, .5, 0, 0}) +
-                               gltf::bytesOf<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1,
-                                                     1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1});
-    Edits edits = {
-        {"/buffers/0/byteLength", buffer.size()},
-        {"/bufferViews/3", R"({"buffer": 0, "byteOffset": 92, "byteLength": 16})"_json},
-        {"/bufferViews/4", R"({"buffer": 0, "byteOffset": 108, "byteLength": 64})"_json},
-        {"/bufferViews/5", R"({"buffer": 0, "byteOffset": 172, "byteLength": 128})"_json},
-        {"/accessors/3", R"({"bufferView": 3, "componentType": 5121, "count": 4, "type": "VEC4"})"_json},
-        {"/accessors/4", R"({"bufferView": 4, "componentType": 5126, "count": 4, "type": "VEC4"})"_json},
-        {"/accessors/5", R"({"bufferView": 5, "componentType": 5126, "count": 2, "type": "MAT4"})"_json},
-        {"/meshes/0/primitives/0/attributes/JOINTS_0", 3},
-        {"/meshes/0/primitives/0/attributes/WEIGHTS_0", 4},
-        {"/skins", R"([{"joints": [1, 2], "inverseBindMatrices": 5}])"_json},
-        {"/scenes/0/nodes", {0, 1}},
-        {"/nodes", R"([{"mesh": 0, "skin": 0, "translation": [100, 0, 0]},
+    std::string buffer = squareBuffer();
+    Edits edits = {{"/meshes/0/primitives/0/attributes/JOINTS_0", 3},
+                   {"/meshes/0/primitives/0/attributes/WEIGHTS_0", 4},
+                   {"/skins", R"([{"joints": [1, 2], "inverseBindMatrices": 5}])"_json},
+                   {"/scenes/0/nodes", {0, 1}},
+                   {"/nodes", R"([{"mesh": 0, "skin": 0, "translation": [100, 0, 0]},
                        {"translation": [0, 0, 7], "children": [2]},
                        {"translation": [1, 0, 0], "rotation": [0, 0, 0.70710678, 0.70710678]}])"_json}};
+    append<uint8_t>(edits, buffer, 3, "VEC4", {0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0});
+    append<float>(edits, buffer, 4, "VEC4", {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, .5, .5, 0, 0});
+    append<float>(edits, buffer, 5, "MAT4", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1,
+                                             1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1});
     const GltfScene s = decoded(square(edits, buffer));
     EXPECT_TRUE(s.mesh.warnings.empty());
     const float expected[4][3] = {{0, 0, 7}, {1, 0, 7}, {0, 0, 7}, {0, 0, 7}};
@@ -190,29 +199,23 @@ TEST(Gltf, WithoutASceneAllRootsAreShown) {
 // Whatever the rotation of a node, its triangles face in the direction of its normals, mirrored or not, and
 // whether the normals are in the file or made from the triangles.
 TEST(Gltf, TurnedAndMirroredFacesKeepTheirFront) {
-    std::string buffer = squareBuffer(), insideOut = buffer;
-    for (int v = 0; v < 4; ++v) {
-        buffer += gltf::bytesOf<float>({0, 0, 1});
-        insideOut += gltf::bytesOf<float>({0, 0, -1});
-    }
     for (const json& turn : R"([[0, 0, 0, 1], [0, 0, 0.70710678, 0.70710678], [0, 0.70710678, 0, 0.70710678],
              [0.70710678, 0, 0, 0.70710678], [0.5, 0.5, 0.5, 0.5], [0.1826, 0.3651, 0.5477, 0.7303]])"_json)
         for (const json& scale : "[[1, 1, 1], [-1, 1, 1], [1, -2, 1], [1, 1, -3], [-1, -1, -1]]"_json) {
             const Edits made{{"/nodes/0/rotation", turn}, {"/nodes/0/scale", scale}};
-            Edits given = made;
-            given.insert(given.end(),
-                         {{"/meshes/0/primitives/0/attributes/NORMAL", 3},
-                          {"/accessors/3", R"({"bufferView": 3, "componentType": 5126, "count": 4,
-                                                            "type": "VEC3"})"_json},
-                          {"/buffers/0/byteLength", buffer.size()},
-                          {"/bufferViews/3",
-                           {{"buffer", 0}, {"byteOffset", 92}, {"byteLength", buffer.size() - 92}}}});
-            for (const MeshData& m : {decoded(square(made)).mesh, decoded(square(given, buffer)).mesh}) {
+            const auto withNormals = [&](float z) {
+                Edits given = made;
+                std::string buffer = squareBuffer();
+                append<float>(given, buffer, 3, "VEC3", {0, 0, z, 0, 0, z, 0, 0, z, 0, 0, z});
+                given.push_back({"/meshes/0/primitives/0/attributes/NORMAL", 3});
+                return decoded(square(given, buffer)).mesh;
+            };
+            for (const MeshData& m : {decoded(square(made)).mesh, withNormals(1)}) {
                 EXPECT_TRUE(m.warnings.empty()) << turn << " times " << scale;
                 for (size_t t = 0; t < m.triangles.size(); t += 3)
                     EXPECT_GT(facing(m, t), 0.9) << turn << " times " << scale;
             }
-            const MeshData inside = decoded(square(given, insideOut)).mesh;
+            const MeshData inside = withNormals(-1);
             ASSERT_EQ(inside.warnings.size(), 1u) << turn << " times " << scale;
             EXPECT_NE(inside.warnings[0].find("inside out"), std::string::npos);
         }
@@ -220,20 +223,15 @@ TEST(Gltf, TurnedAndMirroredFacesKeepTheirFront) {
 
 // A part with normals and texture coordinates keeps them beside one without, and beside normals of length 0.
 TEST(Gltf, PartsWithoutNormalsOrCoordinatesLeaveThoseOfOthers) {
-    std::string buffer = squareBuffer();
     const float leaning[] = {0.6f, 0, 0.8f};
-    for (int v = 0; v < 4; ++v) buffer += gltf::bytesOf<float>({leaning[0], leaning[1], leaning[2]});
-    for (int v = 0; v < 4; ++v) buffer += gltf::bytesOf<float>({v ? leaning[0] : 0, 0, v ? leaning[2] : 0});
     const auto withParts = [&](const json& primitives) {
-        return decoded(square(
-            {{"/meshes/0/primitives", primitives},
-             {"/accessors/3", R"({"bufferView": 3, "componentType": 5126, "count": 4, "type": "VEC3"})"_json},
-             {"/accessors/4", R"({"bufferView": 3, "byteOffset": 48, "componentType": 5126, "count": 4,
-                                  "type": "VEC3"})"_json},
-             {"/buffers/0/byteLength", buffer.size()},
-             {"/bufferViews/3", {{"buffer", 0}, {"byteOffset", 92}, {"byteLength", buffer.size() - 92}}},
-             {"/materials", R"([{}, {"pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1]}}])"_json}},
-            buffer));
+        Edits edits{
+            {"/meshes/0/primitives", primitives},
+            {"/materials", R"([{}, {"pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1]}}])"_json}};
+        std::string buffer = squareBuffer();
+        append<float>(edits, buffer, 3, "VEC3", {.6f, 0, .8f, .6f, 0, .8f, .6f, 0, .8f, .6f, 0, .8f});
+        append<float>(edits, buffer, 4, "VEC3", {0, 0, 0, .6f, 0, .8f, .6f, 0, .8f, .6f, 0, .8f});
+        return decoded(square(edits, buffer));
     };
     const json whole = R"({"attributes": {"POSITION": 0, "NORMAL": 3, "TEXCOORD_0": 1}, "indices": 2})"_json,
                bare = R"({"attributes": {"POSITION": 0}, "indices": 2, "material": 1})"_json,
@@ -484,7 +482,7 @@ TEST(Gltf, NumbersOutOfTheirRangesAreRefused) {
                                {"/nodes/0/extensions/KHR_lights_punctual/light", 0},
                                {"/meshes/0/primitives/0/material", 0},
                                {"/materials/0/name", "m"},
-                               {where.c_str(), value}});
+                               {where, value}});
             };
             for (const double end : {row.low, row.high}) {
                 if (end == INFINITY) continue;
