@@ -11,13 +11,17 @@ from .passes import MATERIAL_CHANNEL
 SKIN = {"profile": "skin", "scattering": "preintegrated", "deep_scatter_color": (0.7, 0.16, 0.05),
         "specular": 0.35}
 SKIN_LENGTHS = {"deep_scatter_radius": 6.0, "deep_scatter_normal_offset": 0.2}
-EYES = {"scattering": "none", "thickness_taps": 0}  # the sclera; its gloss is that of the film of tears
 PLAIN = {"scattering": "none", "thickness_taps": 0}
 
 
 def value(v):
     """As TOML has it, which writes texts, numbers and arrays as JSON does."""
     return json.dumps(v, ensure_ascii=False)
+
+
+def table(keys):
+    """The lines of a table, without keys whose value is empty."""
+    return [f"{key} = {value(v)}" for key, v in keys.items() if v != ""]
 
 
 def comment(name):
@@ -27,8 +31,8 @@ def comment(name):
 
 def keys_of(surface, preset, unit, folder, taken, extents):
     """Of [[material]], by what was chosen for it. `taken`: other materials' profile files in `folder`."""
-    if preset == principled.EYE:
-        keys = dict(EYES)
+    if preset == principled.EYE:  # its gloss is that of the film of tears
+        keys = dict(PLAIN)
     elif preset == principled.PLAIN:
         keys = {**PLAIN, **surface.keys}
     elif preset == principled.SKIN:
@@ -56,63 +60,52 @@ def write(path, unit, viewpoint, lamps, sky, materials, eyes, curvature, fallbac
         warn("nothing scatters: no material has Subsurface above 0; give it one, or the custom property "
              "pellucid_preset = \"skin\", or pass --preset skin")
     surfaces = [surface for _, _, surface in materials]
+    channels = {"material": MATERIAL_CHANNEL, "position": ["Position.X", "Position.Y", "Position.Z"],
+                "normal_shading": ["NShading.R", "NShading.G", "NShading.B"],
+                "normal_geometric": ["NGeom.R", "NGeom.G", "NGeom.B"],
+                "albedo": ["Albedo.R", "Albedo.G", "Albedo.B"]}
+    if curvature:
+        channels["curvature"] = "Curvature.X"
+    if any(s.roughness for s in surfaces):
+        channels["roughness"] = "Roughness.X"
+    if any(s.weight or (s.scattering and s.scattering.weight < 1) for s in surfaces):
+        channels["scatter_weight"] = "ScatterWeight.X"
     lines = [
         "# Written by apps/blender/render_gbuffer.py. Axes: Blender's world, Z up. Lengths: Blender units,",
         f"# of {unit:g} mm each.",
-        "version = 2",
-        f"unit_mm = {value(unit)}",
-        "blur_normals = 1",
-        "",
-        "[channels]",
-        f'material = "{MATERIAL_CHANNEL}"',
-        'position = ["Position.X", "Position.Y", "Position.Z"]',
-        'normal_shading = ["NShading.R", "NShading.G", "NShading.B"]',
-        'normal_geometric = ["NGeom.R", "NGeom.G", "NGeom.B"]',
-        'albedo = ["Albedo.R", "Albedo.G", "Albedo.B"]',
-    ]
-    if curvature:
-        lines += ['curvature = "Curvature.X"']
-    if any(s.roughness for s in surfaces):
-        lines += ['roughness = "Roughness.X"']
-    if any(s.weight or (s.scattering and s.scattering.weight < 1) for s in surfaces):
-        lines += ['scatter_weight = "ScatterWeight.X"']
-    lines += ["", "[camera]", "position = " + value(viewpoint)]
+        *table({"version": 2, "unit_mm": unit, "blur_normals": 1}),
+        "", "[channels]", *table(channels),
+        "", "[camera]", *table({"position": viewpoint})]
     if sky:
         lines += ["", "[ambient]", "sh = [", *("    " + value(row) + "," for row in sky), "]"]
     for lamp in lamps:
-        lines += ["", "[[light]]  " + comment(lamp.name)]
+        keys = {"type": {"SUN": "directional", "AREA": "rectangle"}.get(lamp.kind, lamp.kind.lower())}
         if lamp.kind == "SUN":
-            lines += ['type = "directional"', "to_light = " + value(tuple(-lamp.forward))]
+            keys["to_light"] = tuple(-lamp.forward)
         else:
-            kind = "rectangle" if lamp.kind == "AREA" else lamp.kind.lower()
-            lines += [f'type = "{kind}"', "position = " + value(tuple(lamp.position))]
+            keys["position"] = tuple(lamp.position)
         if lamp.kind == "AREA":
-            lines += ["half_width = " + value(tuple(lamp.half_width)),
-                      "half_height = " + value(tuple(lamp.half_height))]
+            keys.update(half_width=tuple(lamp.half_width), half_height=tuple(lamp.half_height))
         if lamp.kind == "SPOT":
-            lines += ["spot_direction = " + value(tuple(lamp.forward)),
-                      "spot_cos_inner = " + value(lamp.cos_inner),
-                      "spot_cos_outer = " + value(lamp.cos_outer)]
-        lines += ["color = " + value(lamp.color)]
+            keys.update(spot_direction=tuple(lamp.forward), spot_cos_inner=lamp.cos_inner,
+                        spot_cos_outer=lamp.cos_outer)
+        lines += ["", "[[light]]  " + comment(lamp.name), *table({**keys, "color": lamp.color})]
         if lamp.map_file:
-            lines += ["", "[light.shadow_map]", "file = " + value(lamp.map_file), 'channel = "R"']
-            lines += ["filter_texels = 48", "bias = " + value(0.5 / unit)]
-            lines += ["world_to_shadow = " + value([v for row in lamp.to_shadow for v in row])]
+            keys = {"file": lamp.map_file, "channel": "R", "filter_texels": 48, "bias": 0.5 / unit,
+                    "world_to_shadow": [v for row in lamp.to_shadow for v in row]}
             if lamp.kind == "SUN":
-                lines += ['projection = "parallel"', "depth_range = " + value(lamp.depth_range)]
+                keys.update(projection="parallel", depth_range=lamp.depth_range)
             else:
-                lines += ['projection = "perspective"', "depth_a = " + value(lamp.depth_a),
-                          "depth_b = " + value(lamp.depth_b)]
+                keys.update(projection="perspective", depth_a=lamp.depth_a, depth_b=lamp.depth_b)
+            lines += ["", "[light.shadow_map]", *table(keys)]
     extents = [lamp.extent for lamp in lamps if lamp.map_file and lamp.kind == "SUN"]
     taken = set()
     for id_, material, surface in materials:
         if material.name in of_eyes:
-            lines += ["", "[[eye]]", f"material = {id_}",
-                      *(f"{key} = {value(v)}" for key, v in of_eyes[material.name].items())]
+            lines += ["", "[[eye]]", *table({"material": id_, **of_eyes[material.name]})]
         keys = keys_of(surface, chosen[id_], unit, os.path.dirname(path), taken, extents)
         keys.update({key: own for key, own in principled.custom_keys(material, "pellucid_").items()
                      if key != "preset" and not key.startswith("eye")})
-        lines += ["", "[[material]]  " + comment(material.name), f"id = {id_}"]
-        lines += [f"{key} = {value(v)}" for key, v in keys.items() if v != ""]
+        lines += ["", "[[material]]  " + comment(material.name), *table({"id": id_, **keys})]
     with open(path, "w", encoding="utf-8") as file:
         file.write("\n".join(lines) + "\n")
