@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-import tempfile
 import textwrap
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -170,13 +169,7 @@ def make(out: Path, pictures_only: bool, sections: Iterable[str], size: int = 48
             session.look, session.mm = Look(), 1.0
             view(session)
             entry.change(session)
-            with tempfile.TemporaryDirectory() as scratch:
-                folder = out / entry.name if not pictures_only else Path(scratch)
-                export(session, folder, size, size)
-                if pictures_only:
-                    (out / entry.name).mkdir(parents=True, exist_ok=True)
-                    for name in ("picture.png", "scene.toml", "look.json"):
-                        (out / entry.name / name).write_bytes((folder / name).read_bytes())
+            export(session, out / entry.name, size, size, pictures_only)
             lines += [f"![{entry.words}]({entry.name}/picture.png)", "",
                       f"{entry.words} [scene]({entry.name}/scene.toml)", ""]
     text = "\n".join(

@@ -245,25 +245,21 @@ class Page:
         if not e.action.keydown:
             return
         viewer, name = self.viewer, str(e.key).lower()
-        if e.modifiers.ctrl or e.modifiers.meta:
-            again = name == "y" or (name == "z" and e.modifiers.shift)
-            if name in ("z", "y") and (viewer.redo() if again else viewer.undo()):
-                viewer.rebuild()
-                return
-        if name == "?":
-            self.keys.open()
-        if not hasattr(viewer.session, "orbit"):
-            return
         away = e.modifiers.ctrl or e.modifiers.meta
-        if name == "f":
+        if away and name in ("z", "y"):
+            if viewer.redo() if name == "y" or e.modifiers.shift else viewer.undo():
+                viewer.rebuild()
+        elif name == "?":
+            self.keys.open()
+        elif name == "f" and hasattr(viewer.session, "orbit"):
             viewer.frame_object()
             viewer.changed()
-        elif name in VIEWS:
+        elif name in VIEWS and hasattr(viewer.session, "orbit"):
             azimuth, elevation = VIEWS[name]
-            viewer.look_from(azimuth + 180 * away * (name != "7"), elevation * (-1 if away else 1))
-
-    def fold(self, name: str, open: bool) -> None:
-        self.viewer.memory.opened[name] = open
+            orbit = viewer.session.orbit
+            orbit.azimuth = azimuth + 180 * away * (name != "7")
+            orbit.elevation = elevation * (-1 if away else 1)
+            viewer.changed()
 
     def follow(self) -> None:
         """Updates the widgets to values that another widget has set."""
@@ -273,13 +269,14 @@ class Page:
     def build(self) -> None:
         self.shown: list[tuple[Callable[[], Any], Any]] = []  # what a widget is to show, and the widget
         self.column.clear()
+        opened = self.viewer.memory.opened
         with self.column:
             ui.label("Pellucid").classes("text-lg")
             for panel in self.panels:
                 if panel.name:
-                    with ui.expansion(panel.name, value=self.viewer.memory.opened.get(panel.name, panel.open),
-                                      on_value_change=lambda e, name=panel.name: self.fold(
-                                          name, e.value)).classes("w-full"):
+                    with ui.expansion(panel.name, value=opened.get(panel.name, panel.open),
+                                      on_value_change=lambda e, name=panel.name: opened.update(
+                                          {name: e.value})).classes("w-full"):
                         panel.build()
                 else:
                     panel.build()

@@ -191,7 +191,6 @@ class LightsPanel(Panel):
             self.color("Colour", lamp, "color", f"lamp-{i}-color")
             self.switch("Shadow", lamp, "shadow", f"lamp-{i}-shadow")
 
-
     def arrange(self, name: str) -> None:
         """Places the lamps; colours and shadows stay."""
         for lamp, (azimuth, elevation, intensity) in zip(self.look.lamps, ARRANGEMENTS.get(name, ())):

@@ -177,10 +177,6 @@ class Viewer:
         self.frame_object()
         self._history = History(self.session)  # its cameras frame the mesh before
 
-    def look_from(self, azimuth: float, elevation: float) -> None:
-        self.session.orbit.azimuth, self.session.orbit.elevation = azimuth, elevation
-        self.changed()
-
     async def restart(self) -> None:
         """A new device and OpenGL context, with the same mesh, look and camera."""
         self.session = await self.on_thread(lambda: self.session.restarted(self._device()))
