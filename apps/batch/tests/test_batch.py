@@ -13,14 +13,14 @@ import threading
 import time
 from pathlib import Path
 
+import cloudpickle
+import distributed
+import fsspec
+import psutil
 import pytest
 
 import pellucid as pel
 
-distributed = pytest.importorskip("distributed",
-                                  reason="distributed is not installed: pip install pellucid[batch]")
-cloudpickle = pytest.importorskip("cloudpickle")
-psutil = pytest.importorskip("psutil")  # as distributed does
 batch = pytest.importorskip("pellucid.batch", reason="the package was built without toml++")
 
 from pellucid.batch import __main__, dispatch, store  # noqa: E402
@@ -137,15 +137,11 @@ def misbehave(kind, pid=0):
         module.make_entry = make_entry
 
 
-def test_killed_workers_lose_nothing(check):
-    with processes(2, ["dies"] * 2) as (client, _):
-        assert check(client, jobs=1).workers_lost >= 2
-
-
 def test_all_workers_gone_at_once(check):
     """Work submitted for one worker goes to any worker that appears later."""
     with processes(2, ["nonsense", "dies"]) as (client, _):
-        assert check(client, jobs=1).workers_dismissed == 1
+        summary = check(client, jobs=1)
+        assert summary.workers_dismissed == 1 and summary.workers_lost >= 1
 
 
 def test_workers_that_hang_are_given_up(check):
@@ -331,7 +327,6 @@ def test_wrong_use(tmp_path, monkeypatch, capsys, arguments, code, message):
 
 
 def test_urls(tmp_path):
-    fsspec = pytest.importorskip("fsspec")
     (tmp_path / "m.toml").write_text('[[lut]]\nsize = 8\n[[lut]]\nkind = "specular"\nsize = 8\n')
     with distributed.Client(processes=False, n_workers=1, threads_per_worker=1,
                             dashboard_address=None) as client:

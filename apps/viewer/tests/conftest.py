@@ -2,9 +2,9 @@
 import pytest
 
 
-@pytest.fixture(scope="module")
-def session():
-    """A session with the package's head; modules that use it import moderngl first."""
+@pytest.fixture(scope="session")
+def shared_session():
+    """A session with the package's head."""
     from pellucid import files
     from pellucid.view.session import Session
 
@@ -14,3 +14,12 @@ def session():
         pytest.skip(f"no OpenGL: {error}")
     made.load(files.standard_head(), subdivide=1)
     return made
+
+
+@pytest.fixture
+def session(shared_session):
+    """The same as it begins."""
+    from view_session import reset
+
+    reset(shared_session)
+    return shared_session

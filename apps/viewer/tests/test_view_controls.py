@@ -1,5 +1,6 @@
 """The viewer's controls without a browser: what the guide lists is there, and sets the look."""
 import asyncio
+import contextlib
 import json
 import re
 import tempfile
@@ -8,23 +9,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from nicegui import Client, core, ui
+from nicegui.page import page
 
-pytest.importorskip("moderngl", reason="moderngl is not installed")
-nicegui = pytest.importorskip("nicegui", reason="nicegui is not installed")
-pytest.importorskip("pellucid.files", reason="this build reads no files")
-from nicegui import Client, core, ui  # noqa: E402
-from nicegui.page import page  # noqa: E402
-from view_session import reset  # noqa: E402
-
-import pellucid  # noqa: E402
-from pellucid._types import MaterialValues  # noqa: E402
-from pellucid.view.export import export  # noqa: E402
-from pellucid.view.history import History  # noqa: E402
-from pellucid.view.look import Lamp, Look  # noqa: E402
-from pellucid.view.memory import Memory  # noqa: E402
-from pellucid.view.page import Page  # noqa: E402
-from pellucid.view.scene_session import MODES, SceneSession  # noqa: E402
-from pellucid.view.server import Viewer  # noqa: E402
+import pellucid
+from pellucid._types import MaterialValues
+from pellucid.view.export import export
+from pellucid.view.history import History
+from pellucid.view.look import Lamp, Look
+from pellucid.view.memory import Memory
+from pellucid.view.page import Page
+from pellucid.view.scene_session import MODES, SceneSession
+from pellucid.view.server import Viewer
 
 
 class Shown:
@@ -40,24 +36,15 @@ class Shown:
         self.changes += 1
 
 
-def opened(session, act):
-    """Calls act(elements, viewer) on a page of this session."""
-    async def run(folder):
-        core.loop = asyncio.get_running_loop()
-        client, viewer = Client(page("/")), Shown(session, folder)
-        with client:
-            Page(viewer)
-            act(list(client.elements.values()), viewer)
-
-    with tempfile.TemporaryDirectory() as folder:
-        asyncio.run(run(folder))
-
-
-@pytest.fixture
-def fresh(session):
-    reset(session)
-    session.count, session.wipe = False, 0.5
-    return session
+@contextlib.contextmanager
+def opened(session):
+    """The elements of a page of this session, and its viewer."""
+    core.loop = asyncio.new_event_loop()
+    with tempfile.TemporaryDirectory() as folder, Client(page("/")) as client:
+        viewer = Shown(session, folder)
+        Page(viewer)
+        yield list(client.elements.values()), viewer
+    core.loop.close()
 
 
 def marked(elements, kind):
@@ -68,99 +55,71 @@ def label(slider):
     return next(e.text for e in slider.parent_slot.children if isinstance(e, ui.label) and e.text)
 
 
-def test_the_guide_lists_every_slider_with_its_limits(fresh):
+def test_the_guide_lists_every_slider_with_its_limits(session):
     text = (Path(__file__).parents[3] / "docs/guide/viewer.md").read_text(encoding="utf-8")
     listed = [row for row in re.findall(r"^\| (.+?) \| ([-\d.]+) \| ([-\d.]+) \| ([-\d.]+) \|$", text, re.M)]
-    shown = []
-
-    def look(elements, viewer):
-        for e in marked(elements, ui.slider).values():
-            row = (label(e), *(f"{e.props[k]:g}" for k in ("min", "max", "step")))
-            if row not in shown:  # three lamps have the same ones
-                shown.append(row)
-
-    opened(fresh, look)
-    assert listed == shown
+    with opened(session) as (elements, viewer):
+        shown = [(label(e), *(f"{e.props[k]:g}" for k in ("min", "max", "step")))
+                 for e in marked(elements, ui.slider).values()]
+    assert listed == list(dict.fromkeys(shown))  # three lamps have the same ones
 
 
-def test_every_control_sets_the_value_that_it_names(fresh):
-    def act(elements, viewer):
-        look = fresh.look
-        fallow = {f.name for f in fields(Look)} - {"lamps", "iris_texture", "profile"}
-        fallow |= {(str(i), f.name) for i in range(len(look.lamps)) for f in fields(Lamp)
-                   if f.name != "name"}
-        for name, e in marked(elements, ui.slider).items():
-            lamp, channel = re.match(r"slider-lamp-(\d)-(\w+)", name), re.match(r"slider-(\w+)-(\d)", name)
+def test_every_control_sets_the_value_that_it_names(session):
+    with opened(session) as (elements, viewer):
+        look = session.look
+        fallow = {(id(look), f.name) for f in fields(Look)} | {
+            (id(lamp), f.name) for lamp in look.lamps for f in fields(Lamp) if f.name != "name"}
+        fallow -= {(id(look), name) for name in ("lamps", "iris_texture", "profile")}
+        others = {"histogram": viewer, **dict.fromkeys(("against", "beside", "count", "wipe"), session)}
 
-            def value(name=name, lamp=lamp, channel=channel):
-                if lamp:
-                    return getattr(look.lamps[int(lamp[1])], lamp[2])
-                if name == "slider-wipe":
-                    return fresh.wipe
-                if channel:
-                    return getattr(look, channel[1])[int(channel[2])]
-                return getattr(look, name[len("slider-"):])
+        def value(name):
+            """Of what a control sets."""
+            lamp, channel = re.fullmatch(r"lamp-(\d)-(\w+)", name), re.fullmatch(r"(\w+)-(\d)", name)
+            owner = look.lamps[int(lamp[1])] if lamp else others.get(name, look)
+            field = lamp[2] if lamp else channel[1] if channel else name.replace("-", "_")
+            fallow.discard((id(owner), field))
+            found = getattr(owner, field)
+            return found[int(channel[2])] if channel else found
 
-            low, high = e.props["min"], e.props["max"]
-            assert low <= value() <= high and low < high, name
-            assert e.value == value(), name
-            order = (low, high) if value() == high else (high, low)
+        def set_to(wanted, name, e):
+            viewer.changes = 0
+            e.set_value(wanted)
+            assert value(name) == wanted and viewer.changes, name
+
+        for marker, e in marked(elements, ui.slider).items():
+            name, low, high = marker.removeprefix("slider-"), e.props["min"], e.props["max"]
+            assert low <= e.value == value(name) <= high and low < high, name
+            order = (low, high) if e.value == high else (high, low)
             for wanted in (*order, order[0]):
-                e.set_value(wanted)
-                assert value() == wanted and viewer.changes, name
-                viewer.changes = 0
-            fallow.discard(lamp.groups() if lamp else channel[1] if channel else name[len("slider-"):])
+                set_to(wanted, name, e)
         for name, e in marked(elements, ui.switch).items():
-            lamp = re.match(r"lamp-(\d)-(\w+)", name)
-            of, field = (look.lamps[int(lamp[1])], lamp[2]) if lamp else (
-                {"count": fresh, "beside": fresh, "histogram": viewer}.get(name, look), name)
-            for wanted in (not getattr(of, field), getattr(of, field)):
-                e.set_value(wanted)
-                assert getattr(of, field) is wanted and viewer.changes, name
-                viewer.changes = 0
-            fallow.discard(lamp.groups() if lamp else field)
+            for wanted in (not value(name), value(name)):
+                set_to(wanted, name, e)
         for name, e in marked(elements, ui.color_input).items():
-            lamp = re.match(r"lamp-(\d)-(\w+)", name)
-            of, field = (look.lamps[int(lamp[1])], lamp[2]) if lamp else (look, name.replace("-", "_"))
             e.set_value("#ff8000")
-            assert getattr(of, field) == pytest.approx((1.0, 0.2159, 0.0), abs=1e-4), name
-            fallow.discard(lamp.groups() if lamp else field)
+            assert value(name) == pytest.approx((1.0, 0.2159, 0.0), abs=1e-4), name
         for name, e in marked(elements, ui.select).items():
-            if name in ("preset", "unit", "arrangement"):
-                continue
-            for wanted in e.options:
-                e.set_value(wanted)
-                assert getattr(fresh if name == "against" else look, name) == wanted, name
-            fallow.discard(name)
+            if name not in ("preset", "unit", "arrangement"):
+                for wanted in e.options:
+                    e.set_value(wanted)
+                    assert value(name) == wanted, name
         assert not fallow, "values that no control sets"
 
-    opened(fresh, act)
 
-
-def test_a_preset_sets_the_material_and_keeps_the_light(fresh):
-    def act(elements, viewer):
-        fresh.look.ambient, fresh.look.exposure, fresh.look.specular = 0.7, 2.0, 0.9
-        marked(elements, ui.select)["preset"].set_value("Jade")
-        assert fresh.look.profile == "jade" and fresh.look.specular == 0.6
-        assert (fresh.look.ambient, fresh.look.exposure) == (0.7, 2.0)
-
-    opened(fresh, act)
-
-
-def test_every_page_sets_what_is_shown_after_a_preset_on_another_one(fresh):
-    def act(elements, viewer):
-        client = Client(page("/"))
-        with client:
+def test_a_preset_sets_the_material_of_every_page_and_keeps_the_light(session):
+    with opened(session) as (elements, viewer):
+        with Client(page("/")) as other:
             Page(viewer)
+        session.look.ambient, session.look.exposure, session.look.specular = 0.7, 2.0, 0.9
         marked(elements, ui.select)["preset"].set_value("Jade")
-        marked(client.elements.values(), ui.slider)["slider-roughness"].set_value(0.7)
-        assert fresh.look.profile == "jade" and fresh.look.roughness == 0.7
+        assert session.look.profile == "jade" and session.look.specular == 0.6
+        assert (session.look.ambient, session.look.exposure) == (0.7, 2.0)
+        marked(other.elements.values(), ui.slider)["slider-roughness"].set_value(0.7)
+        assert session.look.profile == "jade" and session.look.roughness == 0.7
 
-    opened(fresh, act)
 
-
-def test_presets_of_ones_own_are_saved_and_deleted(fresh):
-    def act(elements, viewer):
+def test_presets_of_ones_own_are_saved_and_deleted(session):
+    with opened(session) as (elements, viewer):
         client = elements[0].client
         for button, there in (("own-save", True), ("own-delete", False)):
             shown = list(client.elements.values())
@@ -171,37 +130,32 @@ def test_presets_of_ones_own_are_saved_and_deleted(fresh):
             kept = json.loads(viewer.memory.path.read_text())["presets"]
             assert ("Mine" in offered, "Mine" in kept) == (there, there)
 
-    opened(fresh, act)
 
-
-def test_skin_by_its_pigments_sets_profile_and_albedo_and_the_page_shows_them(fresh):
-    def act(elements, viewer):
+def test_skin_by_its_pigments_sets_profile_and_albedo_and_the_page_shows_them(session):
+    with opened(session) as (elements, viewer):
         sliders, selects = marked(elements, ui.slider), marked(elements, ui.select)
         sliders["slider-melanin"].set_value(0.2)
-        assert fresh.look.profile == selects["profile"].value == "pigments"
+        assert session.look.profile == selects["profile"].value == "pigments"
         for c in range(3):
-            assert sliders[f"slider-albedo-{c}"].value == fresh.look.albedo[c] < 0.5
-        dark = fresh.profile(fresh.look).info
+            assert sliders[f"slider-albedo-{c}"].value == session.look.albedo[c] < 0.5
+        dark = session.profile(session.look).info
         assert dark.kind == pellucid.ProfileKind.SKIN_LAYERS
         sliders["slider-melanin"].set_value(0.02)
         assert sliders["slider-albedo-0"].value > 0.5
-        assert fresh.profile(fresh.look).info.width[0] > dark.width[0]
+        assert session.profile(session.look).info.width[0] > dark.width[0]
         selects["profile"].set_value("jade")
-        assert fresh.look.profile == "jade"
+        assert session.look.profile == "jade"
         sliders["slider-albedo-0"].set_value(0.1)
         selects["profile"].set_value("pigments")  # as the sliders are
-        assert selects["profile"].value == "pigments" and fresh.look.albedo[0] > 0.5
+        assert selects["profile"].value == "pigments" and session.look.albedo[0] > 0.5
         selects["preset"].set_value("Skin, very dark")
-        assert fresh.look.melanin == 0.134 and fresh.look.albedo[0] < 0.4
-
-    opened(fresh, act)
+        assert session.look.melanin == 0.134 and session.look.albedo[0] < 0.4
 
 
-def test_a_scene_has_controls_too(fresh, tmp_path):
-    export(fresh, tmp_path, 96, 54)
-    shown = SceneSession(tmp_path / "scene.toml", device=fresh.device)
-
-    def act(elements, viewer):
+def test_a_scene_has_controls_too(session, tmp_path):
+    export(session, tmp_path, 96, 54)
+    shown = SceneSession(tmp_path / "scene.toml", device=session.device)
+    with opened(shown) as (elements, viewer):
         scene, look = shown.scene, shown.look
         sliders, selects = marked(elements, ui.slider), marked(elements, ui.select)
         of_materials = {f"slider-{f.name}-{id}": (scene.materials[id], f.name)
@@ -228,5 +182,3 @@ def test_a_scene_has_controls_too(fresh, tmp_path):
         kept.note(shown)
         assert kept.undo(shown) and material.roughness == before and scene.profiles[id] == "jade"
         assert kept.redo(shown) and material.roughness == np.float32(0.11) and scene.profiles[id] == "marble"
-
-    opened(shown, act)

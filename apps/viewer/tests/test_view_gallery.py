@@ -4,11 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from view_session import pixels
 
-pytest.importorskip("moderngl", reason="moderngl is not installed")
-files = pytest.importorskip("pellucid.files", reason="this build reads no files")
-
-from pellucid.view import gallery  # noqa: E402
+from pellucid.view import gallery
 
 KEPT = Path(__file__).resolve().parents[3] / "docs/gallery"
 
@@ -21,11 +19,6 @@ def numbers(text):
     """The text without its numbers, and these."""
     number = r"-?\d+\.?\d*(?:e-?\d+)?"
     return re.sub(number, "#", text), [float(n) for n in re.findall(number, text)]
-
-
-def pixels(path):
-    image = files.read_image(path)
-    return np.stack([image[c] for c in "RGB"], -1)
 
 
 def test_the_docs_show_what_the_viewer_makes(tmp_path):

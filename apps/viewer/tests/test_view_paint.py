@@ -4,13 +4,11 @@ import json
 
 import numpy as np
 import pytest
+from view_session import files
 
-pytest.importorskip("moderngl", reason="moderngl is not installed")
-files = pytest.importorskip("pellucid.files", reason="this build reads no files")
-from pellucid import _show  # noqa: E402
-from pellucid.view import paint  # noqa: E402
-from pellucid.view.look import CUT, SKIN, Look  # noqa: E402
-from pellucid.view.session import Session  # noqa: E402
+from pellucid.view import paint
+from pellucid.view.look import CUT, SKIN, Look
+from pellucid.view.session import Session
 
 # As one sees it: red and green above, blue and white below.
 COLORS = np.array([[[255, 0, 0], [0, 255, 0]], [[0, 0, 255], [255, 255, 255]]], np.uint8)
@@ -20,13 +18,13 @@ UVS = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], float)
 
 
 @pytest.fixture(scope="module")
-def painted(session):
+def painted(shared_session):
     """A session of this module's own."""
-    return Session(session.device)
+    return Session(shared_session.device)
 
 
 def save(path, pixels):
-    path.write_bytes(_show.png(np.ascontiguousarray(np.repeat(np.repeat(pixels, 32, 0), 32, 1))))
+    files.write_image(path, np.repeat(np.repeat(pixels, 32, 0), 32, 1))
     return path
 
 

@@ -1,24 +1,19 @@
 """Light from all round in the viewer."""
 import numpy as np
 import pytest
+from view_session import files, renders_again
 
-pytest.importorskip("moderngl", reason="moderngl is not installed")
-files = pytest.importorskip("pellucid.files", reason="this build reads no files")
-from view_session import renders_again, reset  # noqa: E402
-
-from pellucid.view import surroundings  # noqa: E402
-from pellucid.view.export import export  # noqa: E402
+from pellucid.view import surroundings
+from pellucid.view.export import export
 
 
 @pytest.fixture
 def alone(session):
     """The studio and no lamps."""
-    reset(session)
     for lamp in session.look.lamps:
         lamp.on = False
     session.look.ambient, session.look.surroundings = 0.0, surroundings.STUDIO
-    yield session
-    reset(session)
+    return session
 
 
 def test_irradiance_is_the_mean_over_the_hemisphere():

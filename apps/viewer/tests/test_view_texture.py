@@ -1,17 +1,14 @@
 """The viewer's scattering in the texture of a mesh."""
 import numpy as np
 import pytest
+from view_session import renders_again
 
-pytest.importorskip("moderngl", reason="moderngl is not installed")
-from view_session import renders_again, reset  # noqa: E402
-
-from pellucid.view.export import export  # noqa: E402
-from pellucid.view.look import SKIN, Lamp  # noqa: E402
-from pellucid.view.session import Session  # noqa: E402
+from pellucid.view.export import export
+from pellucid.view.look import SKIN, Lamp
+from pellucid.view.session import Session
 
 
 def test_the_method_in_the_texture(session, tmp_path):
-    reset(session)
     # Where scattering shows, at edges of shadows, the texture's is that of the other methods.
     session.look.lamps, session.look.ambient, session.look.pores = [Lamp("Key", 75.0, 15.0)], 0.02, 0.0
     session.orbit.azimuth = 25
@@ -28,7 +25,6 @@ def test_the_method_in_the_texture(session, tmp_path):
     session.look.method = "auto"
     # Texture coordinates of another size are let go.
     assert session.radiance(None, 320, 180).shape == (180, 320, 3)
-    reset(session)
     bare = Session(session.device)
     (tmp_path / "bare.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     bare.load(tmp_path / "bare.obj")

@@ -6,19 +6,15 @@ import types
 
 import numpy as np
 import pytest
+from view_session import reset
 
-pytest.importorskip("moderngl", reason="moderngl is not installed")
-files = pytest.importorskip("pellucid.files", reason="this build reads no files")
-pytest.importorskip("nicegui", reason="nicegui is not installed")
-from view_session import reset  # noqa: E402
-
-from pellucid.mesh import MeshTopology  # noqa: E402
-from pellucid.shader import Shader  # noqa: E402
-from pellucid.view.export import export  # noqa: E402
-from pellucid.view.passes import Pass  # noqa: E402
-from pellucid.view.reference import Reference, vertex_irradiance  # noqa: E402
-from pellucid.view.session import Session  # noqa: E402
-from pellucid.view.widgets import Panel  # noqa: E402
+from pellucid.mesh import MeshTopology
+from pellucid.shader import Shader
+from pellucid.view.export import export
+from pellucid.view.passes import Pass
+from pellucid.view.reference import Reference, vertex_irradiance
+from pellucid.view.session import Session
+from pellucid.view.widgets import Panel
 
 
 def wait_until(condition, seconds=120):
@@ -29,7 +25,6 @@ def wait_until(condition, seconds=120):
 
 
 def test_the_reference_leaves_the_session_free(session):
-    reset(session)
     session.look.mode = "reference"
     whole = session.frame(96, 54).pixels  # without `report` it is complete at once
     session.cancel_reference("main")
@@ -58,13 +53,10 @@ def test_the_reference_leaves_the_session_free(session):
         assert session.references["main"] is made and not np.array_equal(moving, whole)
     finally:
         gate.set()
-        session.report = None
-        reset(session)
 
 
 @pytest.mark.parametrize("late", ["curvature", "commit"])
 def test_a_first_picture_waits_for_no_kernel(session, monkeypatch, late):
-    reset(session)
     kind = MeshTopology if late == "curvature" else Shader
     gate, real = threading.Event(), getattr(kind, late)
 
@@ -95,7 +87,6 @@ def test_a_first_picture_waits_for_no_kernel(session, monkeypatch, late):
 
 
 def test_what_is_written_waits_for_its_kernels(session, monkeypatch, tmp_path):
-    reset(session)
     own, standing, real = Session(session.device), [], Pass.shade
     own.report = lambda: None
     own.show(session.mesh)
@@ -112,7 +103,6 @@ def test_what_is_written_waits_for_its_kernels(session, monkeypatch, tmp_path):
 
 
 def test_the_reference_has_the_light_of_the_lamps(session):
-    reset(session)
     look = session.look
     look.ambient, look.surroundings = 0.0, ""
     for lamp in look.lamps:
