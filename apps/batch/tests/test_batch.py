@@ -217,7 +217,7 @@ def test_a_scheduler_that_dies(client, manifest, check, tmp_path):
         while not (tmp_path / "scheduler.json").exists():
             assert scheduler.poll() is None
             time.sleep(0.02)
-        with distributed.Client(scheduler_file=str(tmp_path / "scheduler.json"), timeout=10) as doomed:
+        with distributed.Client(scheduler_file=str(tmp_path / "scheduler.json"), timeout=5) as doomed:
             doomed.wait_for_workers(1, timeout=120)
             doomed.run(misbehave, "dies", scheduler.pid)
             with pytest.raises(batch.NoWorker, match="the same call goes on") as caught:

@@ -40,12 +40,14 @@ def wait_for(condition, what, seconds=PATIENCE):
     raise AssertionError(f"waited {seconds} s for {what}")
 
 
-# The viewer, whose device is gone once the file LOST is there, without pictures of smooth edges.
+# The viewer, whose device is gone once the file LOST is there, without smooth edges and with small exports.
 PROGRAM = """
 import os, sys
 import pellucid as pel
+import pellucid.view.export
 import pellucid.view.session
 pellucid.view.session.SAMPLES = 1
+pellucid.view.export.export.__defaults__ = 320, 180, False
 flag, execute, lost = sys.argv.pop(1), pel.Shader.execute, []
 def broken(shader):
     if os.path.exists(flag):
@@ -127,15 +129,15 @@ def page(address, tmp_path_factory):
 
 def picture(page):
     """The picture at rest, as an array."""
-    wait_for(lambda: page.execute_script("return window.pelMoving === false"), "the picture at rest")
-    last, same = None, 0
-    for _ in range(10 * PATIENCE):
-        count = page.execute_script("return window.pelFrames")
-        same = same + 1 if count == last else 0
-        last = count
-        if same > 9:
-            break
-        time.sleep(0.1)
+    counts = []
+
+    def rests():
+        """Whether no further picture comes for a while."""
+        counts.append(page.execute_script(
+            "return window.pelMoving || window.pelStandsIn ? null : window.pelFrames"))
+        return len(counts) > 8 and None not in counts[-8:] and len(set(counts[-8:])) == 1
+
+    wait_for(rests, "the picture at rest")
     data = page.execute_script("return document.getElementById('pel-canvas').toDataURL('image/png')")
     return np.asarray(Image.open(io.BytesIO(base64.b64decode(data.split(",")[1]))).convert("RGB")).astype(int)
 

@@ -59,6 +59,7 @@
       stamp = head.at;
       window.pelFrames += 1;
       window.pelMoving = head.moving;
+      window.pelStandsIn = head.standsIn;
       window.pelSample = head.sample;
       window.pelRate = times.length;
       window.pelKernels = head.kernels;
