@@ -12,10 +12,10 @@ from .passes import look, render_exr
 
 
 class Lamp:
-    """A light, and the description of its shadow map. Blender's watts spread over 4 pi: a point light of P
-    watts gives irradiance P / (4 pi d^2), so that irradiance / pi at distance 1 is P / (4 pi^2). An area
-    light's radiance is P / (pi A), which gives P / pi^2; before Blender 4.0 it is P / (4 A). A sun's strength
-    is irradiance itself."""
+    """A light as keys of [[light]], and of [light.shadow_map] once that is rendered. Blender's watts spread
+    over 4 pi: a point light of P watts gives irradiance P / (4 pi d^2), so that irradiance / pi at distance 1
+    is P / (4 pi^2). An area light's radiance is P / (pi A), which gives P / pi^2; before Blender 4.0 it is
+    P / (4 A). A sun's strength is irradiance itself."""
 
     def __init__(self, name, data, matrix):
         self.name, self.kind = name, data.type
@@ -26,14 +26,20 @@ class Lamp:
         share *= data.energy * 2 ** getattr(data, "exposure", 0)  # Blender 4.5 and newer
         warmth = data.temperature_color if getattr(data, "use_temperature", False) else (1, 1, 1)
         self.casts_shadow = getattr(data.cycles, "cast_shadow", data.use_shadow)  # one for all from 4.2 on
-        self.color = [c * w * share for c, w in zip(data.color, warmth)]
+        self.keys = {"type": {"SUN": "directional", "AREA": "rectangle"}.get(data.type, data.type.lower()),
+                     "color": [c * w * share for c, w in zip(data.color, warmth)]}
+        if data.type == "SUN":
+            self.keys["to_light"] = tuple(-self.forward)
+        else:
+            self.keys["position"] = tuple(self.position)
         if data.type == "SPOT":
-            self.angle = data.spot_size
-            self.cos_outer = math.cos(data.spot_size / 2)
-            self.cos_inner = self.cos_outer + (1 - self.cos_outer) * data.spot_blend
+            self.angle, dark = data.spot_size, math.cos(data.spot_size / 2)
+            self.keys.update(spot_direction=tuple(self.forward), spot_cos_outer=dark,
+                             spot_cos_inner=dark + (1 - dark) * data.spot_blend)
         if data.type == "AREA":
-            self.half_width, self.half_height = half_sides(data, matrix)
-        self.map_file = None
+            half_width, half_height = half_sides(data, matrix)
+            self.keys.update(half_width=tuple(half_width), half_height=tuple(half_height))
+        self.shadow = None
 
 
 def gather(source, scene, bounds):
@@ -116,28 +122,28 @@ def render_shadow_map(scene, lamp, bounds, options, taken):
     if lamp.kind == "POINT":
         warn(f"light '{lamp.name}' is a point light: no shadow map is rendered for it")
         return
-    lamp.map_file = file_names.unique("shadow", lamp.name, ".exr", taken)
+    file = file_names.unique("shadow", lamp.name, ".exr", taken)
     camera = bpy.data.objects.new("pellucid shadow", bpy.data.cameras.new("pellucid shadow"))
     scene.collection.objects.link(camera)
     rotation = lamp.forward.to_track_quat("-Z", "Y").to_matrix()  # the light's own may be mirrored or skewed
     right, up = rotation.col[0].copy(), rotation.col[1].copy()
-    along = [lamp.forward.dot(c) for c in bounds.corners()]
+    corners = bounds.corners()
+    along = [lamp.forward.dot(c) for c in corners]
     margin = 0.02 * bounds.radius
     if lamp.kind == "SUN":
-        across, upward = [right.dot(c) for c in bounds.corners()], [up.dot(c) for c in bounds.corners()]
+        across, upward = [right.dot(c) for c in corners], [up.dot(c) for c in corners]
         lamp.extent = max(max(across) - min(across), max(upward) - min(upward)) + 2 * margin
-        near, far = min(along) - margin, max(along) + margin
+        near, deep = min(along) - margin, max(along) - min(along) + 2 * margin
         middle = (max(across) + min(across)) / 2, (max(upward) + min(upward)) / 2
         # Depth is measured from the camera, which therefore stands on the near plane.
         camera.matrix_world = Matrix.Translation(right * middle[0] + up * middle[1] +
                                                  lamp.forward * near) @ rotation.to_4x4()
         camera.data.type, camera.data.ortho_scale = "ORTHO", lamp.extent
-        camera.data.clip_start, camera.data.clip_end = 0, far - near
-        lamp.depth_range = far - near
-        lamp.to_shadow = [[*(right / lamp.extent), 0.5 - middle[0] / lamp.extent],
-                          [*(up / -lamp.extent), 0.5 + middle[1] / lamp.extent],
-                          [*(lamp.forward / lamp.depth_range), -near / lamp.depth_range], [0, 0, 0, 1]]
-        encode = ("LINEAR", 1 / lamp.depth_range, 0.0)
+        camera.data.clip_start, camera.data.clip_end = 0, deep
+        to_shadow = [*(right / lamp.extent), 0.5 - middle[0] / lamp.extent,
+                     *(up / -lamp.extent), 0.5 + middle[1] / lamp.extent,
+                     *(lamp.forward / deep), -near / deep, 0, 0, 0, 1]
+        depths, encode = {"projection": "parallel", "depth_range": deep}, ("LINEAR", 1 / deep, 0.0)
     else:
         eye = lamp.forward.dot(lamp.position)
         far = max(1.01 * (max(along) - eye), 1e-3 * bounds.radius)
@@ -145,25 +151,25 @@ def render_shadow_map(scene, lamp, bounds, options, taken):
         camera.matrix_world = Matrix.Translation(lamp.position) @ rotation.to_4x4()
         if lamp.kind == "AREA":  # all that is before it
             aside = [max(abs((c - lamp.position).dot(right)), abs((c - lamp.position).dot(up))) /
-                     max((c - lamp.position).dot(lamp.forward), near) for c in bounds.corners()]
+                     max((c - lamp.position).dot(lamp.forward), near) for c in corners]
             lamp.angle = 2 * math.atan(1.02 * max(aside))
         camera.data.angle = min(lamp.angle, math.radians(170))
         camera.data.clip_start, camera.data.clip_end = near, far
-        lamp.extent = 2 * math.tan(camera.data.angle / 2)  # of the map at distance 1
-        # 1 / distance is linear in z: 1 / (depth_a z + depth_b).
-        lamp.depth_a, lamp.depth_b = 1 / far - 1 / near, 1 / near
+        extent = 2 * math.tan(camera.data.angle / 2)  # of the map at distance 1
+        a, b = 1 / far - 1 / near, 1 / near  # 1 / distance is linear in z: 1 / (a z + b)
 
         def row(axis, w):
             return [*(axis + w * lamp.forward), -lamp.position.dot(axis + w * lamp.forward)]
 
-        z = row(Vector((0, 0, 0)), -lamp.depth_b / lamp.depth_a)
-        z[3] += 1 / lamp.depth_a
-        lamp.to_shadow = [row(right / lamp.extent, 0.5), row(up / -lamp.extent, 0.5), z,
-                          row(Vector((0, 0, 0)), 1)]
-        encode = ("INVERSE", 1 / lamp.depth_a, -lamp.depth_b / lamp.depth_a)
+        z = row(Vector((0, 0, 0)), -b / a)
+        z[3] += 1 / a
+        to_shadow = [*row(right / extent, 0.5), *row(up / -extent, 0.5), *z, *row(Vector((0, 0, 0)), 1)]
+        depths = {"projection": "perspective", "depth_a": a, "depth_b": b}
+        encode = ("INVERSE", 1 / a, -b / a)
+    lamp.shadow = {"file": file, "world_to_shadow": to_shadow, **depths}
     scene.camera = camera
     scene.render.resolution_x = scene.render.resolution_y = options.shadow_size
-    write_depth(scene, os.path.join(options.output, lamp.map_file), *encode)
+    write_depth(scene, os.path.join(options.output, file), *encode)
 
 
 def depth_material(kind, factor, offset):

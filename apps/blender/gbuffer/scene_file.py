@@ -79,26 +79,11 @@ def write(path, unit, viewpoint, lamps, sky, materials, eyes, curvature, fallbac
     if sky:
         lines += ["", "[ambient]", "sh = [", *("    " + value(row) + "," for row in sky), "]"]
     for lamp in lamps:
-        keys = {"type": {"SUN": "directional", "AREA": "rectangle"}.get(lamp.kind, lamp.kind.lower())}
-        if lamp.kind == "SUN":
-            keys["to_light"] = tuple(-lamp.forward)
-        else:
-            keys["position"] = tuple(lamp.position)
-        if lamp.kind == "AREA":
-            keys.update(half_width=tuple(lamp.half_width), half_height=tuple(lamp.half_height))
-        if lamp.kind == "SPOT":
-            keys.update(spot_direction=tuple(lamp.forward), spot_cos_inner=lamp.cos_inner,
-                        spot_cos_outer=lamp.cos_outer)
-        lines += ["", "[[light]]  " + comment(lamp.name), *table({**keys, "color": lamp.color})]
-        if lamp.map_file:
-            keys = {"file": lamp.map_file, "channel": "R", "filter_texels": 48, "bias": 0.5 / unit,
-                    "world_to_shadow": [v for row in lamp.to_shadow for v in row]}
-            if lamp.kind == "SUN":
-                keys.update(projection="parallel", depth_range=lamp.depth_range)
-            else:
-                keys.update(projection="perspective", depth_a=lamp.depth_a, depth_b=lamp.depth_b)
-            lines += ["", "[light.shadow_map]", *table(keys)]
-    extents = [lamp.extent for lamp in lamps if lamp.map_file and lamp.kind == "SUN"]
+        lines += ["", "[[light]]  " + comment(lamp.name), *table(lamp.keys)]
+        if lamp.shadow:
+            lines += ["", "[light.shadow_map]", *table({**lamp.shadow, "channel": "R", "filter_texels": 48,
+                                                        "bias": 0.5 / unit})]
+    extents = [lamp.extent for lamp in lamps if lamp.shadow and lamp.kind == "SUN"]
     taken = set()
     for id_, material, surface in materials:
         if material.name in of_eyes:

@@ -196,23 +196,18 @@ TEST_F(BlenderScript, AnAreaLightIsARectangle) {
 
 TEST_F(BlenderScript, AMeshFileScatters) {
     // A ball of radius 1 with y up, its north pole cut off so that axes can be told apart.
-    std::string off;
-    int vertices = 0, faces = 0;
-    const int rings = 24, segments = 48;
+    constexpr int rings = 24, segments = 48;
+    std::string vertices, faces;
     for (int r = 0; r <= rings; ++r)
-        for (int s = 0; s < segments; ++s, ++vertices) {
+        for (int s = 0; s < segments; ++s) {
             const double a = M_PI * (r + 3) / (rings + 3), b = 2 * M_PI * s / segments;
-            off += std::to_string(std::sin(a) * std::cos(b)) + " " + std::to_string(std::cos(a)) + " " +
-                   std::to_string(std::sin(a) * std::sin(b)) + "\n";
+            vertices +=
+                io::concat(std::sin(a) * std::cos(b), " ", std::cos(a), " ", std::sin(a) * std::sin(b), "\n");
+            const int i = r * segments + s, j = r * segments + (s + 1) % segments;
+            if (r < rings) faces += io::concat("4 ", i, " ", j, " ", j + segments, " ", i + segments, "\n");
         }
-    for (int r = 0; r < rings; ++r)
-        for (int s = 0; s < segments; ++s, ++faces) {
-            const int a = r * segments + s, b = r * segments + (s + 1) % segments;
-            off += "4 " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(b + segments) +
-                   " " + std::to_string(a + segments) + "\n";
-        }
-    const std::string mesh =
-        write("ball.off", "OFF\n" + std::to_string(vertices) + " " + std::to_string(faces) + " 0\n" + off);
+    const std::string mesh = write("ball.off", io::concat("OFF\n", (rings + 1) * segments, " ",
+                                                          rings * segments, " 0\n", vertices, faces));
     ASSERT_EQ(render("'" + mesh + "' -o '" + path("out") +
                      "' --size 96x64 --up y --height 19.4 --half --shadow-size 256"),
               0)
