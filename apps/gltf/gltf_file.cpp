@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <numbers>
+#include <numeric>
 
 #include "gltf/gltf_document.h"
 #include "io/choice_keys.h"
@@ -305,7 +306,7 @@ class Builder {
             list = document_.indices(primitive, "indices");
         } else {
             list.resize(vertices);
-            for (size_t i = 0; i < vertices; ++i) list[i] = uint32_t(i);
+            std::iota(list.begin(), list.end(), 0u);
         }
         for (size_t i = 0; i < list.size(); ++i)
             if (list[i] >= vertices)

@@ -129,10 +129,6 @@ void addMaterials(ImportedGltf& made, const std::vector<std::string>& words) {
     }
 }
 
-void warn(GltfScene& gltf, const std::string& text) {
-    gltf.mesh.warnings.push_back(text);
-}
-
 void toMillimetres(GltfScene& gltf, double unitMm) {
     for (float& p : gltf.mesh.positions) {
         p = float(p * unitMm);
@@ -156,24 +152,25 @@ void dropDistantCameras(GltfScene& gltf) {
         return !((camera.position - box.center()).length() <= most * box.size().length());
     });
     if (dropped)
-        warn(gltf,
-             concat(dropped,
-                    " cameras are left out: their distance is over 100,000 times the size of the scene"));
+        gltf.mesh.warnings.push_back(concat(
+            dropped, " cameras are left out: their distance is over 100,000 times the size of the scene"));
 }
 
 void addLights(ImportedGltf& made, const GltfImportOptions& options) {
     std::vector<SceneLight>& lights = made.gltf.lights;
+    std::vector<std::string>& warnings = made.gltf.mesh.warnings;
     if (lights.size() > mostLights) {
-        warn(made.gltf,
-             concat("the scene has ", lights.size(), " lights; the first ", mostLights, " are taken"));
+        warnings.push_back(
+            concat("the scene has ", lights.size(), " lights; the first ", mostLights, " are taken"));
         lights.resize(mostLights);
     }
     const size_t dropped = std::erase_if(lights, [](const SceneLight& light) {
         return std::ranges::any_of(light.light.position, [](float p) { return !(std::abs(p) <= 1e30f); });
     });
-    if (dropped) warn(made.gltf, concat(dropped, " lights are left out: they are too far away for a float"));
+    if (dropped)
+        warnings.push_back(concat(dropped, " lights are left out: they are too far away for a float"));
     if (lights.empty() && options.lights)
-        warn(made.gltf, "the scene has no lights, so their factor is without effect");
+        warnings.push_back("the scene has no lights, so their factor is without effect");
     made.lampAdded = lights.empty();
     made.lightFactor = 1;
     if (made.lampAdded) return addLamp(made.scene);
@@ -184,8 +181,8 @@ void addLights(ImportedGltf& made, const GltfImportOptions& options) {
         for (float& c : light.light.color) c = float(std::min(c * made.lightFactor, 1e18));
     const double share = areaOf(lit, 1 / made.lightFactor) / std::max(areaOf(lit, 0), 1e-30);
     if (share > 0.1)
-        warn(made.gltf, concat("the lights are too bright: an estimated ", int(100 * share),
-                               " % of the lit surface is brighter than white"));
+        warnings.push_back(concat("the lights are too bright: an estimated ", int(100 * share),
+                                  " % of the lit surface is brighter than white"));
 }
 
 // An OBJ file with a group per material. Its v axis points up; that of glTF points down.

@@ -11,14 +11,9 @@ using namespace pellucid;
 namespace {
 
 PelFormat formatOf(const gl::Texture& texture) {
-    switch (texture.internalFormat) {
-        case GL_R32F:
-            return PEL_FORMAT_R32F;
-        case GL_SRGB8_ALPHA8:
-            return PEL_FORMAT_RGBA8_SRGB;
-        default:
-            return PEL_FORMAT_RGBA16F;
-    }
+    return texture.internalFormat == GL_R32F           ? PEL_FORMAT_R32F
+           : texture.internalFormat == GL_SRGB8_ALPHA8 ? PEL_FORMAT_RGBA8_SRGB
+                                                       : PEL_FORMAT_RGBA16F;
 }
 
 bool hasGlSharing(cl_device_id device) {
