@@ -6,7 +6,8 @@ import logging
 import multiprocessing.resource_tracker
 import os
 import signal
-from collections.abc import Iterator, Sequence
+import threading
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Optional
 
 from .._errors import PellucidError
@@ -71,6 +72,35 @@ def _connected(scheduler: Any) -> Iterator[Any]:
         yield client
 
 
+@contextlib.contextmanager
+def _held_interrupts() -> Iterator[Callable[[], None]]:
+    """Yields a function that raises KeyboardInterrupt if Ctrl-C was pressed. Raised by the signal, it could
+    end in a finalizer or a callback of Dask, where Python prints and drops it, or leave a cluster half
+    started. A second Ctrl-C is raised at once. On another thread, or with a handler of the caller's: does
+    nothing."""
+    pressed = False
+
+    def note(number: int, frame: Any) -> None:
+        nonlocal pressed
+        if pressed:
+            signal.default_int_handler(number, frame)
+        pressed = True
+
+    def check() -> None:
+        if pressed:
+            raise KeyboardInterrupt
+
+    held = (threading.current_thread() is threading.main_thread() and
+            signal.getsignal(signal.SIGINT) is signal.default_int_handler)
+    if held:
+        signal.signal(signal.SIGINT, note)
+    try:
+        yield check
+    finally:
+        if held:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
 def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str], *, scheduler: Any = None,
         workers: Optional[int] = None, device: Sequence[str] = (), timeout: float = 120.0, jobs: int = 0,
         patience: float = 300.0, progress: bool = False) -> Summary:
@@ -125,7 +155,6 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
     except StoreError as e:
         raise BatchError(str(e)) from e
     from .dispatch import Dispatcher
-    from .interrupt import held_interrupts
 
     if isinstance(scheduler, distributed.Client):
         connection: Any = contextlib.nullcontext(scheduler)
@@ -133,6 +162,6 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
         connection = _local_client(workers, device, timeout)
     else:
         connection = _connected(scheduler)
-    with held_interrupts() as check, connection as client:
+    with _held_interrupts() as check, connection as client:
         return Dispatcher(client, manifest, store, progress=progress, timeout=timeout, jobs=jobs,
                           patience=patience, check=check).run()
