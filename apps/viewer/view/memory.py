@@ -3,11 +3,11 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from .. import _native
 from .._errors import PellucidError
 from .camera import Orbit
 from .look import Look, filled
@@ -54,14 +54,7 @@ class Memory:
             self.part(name).update(values)
             self.values[name] = {key: value for key, value in self.part(name).items() if value is not None}
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=self.path.parent, suffix=".json",
-                                         delete=False) as file:
-            json.dump(self.values, file, indent=1)
-        try:
-            os.replace(file.name, self.path)
-        except OSError:
-            os.unlink(file.name)
-            raise
+        _native.write_file(str(self.path), json.dumps(self.values, indent=1).encode())
 
 
 def remember(memory: Memory, session: Any) -> None:

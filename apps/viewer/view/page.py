@@ -80,7 +80,7 @@ class MeshPanel(Panel):
         except Exception as error:
             fail(f"{of}{error}")
             return False
-        self.rebuild()
+        self.viewer.rebuild()
         return True
 
     async def load(self, path: Any) -> bool:
@@ -197,7 +197,7 @@ class ExportPanel(Panel):
             except (ValueError, TypeError) as error:
                 fail(f"{e.file.name}: {error}")
                 return False
-            self.rebuild()
+            self.viewer.rebuild()
             return True
 
         self.upload("Load a look (.json)", read, "look-upload")

@@ -70,7 +70,7 @@ class PicturePanel(Panel):
             self.viewer.memory.update(presets={name: values})
         except OSError as error:
             fail(error)
-        self.rebuild()
+        self.viewer.rebuild()
 
     def of_preset(self, name: str) -> Optional[Look]:
         """The preset's material with the current light and view; None if the preset is damaged."""
@@ -88,7 +88,7 @@ class PicturePanel(Panel):
         new = self.of_preset(name) if name else None
         if new is not None:
             self.viewer.session.look = new
-            self.rebuild()
+            self.viewer.rebuild()
 
 
 class MaterialPanel(Panel):
@@ -156,12 +156,12 @@ class EyesPanel(Panel):
             if not path:  # the previous iris stays
                 return False
             self.look.iris_texture, self.look.iris_color = path, (1.0, 1.0, 1.0)
-            self.rebuild()
+            self.viewer.rebuild()
             return True
 
         def fibres() -> None:
             self.look.iris_texture, self.look.iris_color = "", Look().iris_color
-            self.rebuild()
+            self.viewer.rebuild()
 
         self.upload("Drop an image of an iris here", dropped, "iris-upload", 1 << 28)
         if self.look.iris_texture:
@@ -203,7 +203,7 @@ class LightsPanel(Panel):
         if not path:  # the surroundings before stay
             return False
         self.look.surroundings = path
-        self.rebuild()
+        self.viewer.rebuild()
         return True
 
 
@@ -252,7 +252,7 @@ class ComparePanel(Panel):
         def swap() -> None:
             if session.other is not None:
                 session.look, session.other = session.other, session.look
-                self.rebuild()
+                self.viewer.rebuild()
 
         ui.label("Compares two pictures. On the right of the divider: another method, or the settings stored "
                  "by Keep. On the left: the current settings. Alt and drag moves the divider."

@@ -116,11 +116,8 @@ class Pass:
         ambient = session.ambient(look)
         self._update("ambient", ambient, lambda: self.shader.set_ambient(Ambient(constant=[ambient] * 3)))
         around = (look.surroundings, look.surroundings_light, look.surroundings_turn, session.mesh.up)
-
-        def set_surroundings() -> None:
-            self.shader.set_environment(*(session.surroundings(look) or (None,)))
-
-        self._update("surroundings", around, set_surroundings)
+        self._update("surroundings", around,
+                     lambda: self.shader.set_environment(*(session.surroundings(look) or (None,))))
         eye, _ = session.camera(width / height)
         self._update("camera", eye.tobytes(), lambda: self.shader.set_camera(Camera(position=eye)))
         options = {"target_error": look.target_error, "millimetres_per_unit": session.mm,

@@ -5,6 +5,7 @@ it. So shadow edges are only as sharp as the mesh is fine; `pellucid reference` 
 """
 from __future__ import annotations
 
+import dataclasses
 import threading
 import time
 from typing import TYPE_CHECKING, Any, Callable, Optional
@@ -105,9 +106,8 @@ def reference(session: Session, name: str, look: Look, width: int, height: int,
     result so far.
     """
     g = session.gbuffer(width, height, small)
-    lights = [(lamp.azimuth, lamp.elevation, lamp.color, lamp.intensity, lamp.shadow, lamp.on)
-              for lamp in look.lamps]
-    key = (session.drawn_state(width, height, small), lights, look.ambient, look.surroundings,
+    lamps = [dataclasses.astuple(lamp) for lamp in look.lamps]
+    key = (session.drawn_state(width, height, small), lamps, look.ambient, look.surroundings,
            look.surroundings_light, look.surroundings_turn, look.profile, look.distance,
            look.radius_scale, look.shadow_size)
     made = session.references.get(name)

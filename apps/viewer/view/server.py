@@ -134,18 +134,17 @@ class Viewer:
         if not moving or now - self._noted > 0.1:  # a copy of all settings: of a motion, few and the last
             self._noted = now
             self._history.note(self.session)
+        self._draw()
+
+    def _draw(self) -> None:
         for event in self._changed:
             event.set()
 
     def _advanced(self) -> None:
         """A reference has advanced, on its own thread: every page draws again."""
-        def draw() -> None:
-            for event in self._changed:
-                event.set()
-
         if self._loop is not None:
             with contextlib.suppress(RuntimeError):  # the loop is closed: the viewer has ended
-                self._loop.call_soon_threadsafe(draw)
+                self._loop.call_soon_threadsafe(self._draw)
 
     @property
     def moving(self) -> bool:
@@ -222,7 +221,7 @@ class Viewer:
         elif kind == "zoom":
             orbit.distance = max(0.24 * self.session.renderer.radius,
                                  min(50 * self.session.renderer.radius, orbit.distance * 1.2 ** (5 * dy)))
-        elif kind == "surroundings" and hasattr(self.session.look, "surroundings_turn"):
+        elif kind == "surroundings":
             for look in filter(None, (self.session.look, self.session.other)):
                 look.surroundings_turn = (look.surroundings_turn + 120 * dx + 180) % 360 - 180
         elif kind == "light":

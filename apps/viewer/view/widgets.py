@@ -5,11 +5,9 @@ import contextlib
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, Callable, Optional
 
-import numpy as np
 from nicegui import events, ui
 
-from .. import files
-from .._show import linear
+from .._show import linear, srgb
 from .._types import SLIDERS
 from .look import Look
 
@@ -19,8 +17,7 @@ if TYPE_CHECKING:
 
 
 def _hex(color: Any) -> str:
-    srgb = files.tonemap(np.asarray(color, np.float32).reshape(1, 1, 3), 1.0, 1.0)[0, 0]
-    return "#{:02x}{:02x}{:02x}".format(*srgb.tolist())
+    return "#{:02x}{:02x}{:02x}".format(*srgb(color).tolist())
 
 
 def _linear(text: str) -> tuple[float, float, float]:
@@ -52,10 +49,6 @@ class Panel:
 
     def build(self) -> None:
         raise NotImplementedError
-
-    def rebuild(self) -> None:
-        """The widgets of all pages anew, and the picture."""
-        self.viewer.rebuild()
 
     async def deliver(self, make: Callable[[], bytes], name: str) -> None:
         """Makes a file on the session's thread, for the browser to download unless the page was closed."""
