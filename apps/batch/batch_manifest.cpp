@@ -98,6 +98,10 @@ Request readRequest(TomlReader& reader, LutPreset preset) {
     if (!ownAxis) r.axes = axes;
     reader.list("encoding", r.encodings);
     reader.list("diffusion_radius", r.radii, range::positive);
+    if (r.kind == PEL_LUT_SPECULAR) {  // which depends on none of these
+        r.profiles = r.forms = r.axes = {""};
+        r.radii = {0};
+    }
     std::vector<float> sides;
     reader.list("size", sides, range::atLeastOne);
     for (float side : sides) {
@@ -156,10 +160,6 @@ class Expansion {
         if (r.kind != PEL_LUT_SPECULAR && r.stack <= 1) leaveOutProfiles(reader, r);
         for (const std::string& encoding : r.encodings)
             for (const Size& size : r.sizes) {
-                if (r.kind == PEL_LUT_SPECULAR) {
-                    addOne(reader, r, encoding, size, "", "", "", 0);
-                    continue;
-                }
                 for (const std::string& profile : r.profiles)
                     for (float radius : r.radii)
                         for (const std::string& form : r.forms)
@@ -194,10 +194,8 @@ class Expansion {
 
     // Checked before expansion: the product of five short lists can exceed the memory.
     void refuseTooMany(const TomlReader& reader, const Request& r) {
-        double asked = double(r.encodings.size()) * double(r.sizes.size());
-        if (r.kind != PEL_LUT_SPECULAR)
-            asked *= double(r.profiles.size()) * double(r.radii.size()) * double(r.forms.size()) *
-                     double(r.axes.size());
+        const double asked = double(r.encodings.size()) * double(r.sizes.size()) * double(r.profiles.size()) *
+                             double(r.radii.size()) * double(r.forms.size()) * double(r.axes.size());
         if (asked_ + asked > double(mostEntries))
             reader.fail("size",
                         concat("asks for ", printed("%.0f", asked),

@@ -8,8 +8,7 @@ namespace pellucid::io {
 struct GltfLook {
     SceneMaterial material;   // its profile: one of the library, or "NAME.toml" of profileText
     Triple albedo{0, 0, 0};   // without the texture
-    std::string profileName;  // of a profile made for it; "" if there is none
-    std::string profileText;  // the profile file
+    std::string profileText;  // the file of a profile that was made for it, or ""
     // How the material was imported: "plain", "metal", "clear", "volume", "thin sheet", "profile"
     std::string how;
 };

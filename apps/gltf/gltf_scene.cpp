@@ -42,7 +42,6 @@ void volume(const GltfMaterial& m, const std::string& name, GltfLook& look) {
         path[c] = std::clamp(1 / (extinction * std::max(1 - m.scatterAnisotropy * albedo, 1e-6)), 1e-5, 1e5);
     }
     look.how = "volume";
-    look.profileName = name;
     look.profileText =
         profileFile(name, "glTF: KHR_materials_volume and its scatter extension",
                     "mean_free_path = " + triple(path) + "\nalbedo = " + triple(*m.multiscatterColor) +
@@ -65,11 +64,11 @@ void thinSheet(const GltfMaterial& m, const std::string& name, GltfLook& look) {
         width[c] = widthFor(std::clamp(through / std::max(look.albedo[c], 1e-9), 1e-3, 0.98), thickness);
     }
     look.how = "thin sheet";
-    look.profileName = name;
     look.profileText =
         profileFile(name, "glTF: KHR_materials_diffuse_transmission", "distance = " + triple(width) + "\n");
     look.material.material.thinThickness = float(thickness);
     look.material.material.scattering = PEL_SCATTERING_SCREEN;
+    look.material.material.thicknessTaps = 0;
 }
 
 }  // namespace
@@ -88,22 +87,19 @@ GltfLook lookOf(GltfMaterial m, const std::string& name, uint32_t id, const std:
     for (size_t c = 0; c < 3; ++c) look.albedo[c] = m.baseColor[c] * (1 - m.metallic);
     PelMaterial& p = look.material.material;
     look.material.id = id;
-    p.scattering = PEL_SCATTERING_NONE;
-    p.thicknessTaps = 0;
     const bool enters = m.transmission > 0 || m.diffuseTransmission > 0;
     if (!profile.empty()) {
         look.how = "profile";
         look.material.profile = profile;
-        p.scattering = PEL_SCATTERING_AUTO;
-        p.thicknessTaps = pelMaterialDefaults().thicknessTaps;
     } else if (m.metallic <= 0.5 && m.multiscatterColor && std::isfinite(m.attenuationDistance) && enters) {
-        p.scattering = PEL_SCATTERING_AUTO;
-        p.thicknessTaps = pelMaterialDefaults().thicknessTaps;
         volume(m, name, look);
     } else if (m.metallic <= 0.5 && m.diffuseTransmission > 0) {
         thinSheet(m, name, look);
+    } else {
+        p.scattering = PEL_SCATTERING_NONE;
+        p.thicknessTaps = 0;
     }
-    if (!look.profileName.empty()) look.material.profile = name + ".toml";
+    if (!look.profileText.empty()) look.material.profile = name + ".toml";
     // The GGX width is the square of glTF's roughness. f0 is one number: the mean of a metal's base colour.
     const double ratio = m.ior > 0 ? (m.ior - 1) / (m.ior + 1) : 1,
                  metal = (m.baseColor[0] + m.baseColor[1] + m.baseColor[2]) / 3;
