@@ -131,15 +131,6 @@ def test_no_slider_builds_a_program_once_the_picture_is_at_rest(session):
     assert session.device.stats().programs_built == built
 
 
-def test_the_wipe_shows_both_settings(session):
-    left = session.frame(160, 90).pixels
-    session.other = Look(method="none", specular=0.0, transmission=0.0, ambient=0.5)
-    session.wipe = 0.5
-    both = session.frame(160, 90).pixels
-    assert np.array_equal(both[:, :78], left[:, :78])
-    assert not np.array_equal(both[:, 82:], left[:, 82:])
-
-
 def test_an_iris_is_a_square_of_a_picture(session, tmp_path):
     session.look.iris_texture = str(tmp_path / "none.png")
     with pytest.raises(files.FileError, match="none.png"):
@@ -353,11 +344,3 @@ def test_presets_and_looks():
                            ({"profile": "skn"}, "profile of a look is 'skn'")):
         with pytest.raises(ValueError, match=message):
             Look.from_dict(wrong)
-
-
-def test_a_bad_mesh_leaves_the_one_before(session, tmp_path):
-    before, mesh = session.frame(160, 90).pixels, session.mesh
-    (tmp_path / "bad.obj").write_text("v 0 0 0\nf 1 2 3\n")
-    with pytest.raises(files.FileError, match="bad.obj"):
-        session.load(tmp_path / "bad.obj")
-    assert session.mesh is mesh and np.array_equal(session.frame(160, 90).pixels, before)

@@ -88,10 +88,12 @@ def test_the_histogram_counts_what_is_seen():
 
 
 def test_another_method_on_the_right_and_side_by_side(session):
+    alone = session.frame(200, 90).pixels
     session.against = "none"
     other = session.look.copy()
     other.method = "none"
     both = session.frame(200, 90).pixels
+    assert np.array_equal(both[:, :98], alone[:, :98]) and (both[:, 102:] != alone[:, 102:]).any()
     session.against, session.other = "", other
     np.testing.assert_array_equal(session.frame(200, 90).pixels, both)
     session.beside = True

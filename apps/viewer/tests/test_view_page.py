@@ -154,12 +154,6 @@ def act_and_compare(page, act):
     return before, picture(page)
 
 
-def test_it_shows_a_head(page):
-    seen = picture(page)
-    assert seen.max() > 150 and seen.std() > 20
-    assert not page.find_element(By.ID, "pel-error").is_displayed()
-
-
 @pytest.mark.parametrize("key", [None, Keys.SHIFT, Keys.CONTROL])
 def test_dragging_turns_moves_and_lights(page, key):
     def drag():
@@ -201,7 +195,7 @@ def test_keys_frame_turn_undo_and_explain(page):
     press(page, "1")
     front = picture(page)
     before, side = act_and_compare(page, lambda: press(page, "3"))
-    assert differ(front, side)
+    assert differ(front, side) and front.max() > 150
     assert not differ(front, act_and_compare(page, lambda: press(page, Keys.CONTROL, "z"))[1])
     assert not differ(side, act_and_compare(page, lambda: press(page, Keys.CONTROL, "y"))[1])
     press(page, "1")
