@@ -33,23 +33,26 @@ io::Picture developed(const std::vector<float>& rgb) {
     return io::Picture(side, side, io::toSrgb8(rgb, map));
 }
 
-io::Picture shaded(const EyeScene& scene) {
-    return developed(EyePicture(scene).shade());
+io::Tile tile(const char* label, const EyeScene& scene) {
+    return {label, developed(EyePicture(scene).shade())};
 }
 
-void write(const std::string& folder, const std::string& name, const std::vector<io::Tile>& tiles) {
+void write(const std::string& file, const std::vector<io::Tile>& tiles) {
     const io::Picture sheet = io::contactSheet(tiles, int(tiles.size()), 1);
-    io::writeImage8(folder + "/" + name, sheet.width, sheet.height, 3, sheet.rgb);
+    io::writeImage8(file, sheet.width, sheet.height, 3, sheet.rgb);
 }
 
-void pupils(const std::string& folder) {
-    std::vector<io::Tile> tiles;
-    for (const auto& [radius, label] : {std::pair{1.0f, "pupil 1 mm"}, {2.0f, "2 mm"}, {3.5f, "3.5 mm"}}) {
-        EyeScene scene = portrait({0.5, 0.6, 0.8});
-        scene.eye.pupilRadius = radius;
-        tiles.push_back({label, shaded(scene)});
-    }
-    write(folder, "eye_pupils.png", tiles);
+EyeScene withPupil(float radius) {
+    EyeScene scene = portrait({0.5, 0.6, 0.8});
+    scene.eye.pupilRadius = radius;
+    return scene;
+}
+
+EyeScene withLimbus(float darkening) {
+    EyeScene scene = portrait({0.5, 0.6, 0.8});
+    scene.eye.limbusDarkening = darkening;
+    scene.eye.gaze[0] = -0.6f;
+    return scene;
 }
 
 // A lamp beside the eye, and little else; a brown iris.
@@ -61,30 +64,7 @@ EyeScene aside(double x) {
     return scene;
 }
 
-void caustic(const std::string& folder) {
-    std::vector<io::Tile> tiles;
-    for (const auto& [x, label] : {std::pair{-1.0, "light from the left"}, {1.0, "from the right"}}) {
-        EyeScene scene = aside(x);
-        tiles.push_back({label, shaded(scene)});
-    }
-    EyeScene flat = aside(1);
-    flat.eye.corneaIndex = flat.eye.aqueousIndex = 1;
-    tiles.push_back({"the same, index 1: no caustic", shaded(flat)});
-    write(folder, "eye_caustic.png", tiles);
-}
-
-void limbus(const std::string& folder) {
-    std::vector<io::Tile> tiles;
-    for (const auto& [darkening, label] : {std::pair{0.0f, "darkening 0"}, {0.6f, "0.6"}, {0.9f, "0.9"}}) {
-        EyeScene scene = portrait({0.5, 0.6, 0.8});
-        scene.eye.limbusDarkening = darkening;
-        scene.eye.gaze[0] = -0.6f;
-        tiles.push_back({label, shaded(scene)});
-    }
-    write(folder, "eye_limbus.png", tiles);
-}
-
-void tracer(const std::string& folder) {
+void tracer(const std::string& file) {
     EyeScene scene = portrait({0.9, 0.3, 0.35}, 1.4);
     scene.camera = {3.2, 1.2, 6.5};
     scene.makeTexture(256);
@@ -97,10 +77,9 @@ void tracer(const std::string& folder) {
     for (size_t i = 0; i < is.size(); ++i) difference.push_back(std::abs(is[i] - should[i]) * 10);
     const PictureError error = differenceOf(picture, is, truth);
     std::printf("tracer: RMS %.3g, worst %.3g\n", error.rms, error.worst);
-    write(folder, "eye_tracer.png",
-          {{"this library", developed(is)},
-           {"tracer, double precision", developed(should)},
-           {"difference x 10", developed(difference)}});
+    write(file, {{"this library", developed(is)},
+                 {"tracer, double precision", developed(should)},
+                 {"difference x 10", developed(difference)}});
 }
 
 }  // namespace
@@ -108,10 +87,17 @@ void tracer(const std::string& folder) {
 int main(int argc, char** argv) {
     try {
         if (argc != 2) throw std::invalid_argument("sweep_eye_pictures FOLDER");
-        pupils(argv[1]);
-        caustic(argv[1]);
-        limbus(argv[1]);
-        tracer(argv[1]);
+        const std::string folder = argv[1];
+        write(folder + "/eye_pupils.png", {tile("pupil 1 mm", withPupil(1)), tile("2 mm", withPupil(2)),
+                                           tile("3.5 mm", withPupil(3.5f))});
+        EyeScene flat = aside(1);
+        flat.eye.corneaIndex = flat.eye.aqueousIndex = 1;
+        write(folder + "/eye_caustic.png",
+              {tile("light from the left", aside(-1)), tile("from the right", aside(1)),
+               tile("the same, index 1: no caustic", flat)});
+        write(folder + "/eye_limbus.png", {tile("darkening 0", withLimbus(0)), tile("0.6", withLimbus(0.6f)),
+                                           tile("0.9", withLimbus(0.9f))});
+        tracer(folder + "/eye_tracer.png");
     } catch (const std::exception& e) {
         std::fprintf(stderr, "%s\n", e.what());
         return 1;

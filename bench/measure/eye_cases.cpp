@@ -1,9 +1,7 @@
 // Eyes: the table of a cornea's caustics against the flux that enters it, and a frame that shows an eye
 // against the tracer of tests/reference, with the same table.
-#include <random>
-
+#include "eye/eye_lut_error.h"
 #include "measure.h"
-#include "reference/eye.h"
 
 namespace pellucid::bench {
 namespace {
@@ -12,18 +10,6 @@ using reference::Vec3;
 
 constexpr double toLight[3] = {0.6, 0, 0.8}, camera[3] = {0, 0, 400}, share = 0.05;
 constexpr float irisColor = 0.4f, scleraAlbedo = 0.7f;
-
-reference::Eye adult() {
-    const PelEye e = pelEyeDefaults();
-    reference::Eye eye;
-    eye.sclera = e.scleraRadius, eye.cornea = e.corneaRadius, eye.conic = e.corneaConic;
-    eye.limbus = e.limbusRadius, eye.limbusWidth = e.limbusWidth, eye.limbusDarkening = e.limbusDarkening;
-    eye.chamber = e.chamberDepth, eye.nCornea = e.corneaIndex, eye.nAqueous = e.aqueousIndex;
-    eye.concavity = e.irisConcavity, eye.iris = e.irisRadius > 0 ? e.irisRadius : e.limbusRadius;
-    eye.pupil = e.pupilRadius, eye.texturePupil = e.texturePupil, eye.tearRoughness = e.tearRoughness;
-    eye.nTear = e.tearIndex;
-    return eye;
-}
 
 // Share of a texel within the iris' rim.
 double covered(const PelEyeLutDesc& desc, uint32_t i, uint32_t j) {
@@ -46,7 +32,7 @@ Case tableCase(const Device& device, bool quick) {
     c.bytes = 16 * c.items;
     c.run = [=] { *lut = Lut(device, desc); };
     c.error = [=] {
-        const reference::Eye eye = adult();
+        const reference::Eye eye = eye_test::referenceOf(pelEyeDefaults());
         const std::vector<float> texels = lut->read<float>(PEL_LUT_FLOAT);
         const size_t slice = size_t(desc.width) * desc.height;
         ErrorSum sum;
@@ -64,14 +50,20 @@ Case tableCase(const Device& device, bool quick) {
     return c;
 }
 
-// A picture whose middle shows the front of a ball, material 2, among material 1.
-struct EyeSquare {
-    std::vector<float> position, normal;  // xyz per pixel
+// Skin everywhere, except for a square of 5 % of the pixels that shows the front of a ball, an eye.
+struct EyeFrame {
+    uint32_t width, height;
+    std::vector<float> position;  // xyz per pixel
     std::vector<uint8_t> id;
+    Shader shader;
+    Buffer target;
+    Lut caustics;
+    PelEyeLutDesc desc{};
 
-    // `share`: of the pixels, in the square.
-    EyeSquare(uint32_t width, uint32_t height, double share) {
+    EyeFrame(const Device& device, bool quick)
+        : width(quick ? 480 : 1920), height(quick ? 270 : 1080), shader(device) {
         const double side = std::sqrt(share * double(size_t(width) * height));
+        std::vector<float> normal;
         for (uint32_t y = 0; y < height; ++y)
             for (uint32_t x = 0; x < width; ++x) {
                 const double u = (x - 0.5 * width) / side * 2, v = (0.5 * height - y) / side * 2;
@@ -83,36 +75,16 @@ struct EyeSquare {
                 for (const double c : {px, py, pz}) normal.push_back(float(c / length));
                 id.push_back(inside ? 2 : 1);
             }
-    }
-};
-
-// Skin everywhere, except for a square of 5 % of the pixels that shows the front of a ball, an eye.
-struct EyeFrame {
-    uint32_t width, height;
-    std::vector<float> position;
-    std::vector<uint8_t> id;
-    Shader shader;
-    Buffer target;
-    Lut caustics;
-    PelEyeLutDesc desc{};
-
-    EyeFrame(const Device& device, bool quick)
-        : width(quick ? 480 : 1920), height(quick ? 270 : 1080), shader(device) {
-        const EyeSquare square(width, height, share);
-        position = square.position, id = square.id;
         target = Buffer(device, size_t(width) * height * 12);
-        const PelEye eye = [] {
-            PelEye e = pelEyeDefaults();
-            for (float& c : e.irisColor) c = irisColor;
-            return e;
-        }();
+        PelEye eye = pelEyeDefaults();
+        std::fill_n(eye.irisColor, 3, irisColor);
         desc = pelEyeLutDescOf(&eye);
         caustics = Lut(device, desc);
         PelMaterial skin = pelMaterialDefaults();
         skin.scattering = PEL_SCATTERING_NONE;
         PelMaterial sclera = skin;
         skin.specular = 1;
-        for (float& c : sclera.albedo) c = scleraAlbedo;
+        std::fill_n(sclera.albedo, 3, scleraAlbedo);
         PelCamera from = pelCameraDefaults();
         PelLight light = pelLightDefaults();
         for (int i = 0; i < 3; ++i) from.position[i] = float(camera[i]), light.toLight[i] = float(toLight[i]);
@@ -125,35 +97,27 @@ struct EyeFrame {
         };
         set(PEL_SLOT_RADIANCE, target, PEL_FORMAT_RGB32F);
         set(PEL_SLOT_POSITION, Buffer(device, position), PEL_FORMAT_RGB32F);
-        set(PEL_SLOT_NORMAL_SHADING, Buffer(device, square.normal), PEL_FORMAT_RGB32F);
+        set(PEL_SLOT_NORMAL_SHADING, Buffer(device, normal), PEL_FORMAT_RGB32F);
         set(PEL_SLOT_MATERIAL, Buffer(device, id), PEL_FORMAT_R8_UINT);
         shader.commit();
     }
 
-    // Irradiance on the iris, interpolated between the table's texels and slices (section 13).
-    double onIris(const std::vector<float>& texels, const reference::Eye& eye, double x, double y) const {
-        const auto between = [](double at, double last, uint32_t& first) {
-            at = std::clamp(at, 0.0, last);
-            first = uint32_t(std::min(at, std::max(last - 1, 0.0)));
-            return at - first;
-        };
-        uint32_t i, j, k;
-        const double fx = between((x / eye.iris + 1) / 2 * desc.width - 0.5, desc.width - 1.0, i),
-                     fy = between(std::abs(y) / eye.iris * desc.height - 0.5, desc.height - 1.0, j),
-                     fz = between(std::acos(toLight[2]) / largestAngle(eye) * (desc.depth - 1),
-                                  desc.depth - 1.0, k);
-        double sum = 0;
-        for (uint32_t corner = 0; corner < 8; ++corner) {
-            const uint32_t a = corner & 1, b = corner >> 1 & 1, c = corner >> 2;
-            const size_t texel = (size_t(k + c) * desc.height + j + b) * desc.width + i + a;
-            sum += (a ? fx : 1 - fx) * (b ? fy : 1 - fy) * (c ? fz : 1 - fz) * texels[3 * texel];
-        }
-        return sum;
+    // Irradiance on the iris by the table, between the slices of the nearest angles (section 13).
+    reference::Caustic onIris(const reference::Eye& eye) const {
+        const std::vector<float> texels = caustics.read<float>(PEL_LUT_FLOAT);
+        const double z = std::acos(toLight[2]) / largestAngle(eye) * (desc.depth - 1);
+        const size_t slice = size_t(desc.width) * desc.height, first = size_t(z) * slice;
+        reference::Caustic between{int(desc.width), int(desc.height), {}};
+        for (size_t k = first; k < first + slice; ++k)
+            between.texels.push_back(
+                std::lerp(double(texels[3 * k]), texels[3 * (k + slice)], z - std::floor(z)));
+        return between;
     }
 
     Error error(int samples) const {
-        const reference::Eye eye = adult();
-        const std::vector<float> out = target.readAll<float>(), texels = caustics.read<float>(PEL_LUT_FLOAT);
+        const reference::Eye eye = eye_test::referenceOf(pelEyeDefaults());
+        const reference::Caustic light = onIris(eye);
+        const std::vector<float> out = target.readAll<float>();
         const Vec3 l{toLight[0], toLight[1], toLight[2]}, from{camera[0], camera[1], camera[2]};
         std::mt19937 random(1);
         ErrorSum sum;
@@ -172,7 +136,7 @@ struct EyeFrame {
                               tearGloss(n, l, v, eye.tearRoughness, eye.nTear);
             if (h.share > 0)
                 expected += h.share * irisVisible(eye, h) * h.transmittance / (eye.nAqueous * eye.nAqueous) *
-                            irisColor * onIris(texels, eye, h.px, h.py);
+                            irisColor * light.at(h.px, h.py, eye.iris);
             sum.add(out[3 * i] - expected);
         }
         return sum.result();

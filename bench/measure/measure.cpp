@@ -4,6 +4,7 @@
 
 #include <ctime>
 #include <fstream>
+#include <numeric>
 #include <random>
 #include <thread>
 
@@ -31,11 +32,6 @@ void sample(const Device& device, Running& r) {
     r.device.push_back((device.stats().kernelMilliseconds - before) / r.repeats);
 }
 
-// A number, or null where there is none: JSON has no NaN.
-Json number(double value) {
-    return std::isfinite(value) ? Json(value) : Json();
-}
-
 Json summary(const Running& r) {
     Json e = r.entry;
     const double time = median(r.wall);
@@ -60,6 +56,7 @@ Json measureCases(const Request& request) {
     const auto begin = [&](const Json& entry) {
         tell({{"begin", entry["name"]}, {"group", entry["group"]}});
     };
+    findTaps(request);
     const Device device(request.device);
     std::vector<Factory> factories;
     for (const auto& from : {deviceCases, meshCases, tableCases, shadingCases, eyeCases})
@@ -83,8 +80,8 @@ Json measureCases(const Request& request) {
             r.work.run();
             if (r.work.error) {
                 const Error e = r.work.error();
-                r.entry["error_max"] = number(e.max);
-                r.entry["error_rms"] = number(e.rms);
+                r.entry["error_max"] = finite(e.max);
+                r.entry["error_rms"] = finite(e.rms);
                 r.entry["truth"] = r.work.truth;
             }
             const double start = milliseconds();
@@ -100,7 +97,7 @@ Json measureCases(const Request& request) {
     }
     std::mt19937 random(1);
     std::vector<size_t> order(running.size());
-    for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::iota(order.begin(), order.end(), size_t(0));
     for (int round = 0; round < rounds && !running.empty(); ++round) {
         tell({{"say", "round " + std::to_string(round + 1) + " of " + std::to_string(rounds)}});
         std::shuffle(order.begin(), order.end(), random);
@@ -115,26 +112,24 @@ Json measureCases(const Request& request) {
         begin(r.entry);
         r.watts = meanWatts(joules, r.work.run);
     }
-    double bandwidth = 0, peak = 0;
+    double bandwidth = NAN, peak = NAN;
     for (const Running& r : running) {
         if (r.entry["name"] == copyName) bandwidth = r.work.bytes / median(r.wall) * 1e3;
         if (r.entry["name"] == arithmeticName) peak = r.work.operations / median(r.wall) * 1e3;
     }
-    Json report = {{"copy_bytes_per_second", bandwidth > 0 ? Json(bandwidth) : Json()},
-                   {"operations_per_second", peak > 0 ? Json(peak) : Json()}};
+    Json report = {{"copy_bytes_per_second", finite(bandwidth)}, {"operations_per_second", finite(peak)}};
     Json list = Json::array();
     for (const Running& r : running) {
-        Json e = summary(r);
+        Json& e = list.emplace_back(summary(r));
         const double seconds = e["median_ms"].get<double>() * 1e-3;
         // Above 1, the bytes came from a cache, or the device was slower when its limits were measured: then
         // the share is not known.
         const auto share = [&](const char* key, double work, double limit) {
             const double part = work / seconds / limit;
-            if (work > 0 && limit > 0) e[key] = part < 1.001 ? Json(std::min(part, 1.0)) : Json();
+            if (work > 0 && std::isfinite(limit)) e[key] = part < 1.001 ? Json(std::min(part, 1.0)) : Json();
         };
         share("bandwidth_share", r.work.bytes, bandwidth);
         share("arithmetic_share", r.work.operations, peak);
-        list.push_back(e);
     }
     for (const Json& e : failed) list.push_back(e);
     report["operations"] = list;

@@ -85,6 +85,11 @@ struct Request {
 // Measured in other processes, so that a driver that hangs or crashes costs the case that it was at.
 nlohmann::ordered_json measureDevice(const Request& request);
 
+// Null where there is none: JSON has no NaN.
+inline nlohmann::ordered_json finite(double v) {
+    return std::isfinite(v) ? nlohmann::ordered_json(v) : nlohmann::ordered_json();
+}
+
 // In this process: {"copy_bytes_per_second", "operations_per_second" (null: not known), "operations":
 // [{"name", "group", "what", "items", "unit", "runs", "median_ms", "mad_ms", "device_ms", "bytes",
 // "bandwidth_share", "operations", "arithmetic_share", "error_max", "error_rms", "truth"} or {..., "failed":
@@ -100,6 +105,9 @@ void measureFirst(const Request& request);
 
 // Writes the pictures that measureFirst() compares with into `folder`.
 void keepPictures(const Request& request, const std::string& folder);
+
+// From now on the oracle of shading reads the kernels' taps from what comes with the command.
+void findTaps(const Request& request);
 
 // Judges the results of --first-gpu. Adds to the operations of a report their "tolerance" and "within", to
 // passes of frames "predicted_ms" and "limited_by" (null: not predicted) by the counts of `warps`

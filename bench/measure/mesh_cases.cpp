@@ -7,7 +7,6 @@ namespace {
 
 struct Torus {
     reference::AnalyticMesh truth;  // positions and normals as float32 holds them
-    std::vector<float> positions, normals, uvs;
     std::vector<uint32_t> indices;
     MeshTopology topology;
     Buffer positionBuffer, normalBuffer, uvBuffer, scalars, vectors;
@@ -25,24 +24,25 @@ struct Torus {
                                       reference::Tessellation::irregular)) {
         reference::Mesh& mesh = truth.mesh;
         vertices = uint32_t(mesh.positions.size());
-        const auto round = [](reference::Vec3& v, std::vector<float>& to) {
-            for (int i = 0; i < 3; ++i) {
-                to.push_back(float(v[i]));
-                v[i] = double(to.back());
-            }
+        const auto rounded = [](std::vector<reference::Vec3>& vectors) {
+            std::vector<float> floats;
+            for (reference::Vec3& v : vectors)
+                for (int i = 0; i < 3; ++i) {
+                    floats.push_back(float(v[i]));
+                    v[i] = double(floats.back());
+                }
+            return floats;
         };
-        for (reference::Vec3& p : mesh.positions) round(p, positions);
-        for (reference::Vec3& n : mesh.normals) round(n, normals);
+        std::vector<float> uvs;
         for (reference::Vec2& t : mesh.uvs) {
-            uvs.push_back(float(t.x)), uvs.push_back(float(t.y));
-            t = {double(uvs[uvs.size() - 2]), double(uvs.back())};
+            uvs.insert(uvs.end(), {float(t.x), float(t.y)});
+            t = {double(float(t.x)), double(float(t.y))};
         }
-        for (const reference::Triangle& t : mesh.triangles)
-            indices.insert(indices.end(), {uint32_t(t[0]), uint32_t(t[1]), uint32_t(t[2])});
+        for (const reference::Triangle& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
         topology = MeshTopology(device, describe());
-        positionBuffer = Buffer(device, positions);
-        normalBuffer = Buffer(device, normals);
-        if (!uvs.empty()) uvBuffer = Buffer(device, uvs);
+        positionBuffer = Buffer(device, rounded(mesh.positions));
+        normalBuffer = Buffer(device, rounded(mesh.normals));
+        uvBuffer = Buffer(device, uvs);
         scalars = Buffer(device, vertices * sizeof(float));
         vectors = Buffer(device, vertices * 3 * sizeof(float));
     }
@@ -73,14 +73,14 @@ std::vector<Factory> meshCases(const Device& device, bool quick) {
     };
     // Positions, normals, two triangles per vertex, one result.
     constexpr double bytes = 12 + 12 + 24 + 4;
-    const auto curvature = [=](PelCurvatureEstimator estimator, uint32_t passes, bool exact,
-                               double operations, std::function<std::vector<double>(const Torus&)> truth,
-                               const char* of) {
+    constexpr const char* estimator = "the estimator in double precision";
+    const auto curvature = [=](PelCurvatureEstimator by, uint32_t passes, double operations,
+                               std::function<std::vector<double>(const Torus&)> truth, const char* of) {
         return [=] {
             const auto t = torus();
             Case c = begin(*t, passes ? ", " + std::to_string(passes) + " smoothing passes" : "");
             PelCurvatureParams params = pelCurvatureParamsDefaults();
-            params.estimator = estimator;
+            params.estimator = by;
             params.smoothingPasses = passes;
             c.bytes = (bytes + passes * (24.0 + 8)) * t->vertices;
             c.operations = (operations + passes * 13.0) * t->vertices;
@@ -89,8 +89,7 @@ std::vector<Factory> meshCases(const Device& device, bool quick) {
                                       t->view(t->scalars));
             };
             c.error = [=] { return against(t->scalars, truth(*t)); };
-            c.truth = std::string(of) + (exact ? "" : ", the mesh's coarseness included") +
-                      "; relative to the largest";
+            c.truth = std::string(of) + "; relative to the largest";
             return c;
         };
     };
@@ -147,14 +146,12 @@ std::vector<Factory> meshCases(const Device& device, bool quick) {
     return {{"topology", "mesh", topology},
             {"normals", "mesh", normals},
             {"uv-scale", "mesh", uvScale},
-            {"curvature-edge", "mesh",
-             curvature(PEL_CURVATURE_EDGE, 0, true, 3 * 18, edge, "the estimator in double precision")},
-            {"curvature-edge-smoothed", "mesh",
-             curvature(PEL_CURVATURE_EDGE, 2, true, 3 * 18, smooth, "the estimator in double precision")},
-            {"curvature-tensor", "mesh",
-             curvature(PEL_CURVATURE_TENSOR, 0, true, 2 * 180, tensor, "the estimator in double precision")},
+            {"curvature-edge", "mesh", curvature(PEL_CURVATURE_EDGE, 0, 3 * 18, edge, estimator)},
+            {"curvature-edge-smoothed", "mesh", curvature(PEL_CURVATURE_EDGE, 2, 3 * 18, smooth, estimator)},
+            {"curvature-tensor", "mesh", curvature(PEL_CURVATURE_TENSOR, 0, 2 * 180, tensor, estimator)},
             {"curvature-quadric", "mesh",
-             curvature(PEL_CURVATURE_QUADRIC, 0, false, 18 * 65 + 150, surface, "the torus itself")}};
+             curvature(PEL_CURVATURE_QUADRIC, 0, 18 * 65 + 150, surface,
+                       "the torus itself, the mesh's coarseness included")}};
 }
 
 }  // namespace pellucid::bench

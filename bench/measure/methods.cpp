@@ -35,11 +35,8 @@ struct Setting {
 std::vector<Setting> settings() {
     std::vector<Setting> all;
     const auto add = [&](const char* method, const std::string& setting, PelScattering scattering) -> auto& {
-        all.push_back({method, setting, {}});
-        all.back().request.scattering = scattering;
-        all.back().request.gain = 1;
-        all.back().request.count = false;
-        return all.back();
+        return all.emplace_back(
+            Setting{method, setting, {.scattering = scattering, .gain = 1, .count = false}});
     };
     const auto text = [](double v, const char* unit) { return io::printed("%g %s", v, unit); };
     Setting& plain = add("Lambert", "", PEL_SCATTERING_NONE);
@@ -51,8 +48,8 @@ std::vector<Setting> settings() {
         s.quick = s.shown = size == 64;
         if (s.quick) s.tunes = "preintegrated";
     }
-    add("pre-integrated", "64 texels, every pixel", PEL_SCATTERING_PREINTEGRATED).request.everyPixel = true;
-    all.back().request.tableSize = 64;
+    Setting& everyPixel = add("pre-integrated", "64 texels, every pixel", PEL_SCATTERING_PREINTEGRATED);
+    everyPixel.request.everyPixel = true, everyPixel.request.tableSize = 64;
     for (const uint32_t size : {128u, 512u}) {
         Setting& s = add("FaceWorks", text(size, "texels"), PEL_SCATTERING_PREINTEGRATED);
         s.request.tableSize = size;
@@ -375,7 +372,6 @@ class Methods {
                          {"what", what}});
         rows_.back().update(found);
     }
-    static Json finite(double v) { return std::isfinite(v) ? Json(v) : Json(); }
 
     // Lambert is measured with every other method, for times relative to it.
     bool wanted(const std::string& scene, const Setting& s) const {
@@ -441,7 +437,7 @@ class Methods {
                     {"median_ms", median(c.device)},
                     {"mad_ms", medianDeviation(c.device)},
                     {"wall_ms", median(c.wall)},
-                    {"added_ms", std::isfinite(plain) ? Json(median(c.device) - plain) : Json()},
+                    {"added_ms", finite(median(c.device) - plain)},
                     {"launches", stats.launches},
                     {"memory_bytes", stats.scratchBytes + (c.texture ? c.texture->bytes() : 0)},
                     {"bytes", bytes},

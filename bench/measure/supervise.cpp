@@ -20,17 +20,16 @@ using Json = nlohmann::ordered_json;
 
 constexpr double startSeconds = 120;
 
-// A child process, the pellucid command or another program, read line by line. It ends with this process.
+// The command `bench` of pellucid in a child process, read line by line. It ends with this process.
 class Again {
   public:
     // `environment`: "NAME=VALUE" added to this process's own. Without `loud`, standard error is discarded.
-    Again(const Request& request, std::vector<std::string> words, std::vector<std::string> environment,
-          bool loud)
+    Again(const Request& request, const std::vector<std::string>& words,
+          const std::vector<std::string>& environment, bool loud)
         : request_(request) {
         std::vector<std::string> all{"/usr/bin/env"};
         all.insert(all.end(), environment.begin(), environment.end());
-        if (words[0].starts_with("-"))
-            all.insert(all.end(), {request.command, "bench", "--device", request.device});
+        all.insert(all.end(), {request.command, "bench", "--device", request.device});
         all.insert(all.end(), words.begin(), words.end());
         std::vector<char*> pointers;
         for (std::string& word : all) pointers.push_back(word.data());

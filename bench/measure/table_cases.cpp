@@ -1,16 +1,24 @@
 // Look-up tables against adaptive quadrature in double precision, at texels drawn once.
 
+#include "io/choice_keys.h"
 #include "measure.h"
-#include "reference/lut.h"
-#include "tools.h"
+#include "true_texels.h"
 
 namespace pellucid::bench {
 namespace {
 
-// `texelOf`: makes the true texels of a table.
-template <class Desc, class TexelOf>
-Case tableCase(const Device& device, Desc desc, uint32_t side, int samples, const TexelOf& texelOf,
-               const std::string& what) {
+// The part of a table's description with all its lengths.
+template <class Desc>
+Desc describedBy(const PelLutInfo& info) {
+    if constexpr (std::is_same_v<Desc, PelCurvatureLutDesc>) return info.curvature;
+    if constexpr (std::is_same_v<Desc, PelShadowLutDesc>) return info.shadow;
+    if constexpr (std::is_same_v<Desc, PelSpecularLutDesc>) return info.specular;
+}
+
+// `profile`: the oracle's.
+template <class Desc>
+Case tableCase(const Device& device, Desc desc, uint32_t side, int samples,
+               const reference::ProfilePtr& profile, const std::string& what) {
     desc.width = desc.height = side;
     const auto lut = std::make_shared<Lut>();
     Case c;
@@ -21,7 +29,7 @@ Case tableCase(const Device& device, Desc desc, uint32_t side, int samples, cons
     c.run = [=] { *lut = Lut(device, desc); };
     c.error = [=] {
         const std::vector<float> values = lut->read<float>(PEL_LUT_FLOAT);
-        const auto texel = texelOf(lut->info());
+        const TexelAt texel = trueTexels(describedBy<Desc>(lut->info()), profile);
         std::mt19937 random(1);
         ErrorSum sum;
         for (int i = 0; i < samples; ++i) {
@@ -53,29 +61,23 @@ std::vector<float> decoded(const Lut& lut, PelLutEncoding encoding, uint32_t sid
 }
 
 // The error of a table's look-ups between its texels.
-Case lookUpCase(const Device& device, PelCurvatureForm form, reference::Form truth, PelLutEncoding encoding,
-                uint32_t side, int samples) {
+Case lookUpCase(const Device& device, PelCurvatureForm form, PelLutEncoding encoding, uint32_t side,
+                int samples) {
     PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.form = form;
-    const auto texelOf = [](const PelLutInfo&) { return [](int, int) { return reference::Rgb{}; }; };
-    Case c = tableCase(device, desc, side, 0, texelOf, "");
+    Case c = tableCase(device, desc, side, 0, {}, "");
     desc.width = desc.height = side;
     constexpr const char* names[] = {"float", "half", "8 bits"};
+    constexpr uint32_t bytes[] = {16, 8, 4};
     c.what += std::string(", ") + names[encoding] + ", " +
-              std::to_string(side * side *
-                             (encoding == PEL_LUT_HALF ? 8
-                              : encoding               ? 4
-                                                       : 16) /
-                             1024) +
-              " KiB";
+              std::to_string(side * side * bytes[encoding] / 1024) + " KiB";
     c.error = [=] {
         const Lut lut(device, desc);
-        const PelCurvatureLutDesc made = lut.info().curvature;
+        PelCurvatureLutDesc made = lut.info().curvature;
         constexpr int finer = 8;
         const int fine = finer * int(side);
-        const reference::CurvatureLutSpec spec{truth, fine, fine, made.radiusMin, made.radiusMax};
-        const reference::ProfilePtr profile =
-            reference::profileForRadius(reference::skinProfile(), made.diffusionRadius);
+        made.width = made.height = uint32_t(fine);
+        const TexelAt texel = trueTexels(made, reference::skinProfile());
         const std::vector<float> values = decoded(lut, encoding, side);
         const auto at = [&](double x, double y, int channel) {
             const auto clamped = [&](double v) { return size_t(std::clamp(v, 0.0, side - 1.0)); };
@@ -87,7 +89,7 @@ Case lookUpCase(const Device& device, PelCurvatureForm form, reference::Form tru
             const int x = int(random() % uint32_t(fine)), y = int(random() % uint32_t(fine));
             const double tx = (x + 0.5) / finer - 0.5, ty = (y + 0.5) / finer - 0.5, fx = tx - std::floor(tx),
                          fy = ty - std::floor(ty), x0 = std::floor(tx), y0 = std::floor(ty);
-            const reference::Rgb exact = reference::curvatureTexel(spec, *profile, x, y);
+            const reference::Rgb exact = texel(x, y);
             for (int k = 0; k < 3; ++k)
                 sum.add((1 - fy) * ((1 - fx) * at(x0, y0, k) + fx * at(x0 + 1, y0, k)) +
                         fy * ((1 - fx) * at(x0, y0 + 1, k) + fx * at(x0 + 1, y0 + 1, k)) - exact[k]);
@@ -156,79 +158,56 @@ Case pairCase(const Device& device, uint32_t count) {
     return c;
 }
 
-constexpr float burleyMeanFreePath[3] = {1.0f, 0.4f, 0.2f}, burleyAlbedo[3] = {0.8f, 0.6f, 0.5f};
-
 }  // namespace
 
 std::vector<Factory> tableCases(const Device& device, bool quick) {
     const uint32_t side = quick ? 128 : 512;
     const int samples = quick ? 60 : 300;
-    using Texel = std::function<reference::Rgb(int, int)>;
-    const auto rgb = [](const float(&v)[3]) { return reference::Rgb{v[0], v[1], v[2]}; };
-    const auto curvature = [=](PelCurvatureForm form, reference::Form truth, bool burley) {
+    const reference::ProfilePtr skin = reference::skinProfile();
+    const auto curvature = [=](PelCurvatureForm form) {
         return [=] {
             PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
             desc.form = form;
-            const Profile profile =
-                burley ? Profile::burley(burleyMeanFreePath, burleyAlbedo) : Profile::skin();
-            if (burley) desc.profile = profile.get(), desc.diffusionRadius = 0;  // its own
-            const auto texel = [=](const PelLutInfo& info) -> Texel {
-                (void)profile;  // lives as long as the case
-                const PelCurvatureLutDesc& made = info.curvature;
-                const reference::CurvatureLutSpec spec{truth, int(side), int(side), made.radiusMin,
-                                                       made.radiusMax};
-                const reference::ProfilePtr p =
-                    burley ? reference::burleyProfile(rgb(burleyMeanFreePath), rgb(burleyAlbedo))
-                           : reference::profileForRadius(reference::skinProfile(), made.diffusionRadius);
-                return [=](int x, int y) { return reference::curvatureTexel(spec, *p, x, y); };
-            };
-            return tableCase(device, desc, side, burley ? samples / 3 : samples, texel,
-                             burley ? ", Christensen-Burley profile" : ", skin");
+            return tableCase(device, desc, side, samples, skin, ", skin");
         };
+    };
+    const auto burley = [=] {
+        constexpr float path[3] = {1.0f, 0.4f, 0.2f}, albedo[3] = {0.8f, 0.6f, 0.5f};
+        const auto rgb = [](const float(&v)[3]) { return reference::Rgb{v[0], v[1], v[2]}; };
+        PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
+        desc.form = PEL_FORM_SPHERE;
+        desc.diffusionRadius = 0;  // the profile's own
+        const Profile profile = Profile::burley(path, albedo);
+        desc.profile = profile.get();
+        Case c = tableCase(device, desc, side, samples / 3, reference::burleyProfile(rgb(path), rgb(albedo)),
+                           ", Christensen-Burley profile");
+        c.run = [run = c.run, profile] { run(); };  // the profile lives as long
+        return c;
     };
     const auto shadow = [=] {
-        const auto texel = [=](const PelLutInfo& info) -> Texel {
-            const PelShadowLutDesc& made = info.shadow;
-            const reference::ShadowLutSpec spec{
-                int(side), int(side), made.widthMin, made.widthMax, made.diffusionRadius, made.sharpening};
-            const reference::ProfilePtr skin = reference::skinProfile();
-            return [=](int x, int y) { return reference::shadowTexel(spec, *skin, x, y); };
-        };
-        return tableCase(device, pelShadowLutDescFaceWorks(), side, samples, texel, ", skin");
+        return tableCase(device, pelShadowLutDescFaceWorks(), side, samples, skin, ", skin");
     };
     const auto specular = [=] {
-        const auto texel = [=](const PelLutInfo&) -> Texel {
-            return [=](int x, int y) {
-                const double v = reference::beckmannEncoded((x + 0.5) / side, (y + 0.5) / side);
-                return reference::Rgb{v, v, v};
-            };
-        };
-        return tableCase(device, pelSpecularLutDescDefaults(), side, samples, texel, "");
+        return tableCase(device, pelSpecularLutDescDefaults(), side, samples, {}, "");
     };
-    std::vector<Factory> all{
-        {"table-arc", "tables", curvature(PEL_FORM_ARC, reference::Form::arc, false)},
-        {"table-ring", "tables", curvature(PEL_FORM_RING, reference::Form::ring, false)},
-        {"table-half-ring", "tables", curvature(PEL_FORM_HALF_RING, reference::Form::halfRing, false)},
-        {"table-sphere", "tables", curvature(PEL_FORM_SPHERE, reference::Form::sphere, false)},
-        {"table-sphere-burley", "tables", curvature(PEL_FORM_SPHERE, reference::Form::sphere, true)},
-        {"table-shadow", "tables", shadow},
-        {"table-specular", "tables", specular},
-        {"table-pairs", "tables", [=] { return pairCase(device, quick ? 128 : 512); }}};
-    constexpr std::tuple<const char*, PelCurvatureForm, reference::Form> forms[] = {
-        {"arc", PEL_FORM_ARC, reference::Form::arc},
-        {"ring", PEL_FORM_RING, reference::Form::ring},
-        {"half-ring", PEL_FORM_HALF_RING, reference::Form::halfRing},
-        {"sphere", PEL_FORM_SPHERE, reference::Form::sphere}};
-    for (const auto& [name, form, truth] : forms)
+    constexpr PelCurvatureForm forms[] = {PEL_FORM_ARC, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_SPHERE};
+    const auto nameOf = [](const char* what, PelCurvatureForm form) {
+        return what + std::string(io::curvatureForms[form]);
+    };
+    std::vector<Factory> all;
+    for (const auto form : forms) all.push_back({nameOf("table-", form), "tables", curvature(form)});
+    all.insert(all.end(), {{"table-sphere-burley", "tables", burley},
+                           {"table-shadow", "tables", shadow},
+                           {"table-specular", "tables", specular},
+                           {"table-pairs", "tables", [=] { return pairCase(device, quick ? 128 : 512); }}});
+    for (const auto form : forms)
         for (const uint32_t of : {16u, 64u, 256u})
             for (const PelLutEncoding encoding : {PEL_LUT_FLOAT, PEL_LUT_HALF, PEL_LUT_FACEWORKS8}) {
                 if (quick && (of != 64 || form != PEL_FORM_SPHERE)) continue;
                 constexpr const char* encodings[] = {"float", "half", "bytes"};
-                all.push_back(
-                    {"lookup-" + std::string(name) + "-" + std::to_string(of) + "-" + encodings[encoding],
-                     "tables", [=, f = form, t = truth] {
-                         return lookUpCase(device, f, t, encoding, of, 2 * samples);
-                     }});
+                all.push_back({nameOf("lookup-", form) + "-" + std::to_string(of) + "-" + encodings[encoding],
+                               "tables",
+                               [=] { return lookUpCase(device, form, encoding, of, 2 * samples); }});
             }
     return all;
 }

@@ -92,36 +92,36 @@ std::vector<float> oneFloat(const MovedMesh& m) {
     return m.curvature();
 }
 
-std::vector<double> quantityOf(const reference::PrincipalCurvatures& k, PelCurvatureQuantity quantity) {
-    switch (quantity) {
-        case PEL_QUANTITY_ABSOLUTE:
-            return {std::abs(k.mean())};
-        case PEL_QUANTITY_ABSOLUTE_MAX:
-            return {std::max(std::abs(k.first), std::abs(k.second))};
-        case PEL_QUANTITY_CURVEDNESS:
-            return {std::sqrt((k.first * k.first + k.second * k.second) / 2)};
-        case PEL_QUANTITY_MEAN:
-            return {k.mean()};
-        case PEL_QUANTITY_GAUSSIAN:
-            return {k.gaussian()};
-        case PEL_QUANTITY_FIRST:
-            return {k.first};
-        case PEL_QUANTITY_SECOND:
-            return {k.second};
-        default:
-            return {k.first, k.second};
-    }
-}
+// A quantity of the principal curvatures a >= b.
+struct Quantity {
+    const char* name;
+    PelCurvatureQuantity quantity;
+    std::vector<double> (*of)(double a, double b);
+};
+using Values = std::vector<double>;
+const Quantity quantities[] = {
+    {"absolute mean", PEL_QUANTITY_ABSOLUTE, [](double a, double b) { return Values{std::abs(a + b) / 2}; }},
+    {"absolute largest", PEL_QUANTITY_ABSOLUTE_MAX,
+     [](double a, double b) { return Values{std::max(std::abs(a), std::abs(b))}; }},
+    {"curvedness", PEL_QUANTITY_CURVEDNESS,
+     [](double a, double b) { return Values{std::sqrt((a * a + b * b) / 2)}; }},
+    {"mean", PEL_QUANTITY_MEAN, [](double a, double b) { return Values{(a + b) / 2}; }},
+    {"Gaussian", PEL_QUANTITY_GAUSSIAN, [](double a, double b) { return Values{a * b}; }},
+    {"first", PEL_QUANTITY_FIRST, [](double a, double) { return Values{a}; }},
+    {"second", PEL_QUANTITY_SECOND, [](double, double b) { return Values{b}; }},
+    {"both principal", PEL_QUANTITY_PRINCIPAL, [](double a, double b) {
+         return Values{a, b};
+     }}};
 
-Operation tensor(const std::string& name, PelCurvatureQuantity quantity) {
+Operation tensor(const Quantity& q) {
     return mesh(
-        {"curvature, tensor: " + name, "", Unit::largest, tolerance::tensorCurvature, 4, 250},
-        estimated(PEL_CURVATURE_TENSOR, quantity),
-        [=](const MovedMesh& m) { return m.curvature(quantity == PEL_QUANTITY_PRINCIPAL ? 2 : 1); },
+        {std::string("curvature, tensor: ") + q.name, "", Unit::largest, tolerance::tensorCurvature, 4, 250},
+        estimated(PEL_CURVATURE_TENSOR, q.quantity),
+        [=](const MovedMesh& m) { return m.curvature(q.quantity == PEL_QUANTITY_PRINCIPAL ? 2 : 1); },
         [=](const MovedMesh& m) {
-            std::vector<double> t;
+            Values t;
             for (const auto& k : reference::tensorCurvature(m.mesh))
-                for (double v : quantityOf(k, quantity)) t.push_back(v);
+                for (const double v : q.of(k.first, k.second)) t.push_back(v);
             return t;
         });
 }
@@ -269,12 +269,7 @@ std::vector<Operation> meshOperations() {
             trueNormals),
         mesh({"UV scale", "; UVs of 1e-6 to 1e6 across", Unit::largest, tolerance::uvScale, 5}, addUvs,
              uvScale, [](const MovedMesh& m) { return std::vector{reference::uvScale(m.mesh)}; })};
-    const std::pair<const char*, PelCurvatureQuantity> quantities[] = {
-        {"absolute mean", PEL_QUANTITY_ABSOLUTE}, {"absolute largest", PEL_QUANTITY_ABSOLUTE_MAX},
-        {"curvedness", PEL_QUANTITY_CURVEDNESS},  {"mean", PEL_QUANTITY_MEAN},
-        {"Gaussian", PEL_QUANTITY_GAUSSIAN},      {"first", PEL_QUANTITY_FIRST},
-        {"second", PEL_QUANTITY_SECOND},          {"both principal", PEL_QUANTITY_PRINCIPAL}};
-    for (const auto& [name, quantity] : quantities) all.push_back(tensor(name, quantity));
+    for (const Quantity& q : quantities) all.push_back(tensor(q));
     for (Operation& o : all)
         if (o.header.name == "normals" || o.header.name.ends_with("Gaussian"))
             o.axis = Axis{2, 0.02, 1, "height over width"};

@@ -14,14 +14,12 @@ namespace stability {
 
 void inParallel(size_t count, const std::function<void(size_t)>& body) {
     std::atomic<size_t> next = 0;
-    const auto work = [&] {
-        for (size_t i; (i = next++) < count;) body(i);
-    };
-    std::vector<std::thread> others;
-    for (unsigned k = 1; k < std::min<size_t>(std::thread::hardware_concurrency(), count); ++k)
-        others.emplace_back(work);
-    work();
-    for (std::thread& t : others) t.join();
+    std::vector<std::jthread> threads(
+        std::clamp<size_t>(std::thread::hardware_concurrency(), 1, std::max<size_t>(count, 1)));
+    for (std::jthread& thread : threads)
+        thread = std::jthread([&] {
+            for (size_t i; (i = next++) < count;) body(i);
+        });
 }
 
 }  // namespace stability
@@ -143,20 +141,16 @@ Found search(const Operation& o, double share, double seconds) {
     return found;
 }
 
-const char* unitName(Unit unit) {
-    constexpr const char* names[] = {"absolute, relative above 1", "of the largest", "mm"};
-    return names[int(unit)];
-}
-
 // Three digits; NaN, which JSON has not, as null.
 Json number(double v) {
     return std::isfinite(v) ? Json::parse(text("%.3g", v)) : Json();
 }
 
 Json record(const Operation& o, const Found& f) {
+    constexpr const char* unitNames[] = {"absolute, relative above 1", "of the largest", "mm"};
     Json json = {{"name", o.header.name},
                  {"range", o.header.range},
-                 {"unit", unitName(o.header.unit)},
+                 {"unit", unitNames[int(o.header.unit)]},
                  {"limit", number(o.header.limit)},
                  {"points", f.points},
                  {"stopped", f.stopped},
@@ -178,10 +172,14 @@ Json record(const Operation& o, const Found& f) {
 
 namespace pellucid::bench {
 
-Json measureStability(const Request& request) {
-    const double seconds = request.limitSeconds * std::clamp(request.stability, 1 / 12.0, 0.9);
+void findTaps(const Request& request) {
     if (const std::string disk = request.data + "/bench/poisson_disk.clh"; std::filesystem::exists(disk))
         shade_test::diskFile() = disk;
+}
+
+Json measureStability(const Request& request) {
+    const double seconds = request.limitSeconds * std::clamp(request.stability, 1 / 12.0, 0.9);
+    findTaps(request);
     Json records = Json::array();
     for (const auto& some : {tableOperations(), meshOperations(), screenOperations(), shadingOperations()})
         for (const Operation& o : some) {

@@ -5,27 +5,21 @@
 namespace stability {
 namespace {
 
-reference::Vec3 vector(const float (&v)[3]) {
-    return {v[0], v[1], v[2]};
-}
-
-// `axis` turned by an angle; `around`, 0 to 1 for a full turn, is the azimuth of the turn.
-reference::Vec3 turned(reference::Vec3 axis, double angle, double around) {
-    const reference::Vec3 side = reference::normalized(
-                              reference::cross(axis, std::abs(axis.x) < 0.7 ? reference::Vec3{1, 0, 0}
-                                                                            : reference::Vec3{0, 1, 0})),
-                          other = reference::cross(axis, side);
-    const double turn = 2 * 3.14159265358979323846 * around;
-    return reference::normalized(std::cos(angle) * axis +
-                                 std::sin(angle) * (std::cos(turn) * side + std::sin(turn) * other));
-}
-
 using namespace shade_test;
 
+// `axis` turned by an angle; `around`, 0 to 1 for a full turn, is the azimuth of the turn.
+Vec3 turned(Vec3 axis, double angle, double around) {
+    const Vec3 side = normalized(cross(axis, std::abs(axis.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0})),
+               other = cross(axis, side);
+    const double turn = 2 * std::numbers::pi * around;
+    return normalized(std::cos(angle) * axis +
+                      std::sin(angle) * (std::cos(turn) * side + std::sin(turn) * other));
+}
+
 constexpr size_t materials = 120;  // of either specular model
-constexpr double leastHalf =
-    0.5;  // of |L + V|: beyond 151 degrees between the two the half vector is made of rounding
-constexpr double degree = 3.14159265358979 / 180;
+// Of |L + V|: beyond 151 degrees between the two the half vector is made of rounding.
+constexpr double leastHalf = 0.5;
+constexpr double degree = std::numbers::pi / 180;
 enum Dimension {
     placeX,
     placeY,
@@ -71,7 +65,7 @@ const Frame& base() {
         f.lights[1].params.range = 350;  // of places 200 to 470 mm away
         PelLight& spot = f.lights[2].params;
         spot.spotCosInner = 0.98f, spot.spotCosOuter = 0.9f;  // 11 and 26 degrees
-        const Vec3 inwards = normalized(-1 * vector(spot.position));
+        const Vec3 inwards = normalized(-1 * vectorOf(spot.position));
         for (int c = 0; c < 3; ++c) {
             spot.spotDirection[c] = float(inwards[c]);
             spot.color[c] *= 4, f.lights[1].params.color[c] *= 4;  // of order 1 there
@@ -171,10 +165,10 @@ struct Shading {
             return {truthLight(frame_, m, frame_.lights[0], i).thickness};
         for (const Light& l : frame_.lights)  // nothing beyond the range
             if (l.params.range > 0 &&
-                std::abs(length(vector(lamp.position) - place(i)) / lamp.range - 1) < 1e-5)
+                std::abs(length(vectorOf(lamp.position) - place(i)) / lamp.range - 1) < 1e-5)
                 return {NAN, NAN, NAN};
         if (kind_.focus == Focus::half &&
-            length(toLight(i) + normalized(vector(frame_.camera.position) - place(i))) < leastHalf)
+            length(toLight(i) + normalized(vectorOf(frame_.camera.position) - place(i))) < leastHalf)
             return {NAN, NAN, NAN};
         const reference::Shaded s = shade_test::truth(frame_, tables(), i);
         const Rgb rgb = kind_.output == PEL_SLOT_OUT_DIFFUSE        ? s.scattered + s.ambient
@@ -186,8 +180,8 @@ struct Shading {
     Vec3 place(size_t i) const { return frame_.slots[PEL_SLOT_POSITION].vec(i); }
     Vec3 toLight(size_t i) const {
         const PelLight& l = frame_.lights[0].params;
-        return l.type == PEL_LIGHT_DIRECTIONAL ? vector(l.toLight)
-                                               : normalized(vector(l.position) - place(i));
+        return l.type == PEL_LIGHT_DIRECTIONAL ? vectorOf(l.toLight)
+                                               : normalized(vectorOf(l.position) - place(i));
     }
     void put(PelImageSlot slot, size_t i, Vec3 v) {
         for (int c = 0; c < 3; ++c) frame_.slots[slot].values[3 * i + size_t(c)] = float(v[c]);
@@ -195,7 +189,7 @@ struct Shading {
     void set(size_t i, const Point& p) {
         put(PEL_SLOT_POSITION, i,
             {between(p[placeX], -100, 100), between(p[placeY], -100, 100), between(p[placeZ], -100, 100)});
-        const Vec3 toViewer = normalized(vector(frame_.camera.position) - place(i)),
+        const Vec3 toViewer = normalized(vectorOf(frame_.camera.position) - place(i)),
                    axis = kind_.focus == Focus::half ? normalized(toLight(i) + toViewer) : toLight(i);
         const Vec3 n = turned(axis, turnOf(kind_, p), p[around]);
         put(PEL_SLOT_NORMAL_SHADING, i, n);

@@ -1,5 +1,6 @@
 // Look-up tables, texel by texel: of skin, by form and axis, shadow and specular; of every kind of profile.
-#include "reference/lut.h"
+#include "io/choice_keys.h"
+#include "measure/true_texels.h"
 
 #include "stability.h"
 
@@ -7,6 +8,7 @@ namespace stability {
 namespace {
 
 using reference::Rgb;
+using shade_test::vectorOf;
 
 // A profile on the device and in the oracle, from the same floats.
 struct Source {
@@ -14,9 +16,6 @@ struct Source {
     reference::ProfilePtr truth;
     std::string where;
 };
-Rgb rgb(const float (&v)[3]) {
-    return {v[0], v[1], v[2]};
-}
 
 Source gaussians(const Point& p) {
     Dice dice(1 + uint32_t(p[0] * 1000));
@@ -28,7 +27,7 @@ Source gaussians(const Point& p) {
         const PelGaussian g{float(widest * widest * logBetween(i ? dice.uniform() : 1, 1e-4, 1)),
                             {float(dice.uniform()), float(dice.uniform()), float(dice.uniform())}};
         ours.push_back(g);
-        truth.push_back({g.variance, rgb(g.weight)});
+        truth.push_back({g.variance, vectorOf(g.weight)});
     }
     return {Profile::gaussians(ours), reference::gaussiansProfile(truth),
             text("%.0f Gaussians, widest %.3g mm", count, widest)};
@@ -40,7 +39,7 @@ Source burley(const Point& p) {
         path[c] = float(logBetween(p[2], 0.05, 20) * logBetween(p[1], 1, 1.0 / (1 + 2 * c)));
         albedo[c] = float(std::clamp(p[0] - 0.15 * c, 0.0, 1.0));
     }
-    return {Profile::burley(path, albedo), reference::burleyProfile(rgb(path), rgb(albedo)),
+    return {Profile::burley(path, albedo), reference::burleyProfile(vectorOf(path), vectorOf(albedo)),
             text("mean free path %.3g to %.3g mm, albedo %.3g", path[0], path[2], albedo[0])};
 }
 
@@ -52,7 +51,7 @@ Source dipole(const Point& p) {
     }
     const float eta = float(between(p[1], 1.05, 2));
     return {Profile::dipole(absorption, scattering, eta),
-            reference::dipoleProfile(rgb(absorption), rgb(scattering), eta),
+            reference::dipoleProfile(vectorOf(absorption), vectorOf(scattering), eta),
             text("absorption %.3g /mm, scattering %.3g /mm, eta %.3g", absorption[0], scattering[0], eta)};
 }
 
@@ -80,8 +79,7 @@ Source skin() {
 // Every texel, or a few of them (`all` false) where the oracle is slow.
 template <class Desc>
 Case tableCase(const Desc& given, const Source& source, bool all, const std::string& where,
-               std::function<void(Desc&, Jitter&)> move,
-               std::function<std::function<Rgb(int, int)>(const Desc&)> texel) {
+               std::function<void(Desc&, Jitter&)> move) {
     const auto desc = std::make_shared<Desc>(given);
     desc->profile = source.ours.get();
     std::vector<size_t> chosen;
@@ -95,62 +93,37 @@ Case tableCase(const Desc& given, const Source& source, bool all, const std::str
     };
     const auto truth = [=] {
         std::vector<double> t(3 * chosen.size());
-        const auto at = texel(*desc);
+        const bench::TexelAt at = bench::trueTexels(*desc, source.truth);
         inParallel(chosen.size(), [&](size_t k) {
             const Rgb rgb = at(int(chosen[k] % desc->width), int(chosen[k] / desc->width));
             for (int c = 0; c < 3; ++c) t[3 * k + size_t(c)] = rgb[c];
         });
         return t;
     };
-    // The profile lives as long as the case.
-    return {[=](Jitter& j) { (void)source, move(*desc, j); }, measured, truth,
+    return {[=](Jitter& j) { move(*desc, j); }, measured, truth,
             (source.where.empty() ? "" : source.where + ": ") + where};
 }
 
-Case curvatureCase(PelCurvatureLutDesc desc, const Source& source, bool all) {
-    using Desc = PelCurvatureLutDesc;
-    static constexpr reference::Form forms[] = {reference::Form::arc, reference::Form::ring,
-                                                reference::Form::halfRing, reference::Form::sphere};
-    static constexpr const char* names[] = {"arc", "ring", "half-ring", "sphere"};
-    const auto move = [](Desc& d, Jitter& j) {
-        d.radiusMin = j(d.radiusMin), d.radiusMax = j(d.radiusMax);
-        d.diffusionRadius = j(d.diffusionRadius);
-    };
-    const auto texel = [profile = source.truth](const Desc& d) -> std::function<Rgb(int, int)> {
-        const auto scaled = reference::profileForRadius(profile, d.diffusionRadius);
-        const reference::CurvatureLutSpec spec{forms[d.form], int(d.width), int(d.height), d.radiusMin,
-                                               d.radiusMax};
-        return [=](int x, int y) {
-            if (d.axis == PEL_AXIS_LINEAR) return reference::curvatureTexel(spec, *scaled, x, y);
-            const double s = -1 + 2.0 * x / (d.width - 1), low = std::sqrt(1 / double(d.radiusMax)),
-                         high = std::sqrt(1 / double(d.radiusMin)),
-                         root = low + y / (d.height - 1.0) * (high - low);
-            return reference::curvatureD(spec.form, *scaled, s * std::abs(s), 1 / (root * root));
-        };
-    };
-    return tableCase<Desc>(desc, source, all,
-                           text("radii %.3g to %.3g mm, diffusion radius %.3g mm", desc.radiusMin,
-                                desc.radiusMax, desc.diffusionRadius) +
-                               ", " + names[desc.form],
-                           move, texel);
+Case curvatureCase(const PelCurvatureLutDesc& desc, const Source& source, bool all) {
+    return tableCase<PelCurvatureLutDesc>(desc, source, all,
+                                          text("radii %.3g to %.3g mm, diffusion radius %.3g mm",
+                                               desc.radiusMin, desc.radiusMax, desc.diffusionRadius) +
+                                              ", " + std::string(io::curvatureForms[desc.form]),
+                                          [](PelCurvatureLutDesc& d, Jitter& j) {
+                                              d.radiusMin = j(d.radiusMin), d.radiusMax = j(d.radiusMax);
+                                              d.diffusionRadius = j(d.diffusionRadius);
+                                          });
 }
 
-// Widths and sharpening refer to the diffusion radius of desc, lengths of the profile to its own.
-Case shadowCase(PelShadowLutDesc desc, const Source& source, bool all) {
-    using Desc = PelShadowLutDesc;
-    const auto move = [](Desc& d, Jitter& j) {
-        d.widthMin = j(d.widthMin), d.widthMax = j(d.widthMax);
-        d.diffusionRadius = j(d.diffusionRadius), d.sharpening = std::max(1.0f, j(d.sharpening));
-    };
-    const auto texel = [profile = source.truth](const Desc& d) -> std::function<Rgb(int, int)> {
-        const reference::ShadowLutSpec spec{int(d.width), int(d.height),     d.widthMin,
-                                            d.widthMax,   d.diffusionRadius, d.sharpening};
-        return [=](int x, int y) { return reference::shadowTexel(spec, *profile, x, y); };
-    };
-    return tableCase<Desc>(desc, source, all,
-                           text("widths %.3g to %.3g mm, diffusion radius %.3g mm, sharpening %.3g",
-                                desc.widthMin, desc.widthMax, desc.diffusionRadius, desc.sharpening),
-                           move, texel);
+Case shadowCase(const PelShadowLutDesc& desc, const Source& source, bool all) {
+    return tableCase<PelShadowLutDesc>(
+        desc, source, all,
+        text("widths %.3g to %.3g mm, diffusion radius %.3g mm, sharpening %.3g", desc.widthMin,
+             desc.widthMax, desc.diffusionRadius, desc.sharpening),
+        [](PelShadowLutDesc& d, Jitter& j) {
+            d.widthMin = j(d.widthMin), d.widthMax = j(d.widthMax);
+            d.diffusionRadius = j(d.diffusionRadius), d.sharpening = std::max(1.0f, j(d.sharpening));
+        });
 }
 
 constexpr const char* curvatureRange =
