@@ -15,12 +15,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct BenchArguments {
-    std::vector<std::string> devices, only, without, reports, budgets{"1ms"};
+    bench::Request request{.limitSeconds = 0};  // what options set of it; 0: depends on `quick`
+    std::vector<std::string> devices, reports, budgets{"1ms"};
     std::vector<double> errors{2e-3};
     std::string output, slower, lessAccurate, truth;
-    double limitSeconds = 0, stabilityShare = 0;  // 0: depends on `quick`
-    bool quick = false, json = false, firstUse = false, firstGpu = false, stability = false;
-    std::string powercap = bench::Request().powercap;
+    double stabilityShare = 0;  // 0: depends on `quick`
+    bool json = false, firstUse = false, stability = false;
     std::string events;  // in a child process: what it measures; it prints one JSON object a line
 };
 
@@ -30,6 +30,16 @@ std::string dataFolder() {
     if (bench.empty())
         throw UsageError("the folder share/pellucid/bench, which comes with pellucid, is missing");
     return std::filesystem::path(bench).parent_path().string();
+}
+
+std::string text(const Json& e, const char* key) {
+    return e.at(key);
+}
+double number(const Json& e, const char* key) {
+    return e.at(key);
+}
+int count(const Json& e, const char* key) {
+    return e.at(key);
 }
 
 // Reads a number with a unit, such as "1ms" or "10%".
@@ -55,31 +65,27 @@ std::vector<std::string> chosenDevices(const BenchArguments& a) {
     if (!a.devices.empty()) return a.devices;
     std::vector<std::string> chosen;
     for (const PelDeviceInfo& d : Device::all()) {
-        if (a.firstGpu && d.type != PEL_DEVICE_GPU) continue;
+        if (a.request.firstGpu && d.type != PEL_DEVICE_GPU) continue;
         if (std::string(d.platform).find("Oclgrind") != std::string::npos)
             std::fprintf(stderr, "%u: %s is left out; --device %u measures it\n", d.index, d.name, d.index);
         else
             chosen.push_back(std::to_string(d.index));
     }
-    if (chosen.empty() && a.firstGpu)
+    if (chosen.empty() && a.request.firstGpu)
         std::fprintf(stderr, "no GPU was found: measuring the best device instead\n");
     if (chosen.empty()) chosen.push_back("");  // opening it gives the library's message
     return chosen;
 }
 
 bench::Request requestOf(const BenchArguments& a, const std::string& device) {
-    bench::Request request;
+    bench::Request request = a.request;
     request.device = device;
-    request.quick = a.quick, request.stability = a.stabilityShare > 0 ? a.stabilityShare
-                                                 : !a.stability       ? 0
-                                                 : a.quick            ? 0.002
-                                                                      : 0.05;
-    request.firstGpu = a.firstGpu;
-    request.only = a.only;
-    request.without = a.without;
+    request.stability = a.stabilityShare > 0 ? a.stabilityShare
+                        : !a.stability       ? 0
+                        : request.quick      ? 0.002
+                                             : 0.05;
     request.data = dataFolder();
-    request.powercap = a.powercap;
-    request.limitSeconds = a.limitSeconds > 0 ? a.limitSeconds : a.quick || a.firstGpu ? 60 : 120;
+    if (request.limitSeconds == 0) request.limitSeconds = request.quick || request.firstGpu ? 60 : 120;
     return request;
 }
 
@@ -121,17 +127,15 @@ void makeTruth(const BenchArguments& a) {
 void printFirst(const Json& device) {
     const Json& first = device.at("first_gpu");
     std::printf("%s\n  %d pictures and operations judged, %d out of tolerance or not done\n",
-                device.at("name").get<std::string>().c_str(), first.at("checked").get<int>(),
-                int(first.at("out").size()));
+                text(device, "name").c_str(), count(first, "checked"), int(first.at("out").size()));
     for (const Json& e : device.at("operations")) {
         if (e.contains("failed"))
-            std::printf("  %s: could not be done: %s\n", e["name"].get<std::string>().c_str(),
-                        e["failed"].get<std::string>().c_str());
+            std::printf("  %s: could not be done: %s\n", text(e, "name").c_str(), text(e, "failed").c_str());
         if (!e.contains("passes")) continue;
-        std::printf("  %-44s %9.2f ms:", e["name"].get<std::string>().c_str(), e["median_ms"].get<double>());
+        std::printf("  %-44s %9.2f ms:", text(e, "name").c_str(), number(e, "median_ms"));
         for (const Json& pass : e["passes"]) {
-            std::printf(" %s %.2f", pass["name"].get<std::string>().c_str(), pass["ms"].get<double>());
-            if (pass["predicted_ms"].is_number()) std::printf(" (%.2f)", pass["predicted_ms"].get<double>());
+            std::printf(" %s %.2f", text(pass, "name").c_str(), number(pass, "ms"));
+            if (pass["predicted_ms"].is_number()) std::printf(" (%.2f)", number(pass, "predicted_ms"));
         }
         std::printf("\n");
     }
@@ -144,14 +148,41 @@ void printMethods(const Json& device) {
     for (const Json& e : device.at("summary"))
         if (e.at("pareto")) best.push_back(e);
     if (best.empty()) return;
-    std::ranges::sort(best, {}, [](const Json& e) { return e.at("ns_per_pixel").get<double>(); });
+    std::ranges::sort(best, {}, [](const Json& e) { return number(e, "ns_per_pixel"); });
     std::printf("  %-40s %10s %10s %10s %12s\n", "methods that no other beats", "ns/pixel", "1080p ms",
                 "4K ms", "from light");
     for (const Json& e : best)
         std::printf("  %-40s %10.0f %10.2f %10.2f %12.4f\n",
-                    (e.at("method").get<std::string>() + " " + e.at("setting").get<std::string>()).c_str(),
-                    e.at("ns_per_pixel").get<double>(), e.at("ms").at("1080p").get<double>(),
-                    e.at("ms").at("4K").get<double>(), e.at("error").get<double>());
+                    (text(e, "method") + " " + text(e, "setting")).c_str(), number(e, "ns_per_pixel"),
+                    number(e.at("ms"), "1080p"), number(e.at("ms"), "4K"), number(e, "error"));
+}
+
+void printOperations(const Json& device) {
+    std::printf("%s\n  %-28s %10s %9s %10s %10s %12s\n", text(device, "name").c_str(), "operation",
+                "median ms", "MAD", "bandwidth", "arithmetic", "largest error");
+    for (const Json& e : device.at("operations")) {
+        if (e.contains("scene")) continue;  // there are hundreds: the page has them
+        std::printf("  %-28s", text(e, "name").c_str());
+        if (e.contains("failed")) {
+            std::printf(" could not be done: %s\n", text(e, "failed").c_str());
+            continue;
+        }
+        std::printf(" %10.3f %9.3f", number(e, "median_ms"), number(e, "mad_ms"));
+        for (const char* key : {"bandwidth_share", "arithmetic_share"})
+            if (e.contains(key) && e[key].is_number())
+                std::printf(" %8.1f %%", 100 * number(e, key));
+            else
+                std::printf(" %10s", e.contains(key) ? "not known" : "");
+        if (e.contains("error_max") && e["error_max"].is_number())
+            std::printf(" %12.2e", number(e, "error_max"));
+        std::printf("\n");
+    }
+    printMethods(device);
+    if (const Json b = device.value("budgets", Json()); !b.is_null())
+        std::printf(
+            "  time budgets: %d of %d frames kept theirs; %d are within 1.3 of the best that is as fast, "
+            "the worst at %.2f\n",
+            count(b, "kept"), count(b, "frames"), count(b, "near"), number(b, "worst_ratio"));
 }
 
 void measure(const BenchArguments& a) {
@@ -162,12 +193,12 @@ void measure(const BenchArguments& a) {
                   << std::endl;
         return;
     }
-    const std::string folder = a.output.empty() && a.firstGpu ? "pellucid-first-gpu" : a.output;
+    const std::string folder = a.output.empty() && a.request.firstGpu ? "pellucid-first-gpu" : a.output;
     if (folder.empty()) throw UsageError("-o is needed: a folder for bench.json");
-    if (a.firstGpu && (a.stability || a.stabilityShare > 0))
+    if (a.request.firstGpu && (a.stability || a.stabilityShare > 0))
         throw UsageError("--first-gpu does not search for the worst errors: leave --stability out");
     // One lane, as on GPUs: a window of pixels shared by several lanes gives slightly different results.
-    if (a.firstGpu) pel::system::setVariable("PELLUCID_MATH_WIDTH", "1");
+    if (a.request.firstGpu) pel::system::setVariable("PELLUCID_MATH_WIDTH", "1");
     const std::string jsonPath = folder + "/bench.json";
     std::vector<double> budgets;
     for (const std::string& text : a.budgets) budgets.push_back(numberOf(text, "ms", "--budget"));
@@ -179,7 +210,7 @@ void measure(const BenchArguments& a) {
     });
     const auto start = std::chrono::steady_clock::now();
     Json report = {{"host", measurements().describeHost()},
-                   {"quick", a.quick},
+                   {"quick", a.request.quick},
                    {"limit_s", requestOf(a, "").limitSeconds},
                    {"devices", Json::array()}};
     std::string names, out;
@@ -194,21 +225,21 @@ void measure(const BenchArguments& a) {
         request.cancelled = [] { return stopped.load(); };
         report["devices"].push_back(measurements().measureDevice(request));
         Json& d = report["devices"].back();
-        for (const std::string& word : a.only)
+        for (const std::string& word : a.request.only)
             if (request.stability <= 0 && std::ranges::none_of(d.at("operations"), [&](const Json& e) {
-                    return e.at("name").get<std::string>().find(word) != std::string::npos;
+                    return text(e, "name").find(word) != std::string::npos;
                 }))
                 throw UsageError("--only " + word +
                                  ": no operation has that in its name; a report without --only names all");
         measurements().summarize(d, budgets, a.errors);
-        if (a.firstGpu) {
+        if (a.request.firstGpu) {
             measurements().judgeFirst(
                 d, Json::parse(io::readWholeFile(dataFolder() + "/bench/warps.json", io::textLimit)));
             for (const Json& name : d.at("first_gpu").at("out")) out += "\n  " + name.get<std::string>();
         }
         pictures.push_back(d.value("pictures", Json::array()));
         d.erase("pictures");  // of the page alone
-        names += (names.empty() ? "" : ", ") + d.at("name").get<std::string>();
+        names += (names.empty() ? "" : ", ") + text(d, "name");
         for (const Json& e : d.at("operations"))
             deviceMilliseconds += e.value("device_ms", 0.0) * e.value("runs", 0.0);
     }
@@ -232,52 +263,15 @@ void measure(const BenchArguments& a) {
                        {"device_ms", deviceMilliseconds},
                        {"total_ms", total.count()},
                        {"warnings", Json::array()}};
-    const auto end = [&] {
-        if (out.empty()) return;
-        std::fprintf(stderr, "pellucid: out of tolerance, or not done:%s\n", out.c_str());
-        throw ExitWith(exitWorse);
-    };
     if (a.json) {
         printJson(said);
-        return end();
+    } else {
+        for (const Json& d : report["devices"]) a.request.firstGpu ? printFirst(d) : printOperations(d);
+        std::printf("%s\n%s\n", jsonPath.c_str(), page.c_str());
     }
-    for (const Json& d : report["devices"]) {
-        if (a.firstGpu) {
-            printFirst(d);
-            continue;
-        }
-        std::printf("%s\n  %-28s %10s %9s %10s %10s %12s\n", d.at("name").get<std::string>().c_str(),
-                    "operation", "median ms", "MAD", "bandwidth", "arithmetic", "largest error");
-        for (const Json& e : d.at("operations")) {
-            if (e.contains("scene")) continue;  // there are hundreds: the page has them
-            std::printf("  %-28s", e.at("name").get<std::string>().c_str());
-            if (e.contains("failed")) {
-                std::printf(" could not be done: %s\n", e["failed"].get<std::string>().c_str());
-                continue;
-            }
-            const auto share = [&](const char* key) {
-                if (e.contains(key) && e[key].is_number())
-                    std::printf(" %8.1f %%", 100 * e[key].get<double>());
-                else
-                    std::printf(" %10s", e.contains(key) ? "not known" : "");
-            };
-            std::printf(" %10.3f %9.3f", e["median_ms"].get<double>(), e["mad_ms"].get<double>());
-            share("bandwidth_share");
-            share("arithmetic_share");
-            if (e.contains("error_max") && e["error_max"].is_number())
-                std::printf(" %12.2e", e["error_max"].get<double>());
-            std::printf("\n");
-        }
-        printMethods(d);
-        if (d.contains("budgets"))
-            std::printf(
-                "  time budgets: %d of %d frames kept theirs; %d are within 1.3 of the best that is as fast, "
-                "the worst at %.2f\n",
-                d["budgets"]["kept"].get<int>(), d["budgets"]["frames"].get<int>(),
-                d["budgets"]["near"].get<int>(), d["budgets"]["worst_ratio"].get<double>());
-    }
-    std::printf("%s\n%s\n", jsonPath.c_str(), page.c_str());
-    end();
+    if (out.empty()) return;
+    std::fprintf(stderr, "pellucid: out of tolerance, or not done:%s\n", out.c_str());
+    throw ExitWith(exitWorse);
 }
 
 // A report, or the folder that `pellucid bench -o` wrote it into.
@@ -308,7 +302,7 @@ void compare(const BenchArguments& a) {
         }
         int compared = 0;
         for (const char* key : {"same", "faster", "slower", "less_accurate", "fails"})
-            compared += result.at(key).get<int>();
+            compared += count(result, key);
         if (compared == 0)
             throw InputError("nothing to compare in " + a.reports[0] + " and " + a.reports[i] +
                              (result.at("other_size") > 0 ? ": all operations have other sizes"
@@ -316,10 +310,10 @@ void compare(const BenchArguments& a) {
         for (const Json& device : result.at("devices"))
             for (const Json& e : device.at("operations")) {
                 const std::string verdict = e.at("verdict");
-                worse |= verdict == "slower" && e.at("ratio").get<double>() > slower;
+                worse |= verdict == "slower" && number(e, "ratio") > slower;
                 worse |= verdict == "less accurate" && std::isfinite(lessAccurate) &&
                          !(e.at("new_error").is_number() &&
-                           e.at("new_error").get<double>() <= lessAccurate * e.at("old_error").get<double>());
+                           number(e, "new_error") <= lessAccurate * number(e, "old_error"));
                 worse |= verdict == "fails" && (std::isfinite(slower) || std::isfinite(lessAccurate));
             }
         results.push_back(result);
@@ -345,9 +339,10 @@ void addBench(CLI::App& app) {
     option(*command, "--device", a->devices,
            "number, name or type; may be given several times (default: all but simulators)", Word{deviceWord},
            oneEach);
-    option(*command, "--only", a->only,
+    option(*command, "--only", a->request.only,
            "part of an operation's name; may be given several times (default: all)", Word{"NAME"}, oneEach);
-    option(*command, "--quick", a->quick, "fewer scenes and settings, smaller tables: below 90 seconds");
+    option(*command, "--quick", a->request.quick,
+           "fewer scenes and settings, smaller tables: below 90 seconds");
     option(*command, "--stability", a->stability,
            "also search inputs of every operation for the worst error (docs/stability.md): minutes more");
     option(*command, "--stability-share", a->stabilityShare,
@@ -358,17 +353,17 @@ void addBench(CLI::App& app) {
     option(*command, "--error", a->errors,
            "share of white, for which the report names the fastest method; several times", Word{"ERROR"},
            oneEach);
-    option(*command, "--limit", a->limitSeconds,
+    option(*command, "--limit", a->request.limitSeconds,
            "seconds that an operation may take to be prepared, and again to be measured, before it is given "
            "up (120; with --quick 60)",
            isPositive());
     option(*command, "--events", a->events, "", hidden);
     option(*command, "--make-truth", a->truth, "", hidden);
-    option(*command, "--powercap", a->powercap, "", hidden);
-    option(*command, "--without", a->without, "", oneEach, hidden);
+    option(*command, "--powercap", a->request.powercap, "", hidden);
+    option(*command, "--without", a->request.without, "", oneEach, hidden);
     jsonOption(*command, a->json);
     option(
-        *command, "--first-gpu", a->firstGpu,
+        *command, "--first-gpu", a->request.firstGpu,
         "the first time on a GPU: pictures of every method against those of a CPU, and the time of each pass "
         "beside a prediction; -o: pellucid-first-gpu. Below 8 minutes");
     option(*command, "--first-use", a->firstUse,

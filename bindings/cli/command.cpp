@@ -22,7 +22,7 @@ void onInterrupt(int signal) {
     std::signal(signal, SIG_DFL);
 }
 
-// `fits`: whether a number is allowed; `what` describes the allowed numbers.
+// `fits`: whether a number is allowed; `what` and `description` tell which are.
 template <class Number>
 CLI::Validator numbers(const std::string& what, const std::string& description,
                        std::function<bool(Number)> fits) {
@@ -39,35 +39,41 @@ CLI::Validator numbers(const std::string& what, const std::string& description,
 
 template <class Number>
 CLI::Validator range(const std::string& kind, Number low, Number high) {
-    std::ostringstream what;
-    what << "a " << kind << " from " << low << " to " << high;
-    std::ostringstream description;
-    description << low << " to " << high;
-    return numbers<Number>(what.str(), description.str(), [=](Number n) { return n >= low && n <= high; });
+    std::ostringstream limits;
+    limits << low << " to " << high;
+    return numbers<Number>("a " + kind + " from " + limits.str(), limits.str(),
+                           [=](Number n) { return n >= low && n <= high; });
 }
 
 }  // namespace
 
-CLI::Validator isOneOf(std::vector<std::string> names) {
-    std::string list, description;
-    for (const std::string& name : names) {
-        list += (list.empty() ? "" : ", ") + name;
-        description += (description.empty() ? "{" : ",") + name;
+std::string thereIsNo(const std::string& what, const std::string& word,
+                      const std::vector<std::string>& known) {
+    const std::string nearest = io::nearestWord(word, known);
+    return "there is no " + what + "; " + (nearest.empty() ? "" : "did you mean " + nearest + "? ") +
+           "there are " + CLI::detail::join(known, ", ");
+}
+
+void withInput(const std::string& source, const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const Error& e) {
+        if (e.code() == PEL_ERROR_INVALID_ARGUMENT) throw InputError(source + ": " + e.what());
+        throw;
     }
+}
+
+CLI::Validator isOneOf(std::vector<std::string> names) {
+    const std::string description = "{" + CLI::detail::join(names, ",") + "}";
     return CLI::Validator(
-        [names = std::move(names), list](std::string& given) {
-            std::string small = given;
-            std::ranges::transform(small, small.begin(),
-                                   [](unsigned char c) { return char(std::tolower(c)); });
-            if (std::ranges::find(names, small) != names.end()) {
-                given = small;
-                return std::string();
-            }
-            const std::string nearest = io::nearestWord(small, names);
-            return "there is no '" + given + "'; " +
-                   (nearest.empty() ? "" : "did you mean " + nearest + "? ") + "there are " + list;
+        [names = std::move(names)](std::string& given) {
+            const std::string small = CLI::detail::to_lower(given);
+            if (std::ranges::find(names, small) == names.end())
+                return thereIsNo("'" + given + "'", small, names);
+            given = small;
+            return std::string();
         },
-        description + "}");
+        description);
 }
 
 CLI::Validator isOneOf(std::span<const std::string_view> names, const std::vector<std::string>& more) {
@@ -165,20 +171,19 @@ void Run::warn(const std::string& text) {
     std::fprintf(stderr, "warning: %s\n", io::printable(text).c_str());
 }
 
+static std::string lineOf(const nlohmann::ordered_json& value) {
+    return value.is_string() ? io::printable(value.get<std::string>()) : jsonText(value, -1);
+}
+
 void Run::finish() {
     report["device_ms"] = deviceMilliseconds();
     report["total_ms"] = progress_.milliseconds();
     report["warnings"] = warnings_;
-    if (options_.json) {
-        printJson(report);
-        return;
-    }
+    if (options_.json) return printJson(report);
     for (const auto& [key, value] : report.items()) {
         // Tables are only for --json: in text mode they have been printed already.
         if (value.is_array() && (value.empty() || value[0].is_object())) continue;
-        std::cout << key << ": "
-                  << (value.is_string() ? io::printable(value.get<std::string>()) : jsonText(value, -1))
-                  << "\n";
+        std::cout << key << ": " << lineOf(value) << "\n";
     }
     std::cout << std::flush;
 }
@@ -192,14 +197,9 @@ std::string jsonText(const nlohmann::ordered_json& value, int indent) {
 }
 
 void printReport(const nlohmann::ordered_json& report, bool json, int width) {
-    if (json) {
-        printJson(report);
-        return;
-    }
+    if (json) return printJson(report);
     for (const auto& [key, value] : report.items())
-        std::printf("%-*s %s\n", width, key.c_str(),
-                    value.is_string() ? io::printable(value.get<std::string>()).c_str()
-                                      : jsonText(value, -1).c_str());
+        std::printf("%-*s %s\n", width, key.c_str(), lineOf(value).c_str());
 }
 
 void apply(CLI::Option& option, Word word) {

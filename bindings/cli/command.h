@@ -22,6 +22,9 @@ class InputError : public std::runtime_error {
     using runtime_error::runtime_error;
 };
 
+// Runs `work`. What the library refuses of its arguments becomes an InputError about `source`.
+void withInput(const std::string& source, const std::function<void()>& work);
+
 // Ends the command with this code and without a message.
 struct ExitWith : std::runtime_error {
     explicit ExitWith(ExitCode c) : std::runtime_error(""), code(c) {}
@@ -93,6 +96,10 @@ void printJson(const nlohmann::ordered_json& report);
 std::string jsonText(const nlohmann::ordered_json& value, int indent = 2);
 // Prints that object, or a line per value, with the values in column `width`.
 void printReport(const nlohmann::ordered_json& report, bool json, int width);
+
+// "there is no WHAT; did you mean NEAREST? there are KNOWN" for a word that is not known.
+std::string thereIsNo(const std::string& what, const std::string& word,
+                      const std::vector<std::string>& known);
 
 // Checks of option values. CLI11's own checks answer a wrong value with lists of names and numbers, let NaN
 // pass, and print the largest double in full. The description of a check is its range, "0 to 1000", or its

@@ -18,10 +18,6 @@ struct CurvatureArguments {
     std::vector<float> range;  // of colours: low, high; empty: from the values
 };
 
-bool isSigned(PelCurvatureQuantity quantity) {
-    return quantity >= PEL_QUANTITY_MEAN;
-}
-
 MeshWeldChoice weldChoice(const std::string& text) {
     if (text == "none") return {PEL_WELD_NONE, 0};
     if (text == "exact") return {PEL_WELD_EXACT, 0};
@@ -65,8 +61,8 @@ void runCurvature(const CurvatureArguments& a) {
     // `share`: of the values beyond either end of the colours.
     const auto scale = [&](double share) -> std::pair<float, float> {
         if (!a.range.empty()) return {a.range[0], a.range[1]};
-        return {isSigned(params.quantity) ? percentile(result.values, share) : 0.0f,
-                percentile(result.values, 1 - share)};
+        const bool isSigned = params.quantity >= PEL_QUANTITY_MEAN;
+        return {isSigned ? percentile(result.values, share) : 0.0f, percentile(result.values, 1 - share)};
     };
     if (io::extensionOf(a.output) == "npy") {
         const size_t shape[] = {result.values.size()};

@@ -8,13 +8,13 @@ namespace pellucid::cli {
 constexpr int viewWidth = 900, viewHeight = 1000;
 constexpr io::Srgb8 background{20, 20, 20};
 
-// Shaded a little darker where the surface turns away from the view. Rendered `supersampling` times as wide
-// and high.
-static io::Picture curvatureView(const sample::Scene& scene, const sample::HeadPose& pose,
-                                 const sample::Framing& framing, int width, int height, int supersampling,
-                                 float low, float high) {
-    width *= supersampling, height *= supersampling;
-    const sample::Camera camera = frameHead(scene.bounds(), pose, framing, double(width) / height);
+// Shaded a little darker where the surface turns away from the view.
+static io::Picture curvatureView(const sample::Scene& scene, char up, double azimuth, float low, float high) {
+    constexpr int supersampling = 2, width = supersampling * viewWidth, height = supersampling * viewHeight;
+    sample::Framing framing;
+    framing.azimuth = azimuth;
+    const sample::Camera camera =
+        frameHead(scene.bounds(), sample::poseWithUp(up), framing, double(width) / height);
     sample::GBufferOptions options;
     options.detail.enabled = false;
     const sample::GBuffer g = renderGBuffer(scene, camera, width, height, options);
@@ -37,21 +37,11 @@ static io::Picture curvatureView(const sample::Scene& scene, const sample::HeadP
 void writeCurvaturePicture(const std::string& path, const io::MeshData& mesh,
                            const std::vector<float>& values, float low, float high, char up,
                            const std::string& unit) {
-    sample::MeshView viewed;
-    viewed.positions = mesh.positions;
-    viewed.normals = mesh.normals;
-    viewed.curvature = values;
-    viewed.triangles = mesh.triangles;
-    const sample::Scene scene(viewed);
-    const auto view = [&](double azimuth) {
-        sample::Framing framing;
-        framing.azimuth = azimuth;
-        return curvatureView(scene, sample::poseWithUp(up), framing, viewWidth, viewHeight, 2, low, high);
-    };
+    const sample::Scene scene(sample::MeshView{mesh.positions, mesh.normals, {}, values, mesh.triangles, {}});
     const io::Picture bar = io::colorBar(2 * viewWidth - 40, low, high, unit);
     io::Picture page(2 * viewWidth, viewHeight + bar.height + 40, background);
-    page.paste(0, 0, view(0));
-    page.paste(viewWidth, 0, view(60));
+    page.paste(0, 0, curvatureView(scene, up, 0, low, high));
+    page.paste(viewWidth, 0, curvatureView(scene, up, 60, low, high));
     page.paste(20, viewHeight + 20, bar);
     io::writeImage8(path, page.width, page.height, 3, page.rgb);
 }

@@ -63,11 +63,6 @@ struct DemoArguments {
     bool orient = false;
 };
 
-// Most OBJ files have y up, most scans in the other formats z.
-bool yIsUp(const DemoArguments& a) {
-    return a.up == "y" || (a.up == "auto" && std::filesystem::path(a.mesh).extension() == ".obj");
-}
-
 // A mesh of the user: all of it is skin.
 DemoHead loadMeshAsHead(Run& run, const DemoArguments& a) {
     DemoHead head;
@@ -76,17 +71,15 @@ DemoHead loadMeshAsHead(Run& run, const DemoArguments& a) {
     head.mesh = io::loadMesh(a.mesh, load);
     io::MeshData& mesh = head.mesh;
     for (const std::string& warning : mesh.warnings) run.warn(warning);
-    const bool y = yIsUp(a);
+    // Most OBJ files have y up, most scans in the other formats z.
+    const bool y = a.up == "y" || (a.up == "auto" && std::filesystem::path(a.mesh).extension() == ".obj");
     head.pose = sample::poseWithUp(y ? 'y' : 'z');
     io::scaleToHeight(mesh, a.height, y ? 1 : 2);
-    const int levels = a.subdivide.value_or(1);
-    if (levels > 0) {
-        try {
-            io::loopSubdivide(mesh, levels);
-        } catch (const io::FileError& e) {
-            if (a.subdivide) throw;  // --subdivide was given
-            run.warn(std::string("shown without subdivision: ") + e.what());
-        }
+    try {
+        io::loopSubdivide(mesh, a.subdivide.value_or(1));
+    } catch (const io::FileError& e) {
+        if (a.subdivide) throw;  // --subdivide was given
+        run.warn(std::string("shown without subdivision: ") + e.what());
     }
     if (mesh.normals.empty()) io::computeNormals(mesh);
     return head;
@@ -126,11 +119,6 @@ std::vector<float> shadeAs(Run& run, Stages& stages, io::LutStore& luts, const D
     return radiance;
 }
 
-// The variants of each view: Lambert, by tables, on the screen.
-std::array<io::SceneFile, 3> scenesOf(const DemoView& view) {
-    return {withoutScattering(view.scene), byTables(view.scene), view.scene};
-}
-
 // One view: G-buffer, shadings, files.
 ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const DemoBody& body,
                      const DemoSurface& surface, const DemoViewRequest& request, const std::string& folder) {
@@ -144,15 +132,14 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const DemoBod
     stages.measure(view.name + ": kernels", [&] {
         for (const io::SceneFile& each : scenes) io::buildPrograms(run.device(), each, luts, view.images);
     });
-    shaded.lambert = shadeAs(run, stages, luts, view, "Lambert", scenes[0]);
-    shaded.tables = shadeAs(run, stages, luts, view, "by tables", scenes[1]);
-    shaded.complete = shadeAs(run, stages, luts, view, "on the screen", scenes[2]);
+    for (size_t i = 0; i < std::size(demoVariants); ++i)
+        shaded.radiance[i] = shadeAs(run, stages, luts, view, demoVariants[i], scenes[i]);
     const auto path = [&](const std::string& suffix) { return folder + "/" + view.name + suffix; };
     io::writeExr(path("_gbuffer.exr"), view.gbuffer, io::ExrCompression::Rle);
     for (const auto& [file, image] : view.images)
         io::writeExr(folder + "/" + file, image, io::ExrCompression::Rle);
     io::writeScene(path(".toml"), view.scene);
-    io::writeRadiance(path(".exr"), view.gbuffer.width, view.gbuffer.height, shaded.complete);
+    io::writeRadiance(path(".exr"), view.gbuffer.width, view.gbuffer.height, shaded.radiance[DEMO_COMPLETE]);
     shaded.view = std::move(view);
     return shaded;
 }

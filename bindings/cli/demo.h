@@ -69,17 +69,19 @@ DemoView renderDemoView(const DemoBody& body, const DemoSurface& surface, const 
 void addPixels(DemoView& view, const DemoBody& body, const DemoSurface& surface, const DemoLightImages& light,
                const DemoViewRequest& request);
 
-// The same scene shaded plainly, by Lambert, or by tables.
-io::SceneFile withoutScattering(io::SceneFile scene);
 io::SceneFile byTables(io::SceneFile scene);
+// The three ways in which each view is shaded, and the variants of its scene for them.
+enum DemoVariant { DEMO_LAMBERT, DEMO_TABLES, DEMO_COMPLETE };
+constexpr const char* demoVariants[] = {"Lambert", "by tables", "on the screen"};
+std::array<io::SceneFile, 3> scenesOf(const DemoView& view);
 // The view with its skin made of another material of the library, and its albedo multiplied by a tint.
 DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3]);
 
 struct ShadedView {
     DemoView view;
     DemoLightImages light;
-    std::vector<float> lambert, tables, complete;  // RGB per pixel
-    // Twice as large, before the backdrop: lambert, tables, complete. Empty for views that are large already.
+    std::array<std::vector<float>, 3> radiance;  // RGB per pixel, by variant
+    // Twice as large, before the backdrop, by variant. Empty for views that are large already.
     std::vector<io::Picture> fine;
 };
 

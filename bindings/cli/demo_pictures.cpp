@@ -11,8 +11,7 @@ io::Picture developed(const DemoView& view, const std::vector<float>& radiance) 
 
 namespace {
 
-constexpr int sheetShrink = 2;  // of pictures, so that the sheet fits a screen
-constexpr int lutSize = 200;    // pixels a side on the sheet
+constexpr int lutSize = 200;  // pixels a side on the sheet
 
 // The table as a picture, nearest texel, with values as linear radiance.
 io::Picture lutPicture(const Lut& lut) {
@@ -56,10 +55,16 @@ io::Picture cropped(const io::Picture& picture, const Crop& c) {
     return part;
 }
 
+// A part of a picture, so small that the sheet fits a screen.
+io::Picture reduced(const io::Picture& picture, const Crop& part) {
+    constexpr int sheetShrink = 2;
+    return io::shrunk(cropped(picture, part), sheetShrink);
+}
+
 // The change by scattering, in its own colour; grey where nothing changes.
 io::Picture difference(const ShadedView& view, float times) {
-    std::vector<float> d(view.complete);
-    for (size_t i = 0; i < d.size(); ++i) d[i] = 0.2f + times * (d[i] - view.lambert[i]);
+    std::vector<float> d(view.radiance[DEMO_COMPLETE]);
+    for (size_t i = 0; i < d.size(); ++i) d[i] = 0.2f + times * (d[i] - view.radiance[DEMO_LAMBERT][i]);
     return {view.view.gbuffer.width, view.view.gbuffer.height,
             io::toSrgb8(d, {1.0f, 1.0f, io::ToneCurve::none})};
 }
@@ -67,6 +72,7 @@ io::Picture difference(const ShadedView& view, float times) {
 // The part of a head where scattering and transmission add most red light: a backlit ear.
 Crop brightestChange(const ShadedView& view) {
     constexpr int step = 8;
+    const std::vector<float>&lambert = view.radiance[DEMO_LAMBERT], &complete = view.radiance[DEMO_COMPLETE];
     const int width = view.view.gbuffer.width, height = view.view.gbuffer.height;
     const int w = std::min(width, height / 6), h = std::min(height, height / 6);
     Crop best{0, 0, w, h};
@@ -80,7 +86,7 @@ Crop brightestChange(const ShadedView& view) {
                     // Transmitted light is red. Places lit by Lambert are excluded: they are bright enough,
                     // and have pores.
                     const auto redness = [i](const std::vector<float>& v) { return v[i] - v[i + 2]; };
-                    if (view.lambert[i] < 0.15f) sum += redness(view.complete) - redness(view.lambert);
+                    if (lambert[i] < 0.15f) sum += redness(complete) - redness(lambert);
                 }
             if (sum > most) most = sum, best = {x, y, x + w, y + h};
         }
@@ -96,7 +102,7 @@ io::Picture curvatureMap(const DemoView& view) {
     const float high = std::max(percentile(seen, 0.98), 1e-6f);
     const io::Picture whole =
         io::colored(view.gbuffer.width, view.gbuffer.height, curvature, 0, high, material);
-    const io::Picture map = io::shrunk(cropped(whole, coveredPart(view)), sheetShrink);
+    const io::Picture map = reduced(whole, coveredPart(view));
     return io::withColorBar(map, 0, high, "1/mm");
 }
 
@@ -104,11 +110,15 @@ Crop timesTwo(const Crop& c) {
     return {2 * c.left, 2 * c.top, 2 * c.right, 2 * c.bottom};
 }
 
-// A picture, its edges smooth where there is a finer one. `which`: of ShadedView::fine.
-io::Picture smooth(const ShadedView& view, const std::vector<float>& radiance, size_t which) {
-    const Crop part = coveredPart(view.view);
-    if (view.fine.empty()) return cropped(developed(view.view, radiance), part);
-    return io::shrunk(cropped(view.fine[which], timesTwo(part)), 2);
+// A part of a variant's picture, twice as large where there is a finer one.
+io::Picture largest(const ShadedView& view, size_t variant, const Crop& part) {
+    return view.fine.empty() ? cropped(developed(view.view, view.radiance[variant]), part)
+                             : cropped(view.fine[variant], timesTwo(part));
+}
+
+// What is seen of a variant, its edges smooth where there is a finer picture.
+io::Picture smooth(const ShadedView& view, size_t variant) {
+    return io::shrunk(largest(view, variant, coveredPart(view.view)), view.fine.empty() ? 1 : 2);
 }
 
 std::string write(const std::string& file, const io::Picture& p) {
@@ -123,7 +133,7 @@ std::string writeParts(const std::string& folder, const DemoView& view, const io
     const Crop part = coveredPart(view);
     std::vector<io::Tile> tiles;
     const auto add = [&](const char* title, const io::Picture& whole) {
-        tiles.push_back({title, io::shrunk(cropped(whole, part), sheetShrink)});
+        tiles.push_back({title, reduced(whole, part)});
     };
     add("sum", developed(view, frame.radiance()));
     add("diffuse", developed(view, frame.output(PEL_SLOT_OUT_DIFFUSE)));
@@ -138,8 +148,8 @@ std::string writeParts(const std::string& folder, const DemoView& view, const io
 
 std::string writePicture(const std::string& folder, const ShadedView& view) {
     const std::string name = folder + "/" + view.view.name;
-    write(name + "_lambert.png", smooth(view, view.lambert, 0));
-    return write(name + ".png", smooth(view, view.complete, 2));
+    write(name + "_lambert.png", smooth(view, DEMO_LAMBERT));
+    return write(name + ".png", smooth(view, DEMO_COMPLETE));
 }
 
 std::string writeSheet(const std::string& folder, const std::vector<ShadedView>& views,
@@ -147,38 +157,27 @@ std::string writeSheet(const std::string& folder, const std::vector<ShadedView>&
                        const Lut& shadowLut) {
     constexpr size_t columns = 4;
     std::vector<io::Tile> tiles;
-    const auto fill = [&] {  // the rest of a row
-        while (tiles.size() % columns) tiles.push_back({"", io::Picture(1, 1, io::Srgb8{20, 20, 20})});
-    };
     for (const ShadedView& view : views) {
         const std::string& name = view.view.name;
         const Crop part = coveredPart(view.view);
-        const auto add = [&](const char* title, const std::vector<float>& radiance) {
-            tiles.push_back({name + ": " + title,
-                             io::shrunk(cropped(developed(view.view, radiance), part), sheetShrink)});
+        const auto add = [&](const std::string& title, const io::Picture& whole) {
+            tiles.push_back({title, reduced(whole, part)});
         };
-        add("Lambert", view.lambert);
-        add("by tables", view.tables);
-        add("on the screen", view.complete);
-        tiles.push_back({"difference, x 4", io::shrunk(cropped(difference(view, 4), part), sheetShrink)});
+        for (size_t i = 0; i < std::size(demoVariants); ++i)
+            add(name + ": " + demoVariants[i], developed(view.view, view.radiance[i]));
+        add("difference, x 4", difference(view, 4));
     }
     const ShadedView& lit = views.back();
     const Crop glow = brightestChange(lit);
-    const auto close = [&](const char* title, const std::vector<float>& radiance, size_t fine) {
-        tiles.push_back({std::string("from behind: ") + title,
-                         lit.fine.empty() ? cropped(developed(lit.view, radiance), glow)
-                                          : cropped(lit.fine[fine], timesTwo(glow))});
-    };
-    close("Lambert", lit.lambert, 0);
-    close("by tables", lit.tables, 1);
-    close("on the screen", lit.complete, 2);
+    for (size_t i = 0; i < std::size(demoVariants); ++i)
+        tiles.push_back({std::string("from behind: ") + demoVariants[i], largest(lit, i, glow)});
     tiles.push_back({"curvature", curvatureMap(views.front().view)});
     tiles.push_back({"curvature LUT: N.L across", lutPicture(curvatureLut)});
     tiles.push_back({"shadow LUT: shadow across", lutPicture(shadowLut)});
-    fill();
+    while (tiles.size() % columns)  // the rest of the row
+        tiles.push_back({"", io::Picture(1, 1, io::Srgb8{20, 20, 20})});
     for (const io::Tile& m : materials)
-        tiles.push_back(
-            {m.label, io::shrunk(cropped(m.picture, coveredPart(views.front().view)), sheetShrink)});
+        tiles.push_back({m.label, reduced(m.picture, coveredPart(views.front().view))});
     return write(folder + "/demo.png", io::contactSheet(tiles, int(columns)));
 }
 

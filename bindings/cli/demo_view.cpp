@@ -284,13 +284,13 @@ DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3
     return view;
 }
 
-io::SceneFile withoutScattering(io::SceneFile scene) {
-    for (io::SceneMaterial& m : scene.materials) m.profile.clear();
-    scene = byTables(std::move(scene));  // of which there are none
+std::array<io::SceneFile, 3> scenesOf(const DemoView& view) {
+    io::SceneFile plain = byTables(view.scene);
+    for (io::SceneMaterial& m : plain.materials) m.profile.clear();  // so that there are no tables
     // One normal for all channels, as a renderer without scattering has.
-    scene.channels[PEL_SLOT_NORMAL_BLURRED].clear();
-    scene.channels[PEL_SLOT_NORMAL_GEOMETRIC] = scene.channels[PEL_SLOT_NORMAL_SHADING];
-    return scene;
+    plain.channels[PEL_SLOT_NORMAL_BLURRED].clear();
+    plain.channels[PEL_SLOT_NORMAL_GEOMETRIC] = plain.channels[PEL_SLOT_NORMAL_SHADING];
+    return {plain, byTables(view.scene), view.scene};
 }
 
 }  // namespace pellucid::cli

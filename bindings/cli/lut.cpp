@@ -22,28 +22,21 @@ struct LutArguments {
     PelEyeLutDesc eye = pelEyeLutDescDefaults();
 };
 
-// The description of a preset, overridden by the options of the command line.
-template <class Desc>
-void applyPreset(LutArguments& a, Desc& given, Desc preset, const CLI::App& command,
-                 const std::vector<std::pair<const char*, float Desc::*>>& lengths) {
-    for (const auto& [option, field] : lengths)
-        if (command.count(option) > 0) preset.*field = given.*field;
-    if (!a.axis.empty()) preset.axis = chosen<PelLutAxis>(io::lutAxes, a.axis);
-    given = preset;
-}
-
 // A picture of the table to look at: its values as linear light, from 0 to 1.
 void writeTablePicture(const std::string& path, const Lut& lut, uint32_t width, uint32_t height) {
-    io::ToneMap plain;
-    plain.curve = io::ToneCurve::none;
-    io::writeImage8(path, int(width), int(height), 3, io::toSrgb8(lut.read<float>(PEL_LUT_FLOAT), plain));
+    io::writeImage8(path, int(width), int(height), 3,
+                    io::toSrgb8(lut.read<float>(PEL_LUT_FLOAT), {.curve = io::ToneCurve::none}));
 }
 
-// WxHxD of an eye's table.
-void parseEyeSize(const std::string& text, PelEyeLutDesc& desc) {
+// WxHxD of an eye's table, WxH of the others.
+void parseLutSize(const std::string& text, PelEyeLutDesc& desc) {
     char rest = 0;
     if (std::sscanf(text.c_str(), "%ux%ux%u%c", &desc.width, &desc.height, &desc.depth, &rest) != 3)
         throw UsageError("--size: '" + text + "' is not three numbers such as 64x64x32");
+}
+template <class Desc>
+void parseLutSize(const std::string& text, Desc& desc) {
+    parseSize(text, desc.width, desc.height);
 }
 
 uint32_t rowsOf(const PelEyeLutDesc& desc) {
@@ -75,11 +68,7 @@ void describe(const PelLutInfo& info, nlohmann::ordered_json& report) {
 
 template <class Desc>
 void integrate(LutArguments& arguments, Desc& desc) {
-    if constexpr (std::is_same_v<Desc, PelEyeLutDesc>) {
-        if (!arguments.size.empty()) parseEyeSize(arguments.size, desc);
-    } else if (!arguments.size.empty()) {
-        parseSize(arguments.size, desc.width, desc.height);
-    }
+    if (!arguments.size.empty()) parseLutSize(arguments.size, desc);
     const bool picture = arguments.encoding.empty() && io::isPicture(arguments.output);
     std::optional<PelLutEncoding> encoding;
     if (!arguments.encoding.empty()) encoding = chosen<PelLutEncoding>(io::lutEncodings, arguments.encoding);
@@ -110,11 +99,16 @@ void integrate(LutArguments& arguments, Desc& desc) {
     run.finish();
 }
 
-// "WxH" of the presets.
+// Integrates the table that a preset describes, with the profile and the lengths of the command line.
 template <class Desc>
-std::string sizeHelp(const Desc& material, const Desc& faceworks) {
-    const auto size = [](const Desc& d) { return io::concat(d.width, "x", d.height); };
-    return "texels, WxH (default: " + size(material) + "; " + size(faceworks) + " with --preset faceworks)";
+void integratePreset(LutArguments& a, const Desc& given, Desc preset, const CLI::App& command,
+                     const std::vector<std::pair<const char*, float Desc::*>>& lengths) {
+    for (const auto& [option, field] : lengths)
+        if (command.count(option) > 0) preset.*field = given.*field;
+    if (!a.axis.empty()) preset.axis = chosen<PelLutAxis>(io::lutAxes, a.axis);
+    const Profile profile = io::findProfile(a.profile).profile;
+    preset.profile = profile.get();
+    integrate(a, preset);
 }
 
 void addCommon(CLI::App& command, LutArguments& a, const std::string& size) {
@@ -128,18 +122,13 @@ void addCommon(CLI::App& command, LutArguments& a, const std::string& size) {
     addRunOptions(command, a.run);
 }
 
-void addProfileOptions(CLI::App& command, LutArguments& a, float& diffusionRadius) {
-    option(command, "--profile", a.profile, "a material (pellucid profile list) or a .toml file",
-           Word{profileWord}, shown);
-    option(command, "--diffusion-radius", diffusionRadius,
-           "sigma of the widest Gaussian, mm (default: the profile's own)", isPositive());
-}
-
-io::LutPreset presetOf(const LutArguments& a) {
-    return chosen<io::LutPreset>(io::lutPresets, a.preset);
-}
-
-void addPreset(CLI::App& command, LutArguments& a) {
+// The options of a table of a profile. `material`, `faceworks`: the presets.
+template <class Desc>
+void addOfProfile(CLI::App& command, LutArguments& a, Desc& desc, const Desc& material,
+                  const Desc& faceworks) {
+    addCommon(command, a,
+              io::concat("texels, WxH (default: ", material.width, "x", material.height, "; ",
+                         faceworks.width, "x", faceworks.height, " with --preset faceworks)"));
     option(command, "--preset", a.preset,
            "material: as a material makes it of its profile; faceworks: as FaceWorks does",
            isOneOf(io::lutPresets), shown);
@@ -147,6 +136,14 @@ void addPreset(CLI::App& command, LutArguments& a) {
            "spread of texels: linear, or root, by which small tables look up better (default: root; linear "
            "with --preset faceworks)",
            isOneOf(io::lutAxes));
+    option(command, "--profile", a.profile, "a material (pellucid profile list) or a .toml file",
+           Word{profileWord}, shown);
+    option(command, "--diffusion-radius", desc.diffusionRadius,
+           "sigma of the widest Gaussian, mm (default: the profile's own)", isPositive());
+}
+
+io::LutPreset presetOf(const LutArguments& a) {
+    return chosen<io::LutPreset>(io::lutPresets, a.preset);
 }
 
 }  // namespace
@@ -158,9 +155,7 @@ void addLut(CLI::App& app) {
 
     CLI::App* curvature =
         lut->add_subcommand("curvature", "Light scattered round a curved surface, over N.L and curvature");
-    addCommon(*curvature, *a, sizeHelp(pelCurvatureLutDescDefaults(), pelCurvatureLutDescFaceWorks()));
-    addPreset(*curvature, *a);
-    addProfileOptions(*curvature, *a, a->curvature.diffusionRadius);
+    addOfProfile(*curvature, *a, a->curvature, pelCurvatureLutDescDefaults(), pelCurvatureLutDescFaceWorks());
     option(*curvature, "--radius-min", a->curvature.radiusMin,
            "smallest radius of curvature, mm (default: a quarter of the diffusion radius; 1 with --preset "
            "faceworks)");
@@ -170,21 +165,17 @@ void addLut(CLI::App& app) {
            "geometry that light is integrated over (default: sphere; arc with --preset faceworks)",
            isOneOf(io::curvatureForms));
     curvature->callback([a, curvature] {
-        applyPreset(*a, a->curvature, io::presetCurvature(presetOf(*a)), *curvature,
-                    {{"--radius-min", &PelCurvatureLutDesc::radiusMin},
-                     {"--radius-max", &PelCurvatureLutDesc::radiusMax},
-                     {"--diffusion-radius", &PelCurvatureLutDesc::diffusionRadius}});
-        if (!a->form.empty()) a->curvature.form = chosen<PelCurvatureForm>(io::curvatureForms, a->form);
-        const Profile profile = io::findProfile(a->profile).profile;
-        a->curvature.profile = profile.get();
-        integrate(*a, a->curvature);
+        PelCurvatureLutDesc preset = io::presetCurvature(presetOf(*a));
+        if (!a->form.empty()) preset.form = chosen<PelCurvatureForm>(io::curvatureForms, a->form);
+        integratePreset(*a, a->curvature, preset, *curvature,
+                        {{"--radius-min", &PelCurvatureLutDesc::radiusMin},
+                         {"--radius-max", &PelCurvatureLutDesc::radiusMax},
+                         {"--diffusion-radius", &PelCurvatureLutDesc::diffusionRadius}});
     });
 
     CLI::App* shadow =
         lut->add_subcommand("shadow", "Light scattered across a shadow edge, over shadow value and 1/width");
-    addCommon(*shadow, *a, sizeHelp(pelShadowLutDescDefaults(), pelShadowLutDescFaceWorks()));
-    addPreset(*shadow, *a);
-    addProfileOptions(*shadow, *a, a->shadow.diffusionRadius);
+    addOfProfile(*shadow, *a, a->shadow, pelShadowLutDescDefaults(), pelShadowLutDescFaceWorks());
     option(*shadow, "--width-min", a->shadow.widthMin,
            "narrowest penumbra, mm (default: the filter that follows from the profile; 8 with --preset "
            "faceworks)");
@@ -194,15 +185,13 @@ void addLut(CLI::App& app) {
     option(*shadow, "--open-ends", a->openEnds,
            "rows are not rescaled to run from 0 to 1 (--preset faceworks does not either)");
     shadow->callback([a, shadow] {
-        applyPreset(*a, a->shadow, io::presetShadow(presetOf(*a)), *shadow,
-                    {{"--width-min", &PelShadowLutDesc::widthMin},
-                     {"--width-max", &PelShadowLutDesc::widthMax},
-                     {"--sharpening", &PelShadowLutDesc::sharpening},
-                     {"--diffusion-radius", &PelShadowLutDesc::diffusionRadius}});
-        if (a->openEnds) a->shadow.closedEnds = 0;
-        const Profile profile = io::findProfile(a->profile).profile;
-        a->shadow.profile = profile.get();
-        integrate(*a, a->shadow);
+        PelShadowLutDesc preset = io::presetShadow(presetOf(*a));
+        if (a->openEnds) preset.closedEnds = 0;
+        integratePreset(*a, a->shadow, preset, *shadow,
+                        {{"--width-min", &PelShadowLutDesc::widthMin},
+                         {"--width-max", &PelShadowLutDesc::widthMax},
+                         {"--sharpening", &PelShadowLutDesc::sharpening},
+                         {"--diffusion-radius", &PelShadowLutDesc::diffusionRadius}});
     });
 
     CLI::App* specular = lut->add_subcommand("specular", "Beckmann's distribution over n.h and roughness");
@@ -223,7 +212,7 @@ void addLut(CLI::App& app) {
     option(*eye, "--cornea-conic", a->eye.corneaConic, "conic constant", shown);
     option(*eye, "--cornea-index", a->eye.corneaIndex, "refractive index", shown);
     option(*eye, "--aqueous-index", a->eye.aqueousIndex, "refractive index", shown);
-    eye->callback([a, eye] {
+    eye->callback([a] {
         Profile profile;
         if (!a->irisProfile.empty()) profile = io::findProfile(a->irisProfile).profile;
         a->eye.profile = profile.get();

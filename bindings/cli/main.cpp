@@ -2,7 +2,6 @@
 
 #include "command.h"
 #include "io/input_file.h"
-#include "io/spelling.h"
 #include "system/process.h"
 
 using namespace pellucid;
@@ -17,17 +16,13 @@ static int fail(ExitCode code, const char* message) {
 // Also checks subcommands that need one themselves, such as `lut`. CLI11 would not list the choices.
 static void checkSubcommand(const CLI::App& app, int argc, char** argv, const std::string& path = "") {
     if (argc < 2 || argv[1][0] == '-' || app.get_require_subcommand_min() == 0) return;
-    std::string names;
-    std::vector<std::string> all;
+    std::vector<std::string> names;
     for (const CLI::App* known : app.get_subcommands({})) {
         if (known->check_name(argv[1]))
             return checkSubcommand(*known, argc - 1, argv + 1, path + argv[1] + " ");
-        names += (names.empty() ? "" : ", ") + known->get_name();
-        all.push_back(known->get_name());
+        names.push_back(known->get_name());
     }
-    const std::string nearest = io::nearestWord(argv[1], all);
-    throw UsageError("there is no subcommand '" + path + argv[1] + "'; " +
-                     (nearest.empty() ? "" : "did you mean " + nearest + "? ") + "there are " + names);
+    throw UsageError(thereIsNo("subcommand '" + path + argv[1] + "'", argv[1], names));
 }
 
 // Closes standard output: if the report cannot be written, the command has failed.

@@ -7,7 +7,7 @@ MeshCurvature meshCurvature(Run& run, const io::MeshData& mesh, const PelCurvatu
                             const MeshWeldChoice& weld) {
     const auto count = uint32_t(mesh.vertexCount());
     MeshCurvature result{std::vector<float>(count), pelMeshReportDefaults()};
-    try {
+    withInput(mesh.source, [&] {
         PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
         desc.numVertices = count;
         desc.indices = mesh.triangles.data();
@@ -21,10 +21,7 @@ MeshCurvature meshCurvature(Run& run, const io::MeshData& mesh, const PelCurvatu
         topology.curvature(params, vertexView(positions, count), vertexView(normals, count),
                            vertexView(curvature, count), &result.report);
         curvature.read(result.values.data(), count * sizeof(float));
-    } catch (const Error& e) {
-        if (e.code() == PEL_ERROR_INVALID_ARGUMENT) throw InputError(mesh.source + ": " + e.what());
-        throw;
-    }
+    });
     return result;
 }
 

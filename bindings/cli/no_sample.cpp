@@ -12,8 +12,7 @@ void writeCurvaturePicture(const std::string&, const io::MeshData&, const std::v
                            char, const std::string&) {
     throw UsageError(
         "--picture: this build has no renderer; build with Embree (PELLUCID_SAMPLE), or write values with -o "
-        "and "
-        "colour the mesh elsewhere");
+        "and colour the mesh elsewhere");
 }
 
 }  // namespace pellucid::cli

@@ -35,10 +35,7 @@ nlohmann::ordered_json described(const io::ProfileFile& file) {
 void list(const ProfileArguments& a) {
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
     for (const std::string& name : Profile::libraryNames()) all.push_back(described(io::findProfile(name)));
-    if (a.json) {
-        printJson({{"profiles", all}});
-        return;
-    }
+    if (a.json) return printJson({{"profiles", all}});
     std::printf("%-12s %-8s %9s  %-26s %s\n", "name", "kind", "radius mm", "width mm (R, G, B)", "source");
     for (const auto& p : all)
         std::printf("%-12s %-8s %9.3f  %8.3f %8.3f %8.3f %s\n", p["name"].get<std::string>().c_str(),

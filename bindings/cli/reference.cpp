@@ -231,11 +231,9 @@ std::vector<uint32_t> idsOf(const std::string& path, const io::PartedMesh& mesh,
                                             shadowOnly - 1));
         }
         const int wanted = mesh.part(name);
-        if (wanted < 0) {
-            std::string names;
-            for (const std::string& known : mesh.parts) names += (names.empty() ? "" : ", ") + known;
-            throw io::FileError(path, "has no part '" + name + "'; it has: " + names);
-        }
+        if (wanted < 0)
+            throw io::FileError(path,
+                                "has no part '" + name + "'; it has: " + CLI::detail::join(mesh.parts, ", "));
         for (size_t t = 0; t < ids.size(); ++t)
             if (mesh.partOf[t] == uint32_t(wanted)) ids[t] = id;
     }
@@ -274,17 +272,13 @@ struct ReferenceArguments {
     WalkArguments walk;
 };
 
-float unitOf(const ReferenceArguments& a, const io::SceneFile& scene) {
-    return a.unit > 0 ? a.unit : scene.options.millimetresPerUnit;
-}
-
 // Empty for a material without a profile or a curvature table, which reflects light where it arrives.
 std::optional<Diffusion> diffusionOf(const ReferenceArguments& a, const io::SceneFile& scene,
                                      const io::SceneMaterial* material) {
     Diffusion d;
     std::string name = a.profile;
     d.radius = a.diffusionRadius;
-    d.unit = unitOf(a, scene);
+    d.unit = a.unit > 0 ? a.unit : scene.options.millimetresPerUnit;
     if (material && name.empty()) name = material->profile;
     if (material && name.empty()) {
         const io::SceneLut* lut = scene.lut(material->curvatureLut, PEL_LUT_CURVATURE);
@@ -342,33 +336,8 @@ std::vector<float> integrate(Run& run, const ReferenceArguments& a, const Diffus
     return sample::scatteredAt(run.device(), lit, positions, desc);
 }
 
-// Values of all pixels of the picture.
-struct Layers {
-    std::vector<float> radiance, surface, irradiance;  // RGB
-    // Only of walks. first, second, meanFreePath: RGB.
-    std::vector<float> first, second, meanFreePath, meanCurvature, thickness;
-
-    io::Image image(int width, int height) const {
-        io::Image image;
-        image.width = width;
-        image.height = height;
-        using Names = std::vector<std::string>;
-        const auto rgb = [](const std::string& layer) {
-            return Names{layer + "R", layer + "G", layer + "B"};
-        };
-        const std::pair<Names, const std::vector<float>&> all[] = {{rgb(""), radiance},
-                                                                   {rgb("Surface."), surface},
-                                                                   {rgb("Irradiance."), irradiance},
-                                                                   {rgb("First."), first},
-                                                                   {rgb("Second."), second},
-                                                                   {rgb("MeanFreePath."), meanFreePath},
-                                                                   {{"MeanCurvature"}, meanCurvature},
-                                                                   {{"Thickness"}, thickness}};
-        for (const auto& [names, values] : all)
-            if (!values.empty()) image.addInterleaved(names, values);
-        return image;
-    }
-};
+// Values of all pixels of the picture, RGB or one float each, by the first part of their channels' names.
+using Layers = std::map<std::string, std::vector<float>>;
 
 class Reference {
   public:
@@ -430,8 +399,7 @@ class Reference {
         };
         const std::vector<float> ids = values(PEL_SLOT_MATERIAL), albedos = values(PEL_SLOT_ALBEDO);
         Layers layers;
-        for (auto* rgb : {&layers.radiance, &layers.surface, &layers.irradiance})
-            rgb->resize(3 * gbuffer.pixelCount());
+        for (const char* rgb : {"", "Surface.", "Irradiance."}) layers[rgb].resize(3 * gbuffer.pixelCount());
         size_t count = 0, bad = 0;
         for (const io::SceneMaterial& material : file_.materials) {
             std::vector<size_t> pixels;
@@ -446,7 +414,13 @@ class Reference {
             count += pixels.size();
         }
         if (bad > 0) run_.warn(io::concat(bad, " positions are NaN or Inf; these pixels are 0"));
-        io::writeExr(a_.output, layers.image(gbuffer.width, gbuffer.height));
+        io::Image image{gbuffer.width, gbuffer.height};
+        for (const auto& [layer, values] : layers) {
+            std::vector<std::string> names{layer};
+            if (values.size() > gbuffer.pixelCount()) names = {layer + "R", layer + "G", layer + "B"};
+            image.addInterleaved(names, values);
+        }
+        io::writeExr(a_.output, image);
         run_.report["points"] = count;
     }
 
@@ -464,38 +438,36 @@ class Reference {
         const auto albedo = [&](size_t value) {
             return albedos.empty() ? material.material.albedo[value % 3] : albedos[value];
         };
-        const auto store = [&](std::vector<float>& layer, const auto& valueOf, size_t components = 3) {
-            layer.resize(components * (layers.radiance.size() / 3));
+        const auto store = [&](const char* name, size_t components, const auto& valueOf) {
+            std::vector<float>& layer = layers[name];
+            layer.resize(components * (layers[""].size() / 3));
             for (size_t k = 0; k < components * pixels.size(); ++k)
                 layer[components * pixels[k / components] + k % components] = float(valueOf(k));
         };
-        store(layers.irradiance, [&](size_t k) { return E[k]; });
+        store("Irradiance.", 3, [&](size_t k) { return E[k]; });
         const auto at = [&](size_t k) { return 3 * pixels[k / 3] + k % 3; };
         if (!d) {
-            store(layers.surface, [&](size_t k) { return E[k]; });
-            for (auto* half : {&layers.first, &layers.second})
-                if (a_.walk.enabled) store(*half, [&](size_t k) { return E[k] * albedo(at(k)); });
+            store("Surface.", 3, [&](size_t k) { return E[k]; });
+            for (const char* half : {"First.", "Second."})
+                if (a_.walk.enabled) store(half, 3, [&](size_t k) { return E[k] * albedo(at(k)); });
         } else if (!a_.walk.enabled) {
             const std::vector<float> S = integrate(run_, a_, *d, lit(*d, body.material()), points.positions);
-            store(layers.surface, [&](size_t k) { return S[k]; });
+            store("Surface.", 3, [&](size_t k) { return S[k]; });
         } else {
             const RgbValues A = reflectanceOf(*d, &material, albedos, pixels);
             const sample::WalkedLight light = walked(body, *d, points, A, &material);
-            store(layers.surface,
-                  [&](size_t k) { return (light.first[k] + light.second[k]) / 2 / A[k % 3]; });
-            store(layers.first, [&](size_t k) { return light.first[k] / A[k % 3] * albedo(at(k)); });
-            store(layers.second, [&](size_t k) { return light.second[k] / A[k % 3] * albedo(at(k)); });
-            store(layers.meanFreePath, [&](size_t k) { return medium_.mean.meanFreePath[k % 3]; });
+            store("Surface.", 3, [&](size_t k) { return (light.first[k] + light.second[k]) / 2 / A[k % 3]; });
+            store("First.", 3, [&](size_t k) { return light.first[k] / A[k % 3] * albedo(at(k)); });
+            store("Second.", 3, [&](size_t k) { return light.second[k] / A[k % 3] * albedo(at(k)); });
+            store("MeanFreePath.", 3, [&](size_t k) { return medium_.mean.meanFreePath[k % 3]; });
             const std::vector<float> curvature = meanCurvatureAt(run_, mesh_.mesh, points.places),
                                      thickness = thicknessAt(body, points.places);
-            store(
-                layers.meanCurvature, [&](size_t k) { return curvature[k]; }, 1);
-            store(
-                layers.thickness, [&](size_t k) { return thickness[k]; }, 1);
+            store("MeanCurvature", 1, [&](size_t k) { return curvature[k]; });
+            store("Thickness", 1, [&](size_t k) { return thickness[k]; });
         }
+        std::vector<float>&radiance = layers[""], &surface = layers["Surface."];
         for (const size_t pixel : pixels)
-            for (size_t i = 3 * pixel; i < 3 * pixel + 3; ++i)
-                layers.radiance[i] = layers.surface[i] * albedo(i);
+            for (size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) radiance[i] = surface[i] * albedo(i);
     }
 
     sample::WalkedLight walked(const sample::WalkBody& body, const Diffusion& d, const Points& points,
@@ -564,12 +536,10 @@ void runReference(const ReferenceArguments& a) {
         throw UsageError("--cut: three lengths are needed, one per channel");
     Run run(a.run);
     try {
-        Reference reference(run, a);
-        picture ? reference.picture() : reference.vertices();
-    } catch (const Error& e) {
-        if (e.code() == PEL_ERROR_INVALID_ARGUMENT)
-            throw InputError(a.mesh + " with " + a.scene + ": " + e.what());
-        throw;
+        withInput(a.mesh + " with " + a.scene, [&] {
+            Reference reference(run, a);
+            picture ? reference.picture() : reference.vertices();
+        });
     } catch (const std::logic_error& e) {
         throw InputError(a.mesh + ": " + e.what());
     }

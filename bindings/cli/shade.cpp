@@ -51,18 +51,16 @@ PelImageSlot slotOfPart(const std::string& part) {
 // shaded with their slots as outputs.
 void writeShadePicture(const std::string& path, const io::Image& gbuffer, const io::SceneFrame& frame,
                        const std::vector<std::string>& parts, const io::ToneMap& tone) {
+    const int width = gbuffer.width, height = gbuffer.height;
     std::vector<io::Tile> tiles;
     for (const std::string& part : parts) {
         const PelImageSlot slot = slotOfPart(part);
+        const std::vector<float> values = slot == PEL_SLOT_RADIANCE ? frame.radiance() : frame.output(slot);
         if (slot == PEL_SLOT_OUT_THICKNESS) {
-            const std::vector<float> lengths = frame.output(slot);
-            const io::Picture map = io::colored(gbuffer.width, gbuffer.height, lengths, 0, longest, lengths);
+            const io::Picture map = io::colored(width, height, values, 0, longest, values);
             tiles.push_back({part, io::withColorBar(map, 0, longest, "length", 1)});
         } else {
-            tiles.push_back({part, io::Picture(gbuffer.width, gbuffer.height,
-                                               io::toSrgb8(slot == PEL_SLOT_RADIANCE ? frame.radiance()
-                                                                                     : frame.output(slot),
-                                                           tone))});
+            tiles.push_back({part, io::Picture(width, height, io::toSrgb8(values, tone))});
         }
     }
     const io::Picture whole =
@@ -77,9 +75,7 @@ void addToneOptions(CLI::App& command, io::ToneMap& tone) {
             "--tonemap",
             [&tone](const std::string& curve) { tone.curve = chosen<io::ToneCurve>(io::toneCurves, curve); },
             "of pictures: soft (true to radiance up to 0.8, then a soft highlight roll-off), none (cut at "
-            "1), "
-            "filmic or agx-like "
-            "(default: soft)")
+            "1), filmic or agx-like (default: soft)")
         ->check(isOneOf(io::toneCurves));
 }
 
@@ -100,11 +96,9 @@ std::vector<std::pair<PelImageSlot, std::string>> outputFiles(const ShadeArgumen
     const std::string stem = a.output.substr(0, a.output.rfind('.'));
     for (const auto& [slot, key] : io::outputKeys) {
         if (!scene.outputs[slot].empty()) files.emplace_back(slot, scene.outputs[slot]);
-        for (const std::string& part : a.parts)
-            if (part == key || part == "all") {
-                files.emplace_back(slot, stem + "_" + std::string(key) + ".exr");
-                break;
-            }
+        if (std::ranges::any_of(a.parts,
+                                [key = key](const auto& part) { return part == key || part == "all"; }))
+            files.emplace_back(slot, stem + "_" + std::string(key) + ".exr");
     }
     return files;
 }
@@ -150,12 +144,6 @@ Inputs frameOf(const std::string& gbuffer, const Device& device, const io::Scene
     return inputs;
 }
 
-void writeOutput(const std::string& path, PelImageSlot slot, const io::Image& gbuffer,
-                 const io::SceneFrame& frame) {
-    (slot == PEL_SLOT_OUT_THICKNESS ? io::writeThickness : io::writeRadiance)(
-        path, gbuffer.width, gbuffer.height, frame.output(slot));
-}
-
 // Warns of settings that have no effect.
 void warnOfNothing(Run& run, const io::SceneFile& scene, const std::vector<PelImageSlot>& outputs,
                    uint32_t features) {
@@ -165,12 +153,11 @@ void warnOfNothing(Run& run, const io::SceneFile& scene, const std::vector<PelIm
                 "deep_scatter_ambient of material ", m.id,
                 " does nothing without a thickness channel: shadow maps tell how thick a body is along "
                 "their light alone"));
-    const bool wanted = std::find(outputs.begin(), outputs.end(), PEL_SLOT_OUT_THICKNESS) != outputs.end();
-    if (wanted && scene.channels[PEL_SLOT_THICKNESS].empty() && !(features & PEL_FEATURE_THICKNESS_TAPS))
+    if (std::ranges::count(outputs, PEL_SLOT_OUT_THICKNESS) && scene.channels[PEL_SLOT_THICKNESS].empty() &&
+        !(features & PEL_FEATURE_THICKNESS_TAPS))
         run.warn(
             "the thickness output is 0 everywhere: there is neither a thickness channel, nor a light with a "
-            "shadow map and a "
-            "material with thickness_taps and a deep_scatter_color");
+            "shadow map and a material with thickness_taps and a deep_scatter_color");
 }
 
 void warnOfInvalid(Run& run, uint64_t invalid, uint64_t all, const char* they) {
@@ -306,11 +293,9 @@ void runShade(ShadeArguments a) {
     options.countPixels = a.stats;
     options.scratchBudget = a.scratchMib << 20;
     options.timeBudget = a.timeBudget;
-    try {
-        if (scene.scatter) {
-            scatter(run, a, scene, picture, !files.empty() || !outputs.empty());
-            return run.finish();
-        }
+    // If the library refuses something here, it came from the two files.
+    withInput(a.gbuffer + " with " + a.scene, [&] {
+        if (scene.scatter) return scatter(run, a, scene, picture, !files.empty() || !outputs.empty());
         Inputs inputs = frameOf(a.gbuffer, run.device(), scene, luts, options, outputs);
         const io::Image& gbuffer = inputs.gbuffer;
         io::SceneFrame& frame = *inputs.frame;
@@ -325,7 +310,9 @@ void runShade(ShadeArguments a) {
         warnOfInvalid(run, stats.pixelsInvalid, stats.pixelsShaded, "black");
         if (picture != a.output) io::writeRadiance(a.output, gbuffer.width, gbuffer.height, frame.radiance());
         if (!picture.empty()) writeShadePicture(picture, gbuffer, frame, a.show, a.tone);
-        for (const auto& [slot, file] : files) writeOutput(file, slot, gbuffer, frame);
+        for (const auto& [slot, file] : files)
+            (slot == PEL_SLOT_OUT_THICKNESS ? io::writeThickness : io::writeRadiance)(
+                file, gbuffer.width, gbuffer.height, frame.output(slot));
         reportSize(run, a, gbuffer, stats.pixelsInvalid);
         for (const auto& [slot, file] : files) run.report["outputs"].push_back(file);
         for (const io::SceneMaterial& m : scene.materials) {
@@ -344,12 +331,7 @@ void runShade(ShadeArguments a) {
                                                          {"bytes", pass.bytes},
                                                          {"tiles", pass.tiles}});
         }
-    } catch (const Error& e) {
-        // If the library refuses something here, it came from the two files.
-        if (e.code() == PEL_ERROR_INVALID_ARGUMENT)
-            throw InputError(a.gbuffer + " with " + a.scene + ": " + e.what());
-        throw;
-    }
+    });
     run.finish();
 }
 

@@ -26,13 +26,10 @@ void runWarmUp(const WarmUpArguments& a) {
     warmUpPrograms(run.device(), groups, {}, a.threads);
     for (const std::string& scene : a.scenes) {
         run.note("building what " + scene + " needs");
-        try {
+        withInput(scene, [&] {
             io::LutStore luts(run.device());
             io::buildPrograms(run.device(), io::readScene(scene), luts);
-        } catch (const Error& e) {
-            if (e.code() == PEL_ERROR_INVALID_ARGUMENT) throw InputError(scene + ": " + e.what());
-            throw;
-        }
+        });
     }
     const PelDeviceStats after = run.device().stats();
     run.report["programs"] = after.programsBuilt - before.programsBuilt;
