@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 CONSTANTS = {
     "PEL_TINY": 1e-6,
@@ -12,11 +12,6 @@ CONSTANTS = {
     "PEL_ABOVE_0": 1.401298464e-45,
     "PEL_FINITE": 3.402823466e38,
 }
-ROW = re.compile(
-    r"X\((?P<kind>\w+), (?P<name>\w+), (?P<default>\([^)]*\)|[^,]+), (?P<min>[^,]+), (?P<max>[^,]+), "
-    r'(?P<special>[^,]+), "(?P<unit>[^"]*)", "(?P<key>\w+)", '
-    r"(?:PEL_NO_SLIDER|PEL_SLIDER\((?P<slider>[^)]*)\)), "
-    r'(?P<words>"(?:[^"\\]|\\.)*"(?: "(?:[^"\\]|\\.)*")*)\)|PEL_EACH_(?P<list>\w+)_FIELD\(X\)')
 
 
 class Row(NamedTuple):
@@ -34,51 +29,35 @@ class Row(NamedTuple):
     words: str
 
 
-def number(text: str) -> float:
-    sign = -1 if text.startswith("-") else 1
-    text = text.lstrip("-")
-    return sign * (CONSTANTS[text] if text in CONSTANTS else float(text.removesuffix("f")))
+class Words(dict):
+    """Words that have no value stand for themselves: types, and names of fields."""
+
+    def __missing__(self, word: str) -> str:
+        return word
 
 
-def row(m: re.Match[str]) -> Row:
-    default: float | tuple[float, ...] | None
-    if m["default"].startswith("("):
-        default = tuple(number(v.strip()) for v in m["default"].strip("()").split(","))
-    else:
-        default = None if m["default"] == "PEL_IDENTITY" else number(m["default"])
-    slider = None
-    if m["slider"]:
-        label, *numbers = re.match(r'"([^"]*)", (.*)', m["slider"]).groups()
-        low, high, step = (float(v) for v in numbers[0].split(","))
-        slider = (label, low, high, step)
-    words = "".join(re.findall(r'"((?:[^"\\]|\\.)*)"', m["words"])).replace('\\"', '"')
-    special = None if m["special"] == "PEL_NONE" else number(m["special"])
-    return Row(m["kind"], m["name"], default, number(m["min"]), number(m["max"]), special, m["unit"],
-               m["key"], slider, words)
+def as_floats(value: Any) -> Any:
+    """The integers in a value as floats."""
+    if isinstance(value, tuple):
+        return tuple(map(as_floats, value))
+    return float(value) if isinstance(value, int) else value
 
 
 def parse(path: str | Path) -> dict[str, list[Row]]:
-    """The rows of each list, such as MATERIAL."""
+    """The rows of each list, such as MATERIAL. They are evaluated as Python, which they nearly are."""
     text = re.sub(r"\\\n\s*", " ", Path(path).read_text(encoding="utf-8"))
-    lists: dict[str, list[Row]] = {}
+    text = re.sub(r"(?<=\d)f\b", "", text)
     bodies = dict(re.findall(r"#define PEL_EACH_(\w+)_FIELD\(X\)(.*)", text))
+    words = Words(CONSTANTS, PEL_NONE=None, PEL_IDENTITY=None, PEL_NO_SLIDER=None,
+                  PEL_SLIDER=lambda *slider: slider, X=lambda *fields: [Row(*as_floats(fields))])
 
     def rows_of(name: str) -> list[Row]:
-        if name not in lists:
-            body, found, end = re.sub(r"\s+", " ", bodies[name]).strip(), [], 0
-            for m in ROW.finditer(body):
-                if body[end : m.start()].strip():
-                    break
-                found += rows_of(m["list"]) if m["list"] else [row(m)]
-                end = m.end()
-            if body[end:].strip():
-                raise SystemExit(f"{path}: PEL_EACH_{name}_FIELD: not understood: {body[end : end + 80]}")
-            lists[name] = found
-        return lists[name]
+        separated = re.sub(r"\) (?=X\(|PEL_EACH_)", "), ", re.sub(r"\s+", " ", bodies[name]).strip())
+        return sum(eval(f"[{separated}]", {}, words), [])
 
     for name in bodies:
-        rows_of(name)
-    return lists
+        words[f"PEL_EACH_{name}_FIELD"] = lambda _, name=name: rows_of(name)
+    return {name: rows_of(name) for name in bodies}
 
 
 def describe(r: Row) -> str:

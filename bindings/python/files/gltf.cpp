@@ -1,6 +1,4 @@
 // glTF scenes for Python, as arrays and structures: what `pellucid import` makes. Profiles from files.
-#include <pybind11/stl.h>
-
 #include <filesystem>
 
 #include "files.h"
@@ -30,7 +28,6 @@ class Gltf {
     // For each material: name, class, structure, profile or None, picture or None.
     py::dict parts() const {
         const io::MeshData& mesh = made_.gltf.mesh;
-        const auto vertices = py::ssize_t(mesh.vertexCount());
         py::list materials, lights, cameras;
         for (size_t i = 0; i < made_.looks.size(); ++i) {
             const io::GltfLook& look = made_.looks[i];
@@ -54,12 +51,8 @@ class Gltf {
             cameras.append(
                 py::make_tuple(tuple(c.position), tuple(c.forward), tuple(c.up), c.verticalFov, c.aspect));
         using namespace py::literals;
-        const py::dict of(
-            "positions"_a = array(mesh.positions, {vertices, 3}),
-            "normals"_a = array(mesh.normals, {vertices, 3}),
-            "triangles"_a = array(mesh.triangles, {py::ssize_t(mesh.triangleCount()), 3}),
-            "uvs"_a = mesh.uvs.empty() ? py::object(py::none()) : array(mesh.uvs, {vertices, 2}),
-            "ids"_a = array(idsOfVertices(made_.gltf), {vertices}), "warnings"_a = mesh.warnings);
+        py::dict of = toDict(mesh);
+        of["ids"] = array(idsOfVertices(made_.gltf), {py::ssize_t(mesh.vertexCount())});
         return py::dict("mesh"_a = of, "materials"_a = materials, "lights"_a = lights,
                         "ambient"_a = bytesOf(made_.scene.ambient), "cameras"_a = cameras);
     }

@@ -1,7 +1,4 @@
 // The extension module pellucid._files: meshes, images and scenes from files, and the heads of the demo.
-#include <pybind11/pybind11.h>
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <new>
 
@@ -15,25 +12,10 @@ namespace py = pybind11;
 namespace {
 
 using namespace pellucid;
-using python::array;
-
-template <class T>
-py::array_t<T> rows(const std::vector<T>& values, py::ssize_t columns) {
-    return array(values, {py::ssize_t(values.size()) / columns, columns});
-}
+using python::array, python::rows, python::toDict;
 
 std::vector<double> list(sample::Vec3 v) {
     return {v.x, v.y, v.z};
-}
-
-py::dict toDict(const io::MeshData& mesh) {
-    py::dict d;
-    d["positions"] = rows(mesh.positions, 3);
-    d["normals"] = mesh.normals.empty() ? py::object(py::none()) : rows(mesh.normals, 3);
-    d["uvs"] = mesh.uvs.empty() ? py::object(py::none()) : rows(mesh.uvs, 2);
-    d["triangles"] = rows(mesh.triangles, 3);
-    d["warnings"] = mesh.warnings;
-    return d;
 }
 
 py::dict loadMesh(const std::string& path, int levels) {
@@ -43,7 +25,7 @@ py::dict loadMesh(const std::string& path, int levels) {
         io::MeshLoadOptions options;
         options.splitUvSeams = levels == 0;  // subdivision would round the sides of a seam off by themselves
         mesh = io::loadMesh(path, options);
-        if (levels > 0) io::loopSubdivide(mesh, levels);
+        io::loopSubdivide(mesh, levels);
         if (mesh.normals.empty()) io::computeNormals(mesh);
     }
     return toDict(mesh);

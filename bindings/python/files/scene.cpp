@@ -1,7 +1,5 @@
 // Scenes for Python: the scenes of `pellucid shade`, as an object whose structures Python can change.
 
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <filesystem>
 

@@ -169,11 +169,9 @@ Device::~Device() {
 }
 
 PelImageDesc imageDesc(const ImageView& v) {
-    PelImageDesc d = pellucid::imageDesc(std::get<0>(v), PelFormat(std::get<1>(v)), std::get<2>(v),
-                                         std::get<3>(v), std::get<4>(v));
-    d.pixelStride = std::get<5>(v);
-    d.rowStride = std::get<6>(v);
-    d.planeStride = std::get<7>(v);
+    const auto& [buffer, format, width, height, offset, pixelStride, rowStride, planeStride] = v;
+    PelImageDesc d = pellucid::imageDesc(buffer, PelFormat(format), width, height, offset);
+    d.pixelStride = pixelStride, d.rowStride = rowStride, d.planeStride = planeStride;
     return d;
 }
 

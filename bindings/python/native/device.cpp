@@ -5,22 +5,20 @@ namespace pel::python {
 namespace {
 py::object errorCallback = py::none(), logCallback = py::none();
 
-void onError(void*, PelError code, const char* message) {
+template <class... Arguments>
+void tell(const py::object& callback, const char* what, Arguments... arguments) {
     WithGil gil;
     try {
-        errorCallback(int(code), message);
+        callback(arguments...);
     } catch (py::error_already_set& error) {
-        error.discard_as_unraisable("pellucid error callback");
+        error.discard_as_unraisable(what);
     }
 }
-
+void onError(void*, PelError code, const char* message) {
+    tell(errorCallback, "pellucid error callback", int(code), message);
+}
 void onLog(void*, PelLogLevel level, const char* object, const char* text) {
-    WithGil gil;
-    try {
-        logCallback(int(level), object, text);
-    } catch (py::error_already_set& error) {
-        error.discard_as_unraisable("pellucid log callback");
-    }
+    tell(logCallback, "pellucid log callback", int(level), object, text);
 }
 
 // `create()` makes a pellucid::Device.

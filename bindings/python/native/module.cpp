@@ -30,7 +30,6 @@ PYBIND11_MODULE(_native, module) {
         }
     });
     module.def("version", &pelVersion);
-    module.def("error_name", [](int code) { return pelErrorName(PelError(code)); });
     module.def("struct_defaults", [](const std::string& name) {
         const StructInfo& info = find(name);
         std::string bytes(info.bytes, '\0');

@@ -241,63 +241,46 @@ auto function(PelError (*f)(A...)) {
     };
 }
 
-// The same for an `f` whose last parameter is an output: returns `result(value)`.
-template <class Result, class... A, size_t... I>
-auto functionWithout(PelError (*f)(A...), Result result, std::index_sequence<I...>) {
+// The same for an `f` whose last parameter is an output, `initial()` before: returns `result(output)`.
+template <class Initial, class Result, class... A, size_t... I>
+auto functionWithout(PelError (*f)(A...), Initial initial, Result result, std::index_sequence<I...>) {
     using All = std::tuple<A...>;
-    return [f, result](typename Argument<std::tuple_element_t<I, All>>::Python... given) {
+    return [=](typename Argument<std::tuple_element_t<I, All>>::Python... given) {
         std::tuple<Argument<std::tuple_element_t<I, All>>...> arguments(given...);
-        auto value = result.initial();
+        auto value = initial();
         call([&] { return f(std::get<I>(arguments).get()..., &value); });
         return result(value);
     };
 }
-template <class Result, class... A>
-auto functionOf(PelError (*f)(A...), Result result) {
-    return functionWithout(f, result, std::make_index_sequence<sizeof...(A) - 1>());
+template <class Initial, class Result, class... A>
+auto functionOf(PelError (*f)(A...), Initial initial, Result result) {
+    return functionWithout(f, initial, result, std::make_index_sequence<sizeof...(A) - 1>());
 }
-template <auto defaults>
-struct StructResult {
-    auto initial() const { return defaults(); }
-    template <class T>
-    py::bytes operator()(const T& value) const {
-        return bytesOf(value);
-    }
-};
 // The bytes of a structure, from a function such as pelLutGetInfo.
 template <auto defaults, class... A>
 auto structure(PelError (*f)(A...)) {
-    return functionOf(f, StructResult<defaults>());
+    return functionOf(f, defaults, [](const auto& value) { return bytesOf(value); });
 }
-
-template <class T>
-struct ValueResult {
-    T initial() const { return {}; }
-    auto operator()(T value) const {
-        if constexpr (std::is_same_v<T, void*>)
-            return address(value);
-        else if constexpr (std::is_same_v<T, const char*>)
-            return std::string(value);
-        else
-            return value;
-    }
-};
 // A number, an address or a text.
 template <class T, class... A>
 auto value(PelError (*f)(A...)) {
-    return functionOf(f, ValueResult<T>());
+    return functionOf(
+        f, [] { return T{}; },
+        [](T value) {
+            if constexpr (std::is_same_v<T, void*>)
+                return address(value);
+            else if constexpr (std::is_same_v<T, const char*>)
+                return std::string(value);
+            else
+                return value;
+        });
 }
-
-template <class Wrapper, class H>
-struct HandleResult {
-    H initial() const { return nullptr; }
-    Wrapper operator()(H handle) const { return Wrapper(handle); }
-};
 // An object.
 template <class Wrapper, class... A>
 auto maker(PelError (*f)(A...)) {
     using H = std::remove_pointer_t<std::tuple_element_t<sizeof...(A) - 1, std::tuple<A...>>>;
-    return functionOf(f, HandleResult<Wrapper, H>());
+    return functionOf(
+        f, [] { return H(nullptr); }, [](H handle) { return Wrapper(handle); });
 }
 
 // An object whose creation needs more than forwarded arguments: `create(&handle)`.

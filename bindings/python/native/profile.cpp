@@ -20,13 +20,7 @@ void bindProfile(py::module_& module) {
                         pelProfileRetain(handle);
                         return Profile(handle);
                     })
-        .def_static("library_names",
-                    [] {
-                        std::vector<std::string> names;
-                        for (uint32_t i = 0; const char* name = pelProfileLibraryName(i); ++i)
-                            names.push_back(name);
-                        return names;
-                    })
+        .def_static("library_names", &Profile::libraryNames)
         .def("info", structure<pelProfileInfoDefaults>(pelProfileGetInfo))
         .def("transmission", function(pelProfileTransmission))
         .def("evaluate",

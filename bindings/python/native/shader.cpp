@@ -73,16 +73,7 @@ void bindShader(py::module_& module) {
         .def("set_eye", function(pelShaderSetEye))
         .def("set_iris_texture", function(pelShaderSetIrisTexture))
         .def("set_reflection_cube", function(pelShaderSetReflectionCube))
-        .def("set_environment",
-             [](const Shader& s, const std::optional<ImageView>& image,
-                const std::optional<std::array<float, 9>>& axes) {
-                 Argument<PelShader> shader(&s);
-                 const PelImageDesc desc = image ? imageDesc(*image) : PelImageDesc{};
-                 call([&] {
-                     return pelShaderSetEnvironment(shader.get(), image ? &desc : nullptr,
-                                                    axes ? axes->data() : nullptr);
-                 });
-             })
+        .def("set_environment", function(pelShaderSetEnvironment))
         .def("set_lights", function(pelShaderSetLights))
         .def("set_light_image", function(pelShaderSetLightImage))
         .def("set_ambient", function(pelShaderSetAmbient))

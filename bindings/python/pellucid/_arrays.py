@@ -10,7 +10,7 @@ from numpy.typing import DTypeLike, NDArray
 from . import _in_flight, _native
 from ._struct import to_enum
 from ._types import Format
-from .device import Buffer, Device
+from .device import Buffer, Device, Event, _handles
 
 # By type and number of components. One-component integers are ids in the material slot, else fractions.
 _FORMATS = {
@@ -40,6 +40,11 @@ def as_array(value: Any, what: str) -> NDArray[Any]:
                     "DLPack protocol, is needed")
 
 
+def address(array: Optional[NDArray[Any]]) -> int:
+    """Of an array's memory; 0 for None."""
+    return 0 if array is None else array.ctypes.data
+
+
 def _check_byte_order(dtype: np.dtype[Any], what: str) -> None:
     if not dtype.isnative:
         raise ValueError(f"{what} has the byte order of another machine ({dtype}: "
@@ -66,23 +71,19 @@ class Span:
         _check_byte_order(array.dtype, what)
         self.array, self.output = array, output
         self.address = array.ctypes.data
-        last = sum((n - 1) * s for n, s in zip(array.shape, array.strides))
-        self.nbytes = last + array.itemsize if array.size else 0
-        self.moves = not device._in_place or self.nbytes == 0
+        self.nbytes = sum((n - 1) * s for n, s in zip(array.shape, array.strides)) + array.itemsize
+        self.moves = not device._in_place
         if self.moves:
-            self.handle = _native.Buffer.create(device._handle, max(self.nbytes, 4), 0)
+            self.handle = _native.Buffer.create(device._handle, self.nbytes, 0)
         else:
             self.handle = _native.Buffer.from_host(device._handle, self.address, self.nbytes)
 
-    def upload(self, waits: list[_native.Event]) -> Optional[_native.Event]:
-        if self.moves and self.nbytes:
-            return self.handle.write(0, self.nbytes, self.address, waits)
-        return None
+    def upload(self, waits: list[_native.Event]) -> None:
+        if self.moves:
+            self.handle.write(0, self.nbytes, self.address, waits)
 
     def download(self) -> Optional[_native.Event]:
-        if self.moves and self.output and self.nbytes:
-            return self.handle.read(0, self.nbytes, self.address, [])
-        return None
+        return self.handle.read(0, self.nbytes, self.address, []) if self.moves and self.output else None
 
 
 class View:
@@ -98,23 +99,27 @@ class View:
         return (handle, *self._tail)
 
 
-def submit(device: Device, views: list[View], waits: list[_native.Event], enqueue: Any, *used: Any) -> Any:
-    """Moves inputs, enqueues with `enqueue(waits)`, moves results; returns the event of the last step.
+def submit(device: Device, given: list[Any], waits: Iterable[Event], enqueue: Any, *used: Any,
+           moved: Iterable[Image] = ()) -> Any:
+    """Moves inputs, calls `enqueue(*given, waits)`, moves results; returns the event of the last step.
 
-    None where the work was done inside `enqueue` and nothing moves back. The views and `used` live until the
-    work is done.
+    None where the work was done inside `enqueue` and nothing moves back. `given`: views, images and None.
+    `moved`: further images that the work uses. They and `used` live until the work is done.
     """
+    given = [v._view if isinstance(v, Image) else v for v in given]
+    views = [v for v in given if v is not None] + [image._view for image in moved]
     spans = {id(v.span): v.span for v in views if isinstance(v.span, Span)}.values()
+    natives, handles = [None if v is None else v.native for v in given], _handles(waits)
     # Work in flight still reads and writes the arrays after an error or Ctrl-C.
     with _in_flight.kept(device._handle, views, used):
         for span in spans:
-            span.upload(waits)
-        done = enqueue(waits)
+            span.upload(handles)
+        done = enqueue(*natives, handles)
         for span in spans:
             done = span.download() or done
         if done is not None:
             _in_flight.hold(done, views, used)
-    return done
+    return None if done is None else Event(done)
 
 
 def _pyopencl_array(device: Device,
@@ -267,11 +272,6 @@ def to_image(device: Device, value: Any, what: str, output: bool = False, ids: b
     if value is None or isinstance(value, Image):
         return value
     return Image(device, value, _slot=what, _output=output, _ids=ids)
-
-
-def natives(views: Iterable[Any]) -> list[Any]:
-    """What the native module takes for images and views, None for none."""
-    return [None if v is None else (v._view if isinstance(v, Image) else v).native for v in views]
 
 
 def output_array(out: Optional[NDArray[Any]], shape: tuple[int, ...], dtype: DTypeLike,

@@ -1,8 +1,6 @@
 """The exception of every failed call."""
 from __future__ import annotations
 
-from . import _native
-
 
 class PellucidError(RuntimeError):
     """A call that the library refused or could not finish: what was wrong, where, and what would be right.
@@ -21,8 +19,3 @@ class PellucidError(RuntimeError):
 
     def __reduce__(self) -> tuple[type[PellucidError], tuple[int, str]]:
         return PellucidError, (int(self.code), str(self))
-
-
-def error_name(code: int) -> str:
-    """The name of an error in C, such as "PEL_ERROR_NO_DEVICE"."""
-    return _native.error_name(int(code))

@@ -89,13 +89,16 @@ def load_mesh(path: Any, subdivide: Optional[int] = None, up: str = "auto") -> M
     if head is not None:
         return Mesh(**{k: tuple(v) if k in ("up", "front", "low", "high") else v for k, v in head.items()},
                     source=name)
-    d = _files.load_mesh(name, subdivide or 0)
-    y = up == "y" or (up == "auto" and name.lower().endswith(".obj"))
-    used = d["positions"][np.unique(d["triangles"])]
-    return Mesh(d["positions"], d["normals"], d["triangles"], d["uvs"], source=name, warnings=d["warnings"],
-                up=(0.0, 1.0, 0.0) if y else (0.0, 0.0, 1.0),
-                front=(0.0, 0.0, 1.0) if y else (0.0, -1.0, 0.0),
-                low=tuple(map(float, used.min(0))), high=tuple(map(float, used.max(0))))
+    arrays = _files.load_mesh(name, subdivide or 0)
+    return _framed(arrays, up == "y" or (up == "auto" and name.lower().endswith(".obj")), name)
+
+
+def _framed(arrays: dict[str, Any], y_up: bool, source: str) -> Mesh:
+    """A mesh that is shown with all of its triangles."""
+    used = arrays["positions"][np.unique(arrays["triangles"])]
+    up, front = ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)) if y_up else ((0.0, 0.0, 1.0), (0.0, -1.0, 0.0))
+    return Mesh(**arrays, up=up, front=front, low=tuple(map(float, used.min(0))),
+                high=tuple(map(float, used.max(0))), source=source)
 
 
 def _profile(of_files: Any) -> Profile:

@@ -8,7 +8,7 @@ from typing import Any, Optional, Union
 
 from ._types import Ambient, Light, Material
 from .device import _filled
-from .files import Mesh, _files, _profile
+from .files import Mesh, _files, _framed, _profile
 
 
 @dataclass
@@ -90,8 +90,6 @@ def load_gltf(path: Any, *, profiles: Union[str, Mapping[str, Any], None] = None
         words = [f"{material}={os.fspath(profile)}" for material, profile in (profiles or {}).items()]
     native = _files.Gltf(str(path), words, unit_mm, lights)
     parts = native.parts()
-    mesh = parts["mesh"]
-    used = mesh["positions"][mesh["ids"] > 0]
     materials, names, taken_for, textures = {}, {}, {}, {}
     for number, (name, taken, data, profile, picture) in enumerate(parts["materials"], 1):
         names[number], taken_for[number] = name, taken
@@ -100,8 +98,6 @@ def load_gltf(path: Any, *, profiles: Union[str, Mapping[str, Any], None] = None
             materials[number].profile = _profile(profile)
         if picture is not None:
             textures[number] = picture
-    return Gltf(Mesh(**mesh, up=(0.0, 1.0, 0.0), front=(0.0, 0.0, 1.0), low=tuple(map(float, used.min(0))),
-                     high=tuple(map(float, used.max(0))), source=str(path)),
-                names, taken_for, materials, textures, [_filled(Light, data) for data in parts["lights"]],
-                _filled(Ambient, parts["ambient"]), [GltfCamera(*camera) for camera in parts["cameras"]],
-                str(path), native)
+    return Gltf(_framed(parts["mesh"], True, str(path)), names, taken_for, materials, textures,
+                [_filled(Light, data) for data in parts["lights"]], _filled(Ambient, parts["ambient"]),
+                [GltfCamera(*camera) for camera in parts["cameras"]], str(path), native)

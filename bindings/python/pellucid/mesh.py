@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _in_flight, _native
-from ._arrays import Vertices, View, natives, output_array, submit, to_image, vertex_view
+from ._arrays import Vertices, View, address, output_array, submit, to_image, vertex_view
 from ._struct import OfThisProcess, to_enum
 from ._types import (
     CurvatureEstimator,
@@ -21,7 +21,7 @@ from ._types import (
     SmoothingWeights,
     Weld,
 )
-from .device import Device, Event, _filled, _handles
+from .device import Device, Event, _filled
 
 
 class MeshTopology(OfThisProcess):
@@ -63,7 +63,7 @@ class MeshTopology(OfThisProcess):
         self._handle = _native.MeshTopology.create(device._handle, self.num_vertices, packed.ctypes.data,
                                                    packed.size,
                                                    int(to_enum(Weld, weld, "weld")), weld_tolerance,
-                                                   _address(held), stride, self.report._data)
+                                                   address(held), stride, self.report._data)
 
     @classmethod
     def load(cls, device: Device, data: bytes | bytearray | memoryview) -> MeshTopology:
@@ -106,9 +106,7 @@ class MeshTopology(OfThisProcess):
         """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
         views = [vertex_view(self.device, positions, 3, "positions"),
                  vertex_view(self.device, out, 3, "out", output=True)]
-        p, n = (v.native for v in views)
-        return Event(submit(self.device, views, _handles(waits), lambda w: self._handle.normals(p, n, w),
-                            self))
+        return submit(self.device, views, waits, self._handle.normals, self)
 
     def curvature(self, positions: Any, normals: Any = None, out: Optional[NDArray[np.float32]] = None, *,
                   params: Optional[CurvatureParams] = None, estimator: CurvatureEstimator | str | None = None,
@@ -161,21 +159,17 @@ class MeshTopology(OfThisProcess):
     def _submit(self, positions: Any, normals: Any, out: Any, params: CurvatureParams,
                 report: Optional[MeshReport], waits: Iterable[Event]) -> Event:
         views = [vertex_view(self.device, positions, 3, "positions"),
+                 None if normals is None else vertex_view(self.device, normals, 3, "normals"),
                  vertex_view(self.device, out, _COMPONENTS.get(params.quantity, 1), "out", output=True)]
-        p, c = (v.native for v in views)
-        n = None
-        if normals is not None:
-            views.append(vertex_view(self.device, normals, 3, "normals"))
-            n = views[-1].native
 
-        def enqueue(w: list[_native.Event]) -> Any:
+        def enqueue(p: Any, n: Any, c: Any, w: list[_native.Event]) -> Any:
             def work() -> Any:
                 return self._handle.curvature(params._data, p, n, c, report and report._data, w)
 
             # A report is waited for.
             return work() if report is None else _in_flight.interruptible(work, views, report)
 
-        return Event(submit(self.device, views, _handles(waits), enqueue, self))
+        return submit(self.device, views, waits, enqueue, self)
 
     def uv_scale(self, positions: Any, uvs: Any) -> float:
         """Geometric mean over triangles of longest edge / longest UV edge, in length per UV unit.
@@ -191,10 +185,9 @@ class MeshTopology(OfThisProcess):
             No triangle is large enough to measure.
         """
         views = [vertex_view(self.device, positions, 3, "positions"), vertex_view(self.device, uvs, 2, "uvs")]
-        p, u = (v.native for v in views)
         scale: list[float] = []
 
-        def measure(_: Any) -> None:
+        def measure(p: Any, u: Any, _: Any) -> None:
             scale.append(_in_flight.interruptible(lambda: self._handle.uv_scale(p, u), views))
 
         submit(self.device, views, [], measure)
@@ -235,12 +228,8 @@ def orient_mesh(indices: ArrayLike, num_vertices: Optional[int] = None, *,
     given, normal_stride = (None, 0) if normals is None else _rows(normals, "normals", count)
     found = MeshOrientation()
     _native.orient_mesh(count, oriented.ctypes.data, oriented.size, int(to_enum(Weld, weld, "weld")),
-                        weld_tolerance, _address(held), stride, _address(given), normal_stride, found._data)
+                        weld_tolerance, address(held), stride, address(given), normal_stride, found._data)
     return oriented, found
-
-
-def _address(array: Optional[NDArray[Any]]) -> int:
-    return 0 if array is None else array.ctypes.data
 
 
 def _rows(array: NDArray[np.float32], name: str, count: Optional[int]) -> tuple[NDArray[np.float32], int]:
@@ -333,16 +322,15 @@ class LiveMesh(OfThisProcess):
                       waits: Iterable[Event] = ()) -> Event:
         """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
         device = self.topology.device
-        p = vertex_view(device, positions, 3, "positions")
-        n = None if normals is None else vertex_view(device, normals, 3, "normals")
-        c = self._target(out)
+        views = [vertex_view(device, positions, 3, "positions"),
+                 None if normals is None else vertex_view(device, normals, 3, "normals"), self._target(out)]
         ranges = None
         if changed is not None:  # a negative number becomes one beyond any mesh, which the library refuses
             ranges = np.array(list(changed), np.int64).reshape(-1, 2).astype(np.uint32)
-        views = [v for v in (p, n, c) if v is not None]
-        given = [*natives([p, n, c]), *((0, 0) if ranges is None else (ranges.ctypes.data, len(ranges)))]
-        return Event(submit(device, views, _handles(waits), lambda w: self._handle.update(*given, w), self,
-                            ranges))
+        count = 0 if ranges is None else len(ranges)
+        return submit(device, views, waits,
+                      lambda p, n, c, w: self._handle.update(p, n, c, address(ranges), count, w),
+                      self, ranges)
 
     def _target(self, out: Any) -> View:
         """The view of `out`, with the same buffer for the same array: another would be written in full."""
@@ -389,6 +377,5 @@ def submit_screen_curvature(device: Device, normals: Any, positions: Any, out: A
     images = [to_image(device, normals, "normals"), to_image(device, positions, "positions"),
               to_image(device, depth, "depth"), to_image(device, ids, "ids", ids=True),
               to_image(device, out, "out", output=True)]
-    given = natives(images)
-    return Event(submit(device, [x._view for x in images if x is not None], _handles(waits),
-                        lambda w: _native.screen_curvature(device._handle, settings._data, *given, w)))
+    return submit(device, images, waits,
+                  lambda *given: _native.screen_curvature(device._handle, settings._data, *given))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _in_flight, _native
-from ._arrays import Image, natives, submit, to_image, vertex_view
+from ._arrays import Image, address, submit, to_image, vertex_view
 from ._struct import OfThisProcess, to_enum
 from ._types import (
     ImageSlot,
@@ -20,7 +20,7 @@ from ._types import (
     TextureScatterParams,
     TextureScatterStats,
 )
-from .device import Device, Event, _filled, _handles
+from .device import Device, Event, _filled
 from .mesh import _triangles
 from .profile import Profile, as_profile
 
@@ -86,8 +86,9 @@ class Scatter(OfThisProcess):
         images matter. See warm_up_programs. Returns how many programs were not there before."""
         target = np.empty(np.shape(irradiance), np.float32) if out is None else out
         settings, images = self._arguments(irradiance, positions, target, depth, ids, params)
+        given = [None if image is None else image._view.native for image in images]
         return int(_in_flight.interruptible(
-            lambda: self._handle.warm_up(self.device._handle, settings._data, *natives(images)), *images))
+            lambda: self._handle.warm_up(self.device._handle, settings._data, *given), *images))
 
     def _arguments(self, irradiance: Any, positions: Any, out: Any, depth: Any, ids: Any,
                    params: Optional[ScatterParams]) -> tuple[ScatterParams, list[Optional[Image]]]:
@@ -101,10 +102,8 @@ class Scatter(OfThisProcess):
                        params: Optional[ScatterParams] = None, waits: Iterable[Event] = ()) -> Event:
         """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
         settings, images = self._arguments(irradiance, positions, out, depth, ids, params)
-        given, kept = natives(images), list(self._images.values())
-        views = [x._view for x in [*images, *kept] if x is not None]
-        return Event(submit(self.device, views, _handles(waits),
-                            lambda w: self._handle.execute(settings._data, *given, w), self, kept))
+        return submit(self.device, images, waits, lambda *given: self._handle.execute(settings._data, *given),
+                      self, moved=self._images.values())
 
     def stats(self) -> ScatterStats:
         """What the last execution did."""
@@ -149,8 +148,7 @@ class TextureScatter(OfThisProcess):
     def submit_set_positions(self, positions: Any, *, waits: Iterable[Event] = ()) -> Event:
         """The same after `waits`, without waiting."""
         view = vertex_view(self.device, positions, 3, "positions")
-        return Event(submit(self.device, [view], _handles(waits),
-                            lambda w: self._handle.set_positions(view.native, w), self))
+        return submit(self.device, [view], waits, self._handle.set_positions, self)
 
     def draw(self, values: Any, out: Optional[NDArray[np.float32]] = None, *,
              unit: bool = False) -> NDArray[np.float32]:
@@ -163,9 +161,8 @@ class TextureScatter(OfThisProcess):
         """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
         view = vertex_view(self.device, values, 3, "values")
         image = to_image(self.device, out, "out", output=True)
-        values_native, image_native = natives([view, image])
-        return Event(submit(self.device, [view, image._view], _handles(waits),
-                            lambda w: self._handle.draw(values_native, unit, image_native, w), self, image))
+        return submit(self.device, [view, image], waits,
+                      lambda v, i, w: self._handle.draw(v, unit, i, w), self)
 
     def execute(self, irradiance: Any, albedo: Any = None, *, out: Optional[NDArray[np.float32]] = None,
                 params: Optional[TextureScatterParams] = None) -> NDArray[np.float32]:
@@ -192,10 +189,8 @@ class TextureScatter(OfThisProcess):
         target = to_image(self.device, out, "out", output=True)
         images = [target if out is irradiance else to_image(self.device, irradiance, "irradiance"),
                   to_image(self.device, albedo, "albedo"), target]
-        given = natives(images)
-        views = [x._view for x in images if x is not None]
-        return Event(submit(self.device, views, _handles(waits),
-                            lambda w: self._handle.execute(settings._data, *given, w), self))
+        return submit(self.device, images, waits, lambda *given: self._handle.execute(settings._data, *given),
+                      self)
 
     def stats(self) -> TextureScatterStats:
         """What the last execution did."""
@@ -255,12 +250,11 @@ def submit_surface_integral(device: Device, positions: Any, triangles: Any, irra
         raise ValueError(f"irradiance has shape {e.shape}; it must be one of {', '.join(map(str, places))}")
     at = places[e.shape]
     views = [vertex_view(device, points, 3, "points"), vertex_view(device, out, 3, "out", output=True)]
-    x, s = (v.native for v in views)
     known = as_profile(profile)
     handle = None if known is None else known._handle
-    return Event(submit(device, views, _handles(waits), lambda w: _native.surface_integral(
+    return submit(device, views, waits, lambda *given: _native.surface_integral(
         device._handle, p.ctypes.data, len(p), t.ctypes.data, t.size, e.ctypes.data, int(at), handle,
-        diffusion_radius, millimetres_per_unit, list(cut), tolerance, x, s, w)))
+        diffusion_radius, millimetres_per_unit, list(cut), tolerance, *given))
 
 
 def _pictures(a: Any, b: Any) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
@@ -291,8 +285,7 @@ def compare(a: Any, b: Any, mask: Any = None) -> dict[str, Any]:
     within = None if mask is None else np.ascontiguousarray(np.asarray(mask) != 0, np.uint8)
     if within is not None and within.shape != one.shape[:-1]:
         raise ValueError(f"mask has shape {within.shape}; {one.shape[:-1]} is needed")
-    return _native.compare_images(one.ctypes.data, two.ctypes.data, one.size // 3,
-                                  0 if within is None else within.ctypes.data)
+    return _native.compare_images(address(one), address(two), one.size // 3, address(within))
 
 
 def flip(a: Any, b: Any) -> float:

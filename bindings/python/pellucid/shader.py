@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _in_flight, _native
-from ._arrays import Image, submit, to_image
+from ._arrays import Image, address, submit, to_image
 from ._struct import OfThisProcess, to_enum
 from ._types import (
     Ambient,
@@ -25,7 +25,7 @@ from ._types import (
     ShaderOptions,
     ShaderStats,
 )
-from .device import Buffer, Device, Event, _filled, _handles
+from .device import Buffer, Device, Event, _filled
 from .lut import Lut
 
 
@@ -230,9 +230,9 @@ class Shader(OfThisProcess):
         PellucidError
             An image of another shape; axes that are not unit vectors at right angles.
         """
-        rows = None if axes is None else np.asarray(axes, np.float32).reshape(9).tolist()
+        rows = None if axes is None else np.ascontiguousarray(axes, np.float32).reshape(9)
         return self._keep("environment", _below(image, "environment"), "environment",
-                          lambda view: self._handle.set_environment(view, rows))
+                          lambda view: self._handle.set_environment(view, address(rows)))
 
     def set_camera(self, camera: Camera) -> Shader:
         """Sets the viewpoint, which specular and depth images need."""
@@ -269,17 +269,14 @@ class Shader(OfThisProcess):
         if self.device._handle.progress is None:
             self.submit().wait()
             return
-        images = list(self._images.values())
-        event = submit(self.device, [i._view for i in images], [],
-                       lambda waits: self._handle.execute_blocking(), self, images)
+        event = submit(self.device, [], [], lambda _: self._handle.execute_blocking(), self,
+                       moved=self._images.values())
         if event is not None:  # results are on their way back to the arrays
-            Event(event).wait()
+            event.wait()
 
     def submit(self, waits: Iterable[Event] = ()) -> Event:
         """Shades after `waits`, without waiting: leave the images alone until the event is done."""
-        images = list(self._images.values())
-        return Event(submit(self.device, [i._view for i in images], _handles(waits), self._handle.execute,
-                            self, images))
+        return submit(self.device, [], waits, self._handle.execute, self, moved=self._images.values())
 
     def material(self, id: int) -> Material:
         """Material `id` as it is shaded: with the values of all defaults, and after a commit also of AUTO.

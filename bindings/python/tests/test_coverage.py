@@ -13,7 +13,8 @@ HEADER = (ROOT / "host/include/pellucid/pellucid.h").read_text()
 # Functions that the native module does not name, except reference counting, and what stands for them.
 OTHERWISE = {"pelDeviceCreate": "pellucid::Device(", "pelDeviceCreateFromCl": "pellucid::Device::fromCl(",
              "pelDeviceCreateWith": "pellucid::Device(desc)", "pelSetName": "named<Shader>(",
-             "pelEventWait": "pelEventIsDone(", "pelLutGetSize": "pelLutRead"}
+             "pelErrorName": "PellucidError", "pelEventWait": "pelEventIsDone(",
+             "pelLutGetSize": "pelLutRead", "pelProfileLibraryName": "Profile::libraryNames"}
 # Structures of pointers and handles, and what stands for them.
 ARRAYS = {"PelImageDesc": pel.Image, "PelVertexView": pel.Vertices, "PelMeshTopologyDesc": pel.MeshTopology,
           "PelSubmit": pel.Event, "PelGaussian": pel.Profile.gaussians, "PelVertexRange": pel.LiveMesh.update,
