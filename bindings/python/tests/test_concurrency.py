@@ -1,5 +1,4 @@
 """The GIL, Ctrl-C, progress callbacks, and memory that outlives the name it had."""
-import gc
 import os
 import signal
 import subprocess
@@ -8,13 +7,11 @@ import textwrap
 import threading
 import time
 import types
-import weakref
 
 import numpy as np
 import pytest
 
 import pellucid as pel
-from pellucid import _in_flight
 from pellucid.device import progress_bar
 
 
@@ -41,28 +38,6 @@ def test_other_threads_run_during_work(device, make_sphere):
     stop.set()
     thread.join()
     assert inside >= 20
-
-
-def test_arrays_live_until_their_work_is_done(device, make_sphere):
-    mesh = make_sphere(1.0, 200, 400)
-    topology = pel.MeshTopology(device, mesh.triangles, len(mesh.positions))
-    gone = []
-    for wait in ("event", "device", "event"):
-        positions, out = mesh.positions.copy(), np.empty(len(mesh.positions), np.float32)
-        weakref.finalize(positions, gone.append, 1)
-        event = topology.submit_curvature(positions, mesh.normals, out, estimator="edge",
-                                          smoothing_passes=200)
-        del positions
-        gc.collect()
-        if not event.done:
-            assert not gone
-        if wait == "event":
-            event.wait()
-        else:
-            device.finish()
-        assert gone == [1] and np.allclose(out, 1, atol=1e-4)
-        gone.clear()
-    assert _in_flight.in_flight() == 0
 
 
 @pytest.fixture(scope="module")

@@ -37,9 +37,13 @@ def test_types_and_the_library_are_inside():
     assert {"py.typed", "_types.py", "_native.pyi", "libpellucid.so", "view", "batch"} <= files
 
 
-def run(*arguments):
-    return subprocess.run([sys.executable, "-m", "pellucid._command", *arguments], capture_output=True,
+def python(*arguments, **variables):
+    return subprocess.run([sys.executable, *arguments], env={**os.environ, **variables}, capture_output=True,
                           text=True, timeout=120)
+
+
+def run(*arguments):
+    return python("-m", "pellucid._command", *arguments)
 
 
 def test_the_compiled_program_answers():
@@ -73,11 +77,6 @@ print(np.asarray(pel.Lut.curvature(pel.Device(), width=4, height=4).read()).toby
 """
 
 
-def python(code, **variables):
-    return subprocess.run([sys.executable, "-c", code], env={**os.environ, **variables}, capture_output=True,
-                          text=True, timeout=120)
-
-
 def driver_of(platform):
     """The library of an installed driver, by its file in the folder of drivers."""
     for file in Path("/etc/OpenCL/vendors").glob("*.icd"):
@@ -87,7 +86,7 @@ def driver_of(platform):
 
 
 def test_without_a_library_the_package_loads_and_says_what_to_install():
-    failed = python("import pellucid; print(pellucid.devices()); pellucid.Device()",
+    failed = python("-c", "import pellucid; print(pellucid.devices()); pellucid.Device()",
                     PELLUCID_OPENCL="/nowhere/libOpenCL.so.1")
     assert failed.stdout.strip() == "[]"
     for word in ("/nowhere/libOpenCL.so.1", "apt-get install ocl-icd-libopencl1", "pellucid[cpu]",
@@ -96,14 +95,14 @@ def test_without_a_library_the_package_loads_and_says_what_to_install():
 
 
 def test_another_library_is_named_and_the_next_of_the_list_is_taken():
-    failed = python("import pellucid; pellucid.Device()", PELLUCID_OPENCL="libm.so.6")
+    failed = python("-c", "import pellucid; pellucid.Device()", PELLUCID_OPENCL="libm.so.6")
     assert "libm.so.6 is not an OpenCL library" in failed.stderr
-    assert python(COMPUTE, PELLUCID_OPENCL="/nowhere.so:libm.so.6::libOpenCL.so.1").returncode == 0
+    assert python("-c", COMPUTE, PELLUCID_OPENCL="/nowhere.so:libm.so.6::libOpenCL.so.1").returncode == 0
 
 
 def test_a_driver_without_a_loader_computes_the_same_bits():
-    by_loader = python(COMPUTE, PELLUCID_DEVICE="Portable")
-    by_itself = python(COMPUTE, PELLUCID_OPENCL=driver_of("pocl"), PELLUCID_DEVICE="Portable")
+    by_loader = python("-c", COMPUTE, PELLUCID_DEVICE="Portable")
+    by_itself = python("-c", COMPUTE, PELLUCID_OPENCL=driver_of("pocl"), PELLUCID_DEVICE="Portable")
     assert by_itself.returncode == 0, by_itself.stderr
     assert by_itself.stdout == by_loader.stdout and "Portable Computing Language" in by_itself.stdout
 

@@ -56,32 +56,37 @@ def test_events_both_ways(queue):
     assert event.done and out[0] == 5
 
 
-@pytest.mark.parametrize("kind", ["buffer read", "buffer write", "table read", "curvature"])
-def test_what_waiting_work_uses_is_kept_until_it_is_done(queue, sphere, kind):
+@pytest.mark.parametrize("waits_for", ["event", "device"])
+@pytest.mark.parametrize("kind", ["buffer read", "buffer write", "table read", "curvature", "shader"])
+def test_what_waiting_work_uses_is_kept_until_it_is_done(queue, sphere, kind, waits_for):
     device = pel.Device.from_cl(queue)
     n = len(sphere.positions)
     buffer, table = pel.Buffer(device, np.zeros(64, np.float32)), pel.Lut.shadow(device, width=8, height=8)
     topology = pel.MeshTopology(device, sphere.triangles, n)
+
+    def shade(array, waits):
+        shader = pel.Shader(device).set_image("radiance", array).set_image("normal_shading", array.copy())
+        return shader.set_material(1, pel.Material()).set_lights(pel.Light()).commit().submit(waits)
+
+    submit = {"buffer read": buffer.submit_read, "buffer write": buffer.submit_write,
+              "table read": functools.partial(table.submit_read, "float"), "shader": shade,
+              "curvature": functools.partial(topology.submit_curvature, sphere.positions, sphere.normals)}
     device.finish()
     gate = cl.UserEvent(queue.context)
     waits = [pel.Event.from_cl(device, gate)]
-    array = np.full({"table read": (8, 8, 3), "curvature": n}.get(kind, 64), 7, np.float32)
+    shape = {"table read": (8, 8, 3), "curvature": n, "shader": (8, 8, 3)}.get(kind, 64)
+    array = np.full(shape, 7, np.float32)
     gone = []
     weakref.finalize(array, gone.append, kind)
-    submit = {"buffer read": buffer.submit_read, "buffer write": buffer.submit_write,
-              "table read": functools.partial(table.submit_read, "float"),
-              "curvature": functools.partial(topology.submit_curvature, sphere.positions, sphere.normals)}
     event = submit[kind](array, waits=waits)
     del array
     gc.collect()
     assert not gone and not event.done
     gate.set_status(cl.command_execution_status.COMPLETE)
-    event.wait()
-    device.finish()
+    event.wait() if waits_for == "event" else device.finish()
     del event
-    _in_flight.sweep()
     gc.collect()
-    assert gone, "and no longer"
+    assert gone and _in_flight.in_flight() == 0, "and no longer"
 
 
 def test_a_signal_ends_the_wait_of_a_mapping(queue):

@@ -5,18 +5,12 @@ import pytest
 import pellucid as pel
 
 
-def ball(radius=10.0, size=0.25):
-    y, x = (np.mgrid[0:80, 0:80] - 39.5) * size
-    inside = x**2 + y**2 < radius**2
-    z = np.sqrt(np.where(inside, radius**2 - x**2 - y**2, 0))
-    positions = np.stack([x, y, z], -1).astype(np.float32)
-    irradiance = np.repeat(np.clip(positions[..., :1] / radius, 0, 1) * inside[..., None], 3,
-                           -1).astype(np.float32)
-    return irradiance, positions, inside.astype(np.uint8)
+def lit(view):
+    return view.lambert.copy(), view.position, view.material
 
 
-def test_execute_submit_and_in_place(device):
-    irradiance, positions, ids = ball()
+def test_execute_submit_and_in_place(device, view):
+    irradiance, positions, ids = lit(view)
     scatter = pel.Scatter(device)
     assert np.array_equal(scatter.execute(irradiance, positions, ids=ids), irradiance)
     scatter.set_material(1, pel.Profile.skin())
@@ -30,8 +24,8 @@ def test_execute_submit_and_in_place(device):
     assert np.array_equal(irradiance, result)
 
 
-def test_warm_up_builds_what_execute_needs():
-    irradiance, positions, ids = ball()
+def test_warm_up_builds_what_execute_needs(view):
+    irradiance, positions, ids = lit(view)
     own = pel.Device()  # whose programs no other test has built
     scatter = pel.Scatter(own)
     scatter.set_material(1, pel.Profile.skin())
@@ -42,8 +36,8 @@ def test_warm_up_builds_what_execute_needs():
     assert own.stats().programs_built == built
 
 
-def test_materials_controls_and_images(device):
-    irradiance, positions, ids = ball()
+def test_materials_controls_and_images(device, view):
+    irradiance, positions, ids = lit(view)
     scatter = pel.Scatter(device)
     scatter.set_material(1, pel.Profile.skin())
     scatter.set_controls(1, scattering="separable", scatter_taps=25)

@@ -1,6 +1,4 @@
 """Shading: arrays, progress, programs and options, normal maps and ambient cubes."""
-import gc
-
 import numpy as np
 import pytest
 from shader_view import HEIGHT, WIDTH, black, shaded, shader_for
@@ -28,16 +26,6 @@ def test_lambert(device, moving_device, view, tolerance, moving):
     radiance[...] = 0.25
     shader.set_options(accumulate=1).commit().execute()
     assert np.abs(radiance - 0.25 - view.lambert / 2)[view.inside].max() < tolerance["shadeTerm"]
-
-
-def test_submitted_work_keeps_its_arrays(device, view):
-    out = black()
-    shader = shader_for(device, view, out, albedo=view.albedo.copy())
-    events = [shader.submit() for _ in range(20)]
-    del shader
-    gc.collect()
-    events[-1].wait()
-    assert np.abs(out - view.lambert).max() < 1e-3
 
 
 @pytest.mark.parametrize("use, code", [
@@ -165,60 +153,3 @@ def test_ambient_cube(device, view):
                            (np.zeros((12, 2), np.float32), "three components")]:
         with pytest.raises((ValueError, pel.PellucidError), match=message):
             shader.set_ambient_cube(wrong)
-
-
-def test_memory_that_is_no_image_says_what_would_be(device):
-    packed = np.zeros((8, 9), dtype=[("n", np.float32, 3), ("id", np.uint8)])
-    for wrong in (np.zeros((9, 8, 3), np.float32).swapaxes(0, 1), packed["n"]):
-        with pytest.raises(ValueError, match="ascontiguousarray"):
-            pel.Shader(device).set_image("normal_shading", wrong)
-
-
-@pytest.mark.parametrize("slot", ["radiance", "out_diffuse"])
-def test_outputs_are_writable(device, view, slot):
-    out = black()
-    out.flags.writeable = False
-    with pytest.raises(ValueError, match="read-only"):
-        pel.Shader(device).set_image(slot, out)
-    pel.Shader(device).set_image("albedo", out)
-
-
-def test_history(device, view):
-    """Frames of few taps come closer to many; pixels that were not in the picture stand alone."""
-    motion = np.zeros((HEIGHT, WIDTH, 2), np.float32)
-    motion[:, :20] = 100
-
-    def frames(count, taps, cuts=0, **options):
-        radiance = black()
-        shader = shader_for(device, view, radiance, position=view.position, motion=motion)
-        shader.set_material(1, pel.Material(profile="skin", scattering="screen", scatter_taps=taps,
-                                            curvature_gain=0))
-        for index in range(count):
-            shader.set_options(frame_index=index, history_cut=index * cuts, **options).commit().execute()
-        return radiance, shader.stats().pixels_history
-
-    truth, none = frames(1, 256)
-    single, cut = frames(8, 8, cuts=1, history_weight=0.9)
-    blended, some = frames(8, 8, history_weight=0.9)
-    assert none == cut == 0 and some == view.inside[:, 20:].sum()
-    assert np.array_equal(blended[:, :20], single[:, :20])
-    error = [np.abs(image - truth)[:, 20:].mean() for image in (single, blended)]
-    assert error[1] < 0.6 * error[0]
-    with pytest.raises(pel.PellucidError, match="historyWeight"):
-        frames(1, 8, history_weight=1)
-
-
-def test_area_lights(device, view, tolerance):
-    # Over the ball of radius 10, far enough to be above all horizons that it lights.
-    def lit(**light):
-        light = pel.Light(position=(0, 0, 1000), color=(1e6, 1e6, 1e6), **light)
-        return shaded(device, view, lambda s: s.set_lights(light), position=view.position)
-
-    point = lit(type="point")
-    assert np.abs(lit(type="sphere", radius=0) - point).max() < tolerance["shadeTerm"]
-    square = lit(type=pel.LightType.RECTANGLE, half_width=(1, 0, 0), half_height=(0, -1, 0))
-    assert np.abs(square - point).max() < 1e-3
-    assert lit(type="rectangle", half_width=(1, 0, 0), half_height=(0, 1, 0)).max() == 0  # from behind
-    assert (lit(type="sphere", radius=500) - point).max() > 0.02  # beyond the terminator
-    with pytest.raises(pel.PellucidError, match="right angles"):
-        lit(type="rectangle", half_width=(1, 0, 0), half_height=(1, 0, 0))

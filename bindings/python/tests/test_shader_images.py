@@ -59,8 +59,10 @@ def read_only(array):
     ("albedo", np.zeros((0, 4, 3), np.float32), "albedo is empty"),
     ("albedo", np.zeros((3, 4, 4), np.float16).transpose(1, 2, 0), "components that lie apart"),
     ("albedo", np.zeros((5, 4, 3), np.float32).transpose(1, 0, 2), "ascontiguousarray"),
+    ("albedo", np.zeros((4, 4), [("n", np.float32, 3), ("id", np.uint8)])["n"], "ascontiguousarray"),
     ("albdo", np.zeros((4, 4, 3), np.float32), "slot is 'albdo'; did you mean 'albedo'"),
-    ("radiance", read_only(np.zeros((4, 4, 3), np.float32)), "radiance is read-only"),
+    *[(slot, read_only(np.zeros((4, 4, 3), np.float32)), f"{slot} is read-only")
+      for slot in ("radiance", "out_diffuse")],
     *[(slot, np.ones(shape, dtype), f"{slot} has the byte order of another machine .*big-endian")
       for slot, shape, dtype in [("normal_shading", (4, 4, 3), ">f4"), ("albedo", (4, 4, 3), ">f2"),
                                  ("material", (4, 4), ">u2"), ("normal_shading", (4, 4, 2), ">i2"),
@@ -73,7 +75,8 @@ def test_images_that_do_not_fit_are_named(device, slot, image, message):
 
 def test_formats_by_name(device):
     buffer = pel.Buffer(device, 4 * 4 * 4)
-    for image in (pel.Image(device, np.zeros((4, 4, 4), np.uint8), "rgba8_srgb"),
+    for image in (read_only(np.zeros((4, 4, 3), np.float32)),
+                  pel.Image(device, np.zeros((4, 4, 4), np.uint8), "rgba8_srgb"),
                   pel.Image(device, np.zeros((4, 4, 4), ">u1")),  # bytes have no order
                   pel.Image(device, buffer, "rgba8_unorm", width=4, height=4)):
         pel.Shader(device).set_image("albedo", image)
@@ -85,16 +88,6 @@ def test_formats_by_name(device):
             (np.zeros((4, 4), ">u2"), "r16_uint", "byte order of another machine")]:
         with pytest.raises(ValueError, match=message):
             pel.Image(device, data, name)
-
-
-def test_a_region_is_shaded_as_if_alone(device, view):
-    part = np.s_[2:HEIGHT - 1, 3:WIDTH - 2]
-    height, width = view.inside[part].shape
-    out, expected = (np.full((HEIGHT, WIDTH, 3), 7, np.float32) for _ in range(2))
-    expected[part] = np.where(view.inside[..., None], shaded(device, view), 7)[part]
-    shader = shader_for(device, view, out)
-    shader.set_options(region_x=3, region_y=2, region_width=width, region_height=height).commit().execute()
-    assert np.array_equal(out, expected)
 
 
 def test_images_are_held_until_they_are_taken_back(device):
