@@ -99,6 +99,10 @@ class View:
         return (handle, *self._tail)
 
 
+def _span(device: Device, memory: Buffer | NDArray[Any], what: str, output: bool) -> Span | Buffer:
+    return memory if isinstance(memory, Buffer) else Span(device, memory, what, output)
+
+
 def submit(device: Device, given: list[Any], waits: Iterable[Event], enqueue: Any, *used: Any,
            moved: Iterable[Image] = ()) -> Any:
     """Moves inputs, calls `enqueue(*given, waits)`, moves results; returns the event of the last step.
@@ -122,13 +126,15 @@ def submit(device: Device, given: list[Any], waits: Iterable[Event], enqueue: An
     return None if done is None else Event(done)
 
 
-def _pyopencl_array(device: Device,
-                    value: Any) -> Optional[tuple[Buffer, int, tuple[int, ...], tuple[int, ...], Any]]:
-    """Buffer, byte offset, shape, strides and type of a pyopencl.array.Array, without importing PyOpenCL."""
+def _memory(device: Device, value: Any,
+            what: str) -> tuple[tuple[int, ...], tuple[int, ...], np.dtype[Any], int, Buffer | NDArray[Any]]:
+    """Shape, strides, type, byte offset and memory of an array, or of a pyopencl.array.Array, whose package
+    is not imported."""
     data = getattr(value, "base_data", None)
-    if data is None or not hasattr(data, "int_ptr"):
-        return None
-    return Buffer.from_cl(device, data), value.offset, value.shape, value.strides, value.dtype
+    if hasattr(data, "int_ptr"):
+        return value.shape, value.strides, value.dtype, value.offset, Buffer.from_cl(device, data)
+    array = as_array(value, what)
+    return array.shape, array.strides, array.dtype, 0, array
 
 
 class Vertices:
@@ -153,12 +159,7 @@ def vertex_view(device: Device, value: Any, components: int, what: str, output: 
     if isinstance(value, Vertices):
         return View(value.buffer, (value.byte_offset, value.byte_stride, value.count))
     wanted = f"(n, {components})" if components > 1 else "(n,)"
-    cl = _pyopencl_array(device, value)
-    if cl:
-        buffer, offset, shape, strides, dtype = cl
-    else:
-        array = as_array(value, what)
-        shape, strides, dtype = array.shape, array.strides, array.dtype
+    shape, strides, dtype, offset, memory = _memory(device, value, what)
     if dtype != np.float32:
         raise ValueError(f"{what} is {dtype}; float32 is needed, such as array.astype(numpy.float32)")
     if len(shape) != (2 if components > 1 else 1) or (components > 1 and shape[1] != components):
@@ -170,9 +171,7 @@ def vertex_view(device: Device, value: Any, components: int, what: str, output: 
     stride = strides[0] if shape[0] > 1 else 4 * components
     if stride % 4:
         raise ValueError(f"{what} has vertices {stride} bytes apart; a multiple of 4 is needed")
-    if cl:
-        return View(buffer, (offset, stride, shape[0]))
-    return View(Span(device, array, what, output), (0, stride, shape[0]))
+    return View(_span(device, memory, what, output), (offset, stride, shape[0]))
 
 
 class Image:
@@ -211,14 +210,9 @@ class Image:
             return
         if width or height or byte_offset or pixel_stride or row_stride or plane_stride:
             raise ValueError(f"{_slot}: size, offset and strides come from the array")
-        cl = _pyopencl_array(device, data)
-        if cl:
-            buffer, byte_offset, shape, strides, dtype = cl
-        else:
-            array = as_array(data, _slot)
-            if _ids and array.dtype == np.bool_:  # a mask: material 1 where it is true
-                array = array.view(np.uint8)
-            shape, strides, dtype = array.shape, array.strides, array.dtype
+        shape, strides, dtype, byte_offset, memory = _memory(device, data, _slot)
+        if _ids and dtype == np.bool_ and isinstance(memory, np.ndarray):  # material 1 where it is true
+            memory, dtype = memory.view(np.uint8), np.dtype(np.uint8)
         _check_byte_order(dtype, _slot)
         if len(shape) not in (2, 3):
             raise ValueError(f"{_slot} has the shape {tuple(shape)}; (height, width) or (height, width, "
@@ -234,9 +228,8 @@ class Image:
         if (height > 1 and 0 < row < pixel * width) or pixel % dtype.itemsize or row % dtype.itemsize:
             raise ValueError(f"{_slot} has pixels {pixel} bytes apart and rows {row}, which images cannot "
                              "have; pass numpy.ascontiguousarray(array)")
-        tail = (int(self.format), width, height, byte_offset if cl else 0, pixel, row,
-                between if planar else 0)
-        self._view = View(buffer if cl else Span(device, array, _slot, _output), tail)
+        tail = (int(self.format), width, height, byte_offset, pixel, row, between if planar else 0)
+        self._view = View(_span(device, memory, _slot, _output), tail)
 
     def _pick(self, dtype: np.dtype[Any], components: int, planar: bool, ids: bool, slot: str) -> Format:
         if self.format is not None:
