@@ -41,5 +41,3 @@ def test_eye_with_an_iris_and_a_reflection(device):
     assert len(set(pictures)) == 5 and pictures[0] == pictures[2] and pictures[3] == pictures[6]
     with pytest.raises(ValueError, match="six faces"):
         shader.set_reflection_cube(faces[:5])
-    with pytest.raises(pel.PellucidError, match="right angles"):
-        shader.set_environment(sky, np.ones((3, 3)))
