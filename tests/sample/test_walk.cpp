@@ -11,8 +11,7 @@
 #include "reference/skin_walk.h"
 #include "sample/random_walk.h"
 
-namespace sample = pellucid::sample;
-using sample::Vec3;
+using namespace pellucid::sample;
 
 namespace {
 
@@ -24,36 +23,40 @@ constexpr double headError = 4e-3, headBias = 5e-4;
 // 0.0024 of the fit of the medium, and three standard errors of 38,000 walks.
 constexpr double reflectanceError = 6e-3;
 
-sample::Lighting zenith() {
-    return {{sample::SurfaceLight{}}, {}};
+Lighting zenith() {
+    return {{SurfaceLight{}}, {}};
 }
-sample::Lighting fromEverywhere() {
+Lighting fromEverywhere() {
     return {{}, [](Vec3) { return white; }};
 }
 
-sample::Medium medium(double meanFreePath, double albedo = 0.99055) {
+Medium medium(double meanFreePath, double albedo = 0.99055) {
     return {{meanFreePath, meanFreePath, meanFreePath}, {albedo, albedo, albedo}};
 }
 
 // Points of the triangles' middles, on every `stride`-th triangle.
-std::vector<sample::SurfacePoint> middles(const sample::Scene& scene, size_t stride) {
-    std::vector<sample::SurfacePoint> points;
+std::vector<SurfacePoint> middles(const Scene& scene, size_t stride) {
+    std::vector<SurfacePoint> points;
     for (size_t t = 0; t < scene.mesh().triangles.size() / 3; t += stride)
         points.push_back({uint32_t(t), {1 / 3., 1 / 3., 1 / 3.}});
     return points;
 }
 
-double cosineAt(const sample::Scene& scene, const sample::SurfacePoint& point) {
-    const Vec3 p = surfaceAt(scene.mesh(), point).position;
-    return p.z / length(p);
-}
+// A ball of radius 1 as a body, and points on it.
+struct Ball {
+    explicit Ball(int rings, size_t stride)
+        : scene(makeSphere(1, rings, 2 * rings).view()), points(middles(scene, stride)) {}
+    const Scene scene;
+    const WalkBody body{scene, 0};
+    const std::vector<SurfacePoint> points;
+};
 
 // Squared differences to `expected` without noise (the mean product of both halves'), and its standard error.
 struct Error {
     double mean = 0, uncertainty = 0;
 };
 template <class Expected>
-Error errorOf(const sample::WalkedLight& light, const Expected& expected) {
+Error errorOf(const WalkedLight& light, const Expected& expected) {
     double sum = 0, square = 0;
     const size_t count = light.first.size();
     for (size_t i = 0; i < count; ++i) {
@@ -68,17 +71,16 @@ Error errorOf(const sample::WalkedLight& light, const Expected& expected) {
 // Small and large against the mean free path.
 TEST(WalkLight, BallEqualsTheOraclesWalk) {
     constexpr int bins = 20;
-    const sample::Scene scene(sample::makeSphere(1, 96, 192).view());
-    const sample::WalkBody body(scene, 0);
+    const Ball ball(96, sized(160, 1600));
     for (double radius : {4.0, 15.0}) {  // mean free paths
-        const auto points = middles(scene, testsAreSmall() ? 1600 : 160);
-        const sample::WalkedLight light =
-            walkLight(body, zenith(), points, medium(1 / radius), {uint32_t(sized(64, 8))});
+        const WalkedLight light =
+            walkLight(ball.body, zenith(), ball.points, medium(1 / radius), {uint32_t(sized(64, 8))});
         const reference::WalkResult expected =
             reference::walkBall({1, 0.99055}, radius, bins, sized(300000, 3000), 5);
         const Error e = errorOf(light, [&](size_t i) {
             // Linear between the middles of the bins.
-            const double at = (cosineAt(scene, points[i / 3]) + 1) / 2 * bins - 0.5;
+            const Vec3 p = surfaceAt(ball.scene.mesh(), ball.points[i / 3]).position;
+            const double at = (p.z / length(p) + 1) / 2 * bins - 0.5;
             const int bin = std::clamp(int(std::floor(at)), 0, bins - 2);
             return expected.radiance[bin] +
                    (at - bin) * (expected.radiance[bin + 1] - expected.radiance[bin]);
@@ -91,15 +93,15 @@ TEST(WalkLight, BallEqualsTheOraclesWalk) {
 }
 
 // Over both halves, of one channel.
-double meanOf(const sample::WalkedLight& light, size_t channel) {
+double meanOf(const WalkedLight& light, size_t channel) {
     double sum = 0;
     for (size_t i = channel; i < light.first.size(); i += 3) sum += light.first[i] + light.second[i];
     return sum / double(2 * light.first.size() / 3);
 }
 
 // A box so large that its top is that of a half-space; the top's first triangle is 0 0 to 1 1.
-sample::Mesh largeBox(float s = 100, float deep = 60) {
-    sample::Mesh box;
+Mesh largeBox(float s = 100, float deep = 60) {
+    Mesh box;
     for (int i = 0; i < 8; ++i)
         box.positions.insert(box.positions.end(), {i & 1 ? s : -s, i & 2 ? s : -s, i & 4 ? 0 : -deep});
     box.triangles = {4, 5, 7, 4, 7, 6, 0, 3, 1, 0, 2, 3, 0, 1, 5, 0, 5, 4,
@@ -108,21 +110,21 @@ sample::Mesh largeBox(float s = 100, float deep = 60) {
 }
 
 TEST(WalkLight, LayersReflectWhatTheOraclesWalkDoes) {
-    const sample::Scene scene(largeBox().view());
-    const sample::WalkBody body(scene, 0);
-    const std::vector<sample::SurfacePoint> middle(sized(32, 2), {0, {0.5, 0, 0.5}});
+    const Scene scene(largeBox().view());
+    const WalkBody body(scene, 0);
+    const std::vector<SurfacePoint> middle(sized(32, 2), {0, {0.5, 0, 0.5}});
     for (const double thickness : {0.06, 1.0}) {
         // The upper layer absorbs more, less, and the medium is white at a second wavelength of a channel.
-        sample::LayeredMedium medium;
+        LayeredMedium medium;
         medium.thickness = thickness;
         medium.refractiveIndex = 1.4;
         medium.waves = {{4, 2, 0.1, {1, 0, -0.25}}, {2, 0.02, 3, {0, 1, 0}}, {3, 0.2, 0.05, {0, 0, 1.25}}};
         std::vector<reference::SkinWalk> walks;
-        for (const sample::Wave& w : medium.waves)
+        for (const Wave& w : medium.waves)
             walks.push_back(reference::walkSkin(
                 {{thickness, w.outerAbsorption, w.scattering}, {0, w.absorption, w.scattering}}, 1.4,
                 sized(40000, 2000), 3));
-        const sample::WalkedLight light =
+        const WalkedLight light =
             walkLight(body, fromEverywhere(), middle, medium, {uint32_t(sized(400, 50))});
         for (size_t c = 0; c < 3; ++c) {
             double expected = 0, uncertainty = 0;
@@ -139,55 +141,51 @@ TEST(WalkLight, LayersReflectWhatTheOraclesWalkDoes) {
 
 // Beside the edge of a shadow, which shows how far light travels in layers.
 TEST(WalkLight, LayersCarryLightAsFarAsInTheOraclesWalk) {
-    sample::Mesh both = largeBox(10, 10);
+    Mesh both = largeBox(10, 10);
     both.positions.insert(both.positions.end(), {-10, -10, 5, 0, -10, 5, 0, 10, 5, -10, 10, 5});
     both.triangles.insert(both.triangles.end(), {8, 9, 10, 8, 10, 11});
     both.materials = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 2, 2};
-    const sample::Scene scene(both.view());
-    const sample::WalkBody body(scene, 1);
+    const Scene scene(both.view());
+    const WalkBody body(scene, 1);
     const double thickness = 0.1;
-    sample::LayeredMedium layers;
+    LayeredMedium layers;
     layers.thickness = thickness, layers.refractiveIndex = 1.4;
     layers.waves = {{4, 2, 0.1, {1, 1, 1}}};
     for (const double away : {0.1, 0.5}) {
         const reference::SkinWalk expected =
             reference::walkSkin({{thickness, 2, 4}, {0, 0.1, 4}}, 1.4, sized(100000, 4000), 9, away);
-        const std::vector<sample::SurfacePoint> inShadow(sized(32, 2),
-                                                         {0, {0.5 + away / 20, 0.25 - away / 20, 0.25}});
-        const sample::WalkedLight light =
-            walkLight(body, zenith(), inShadow, layers, {uint32_t(sized(300, 50))});
+        const std::vector<SurfacePoint> inShadow(sized(32, 2),
+                                                 {0, {0.5 + away / 20, 0.25 - away / 20, 0.25}});
+        const WalkedLight light = walkLight(body, zenith(), inShadow, layers, {uint32_t(sized(300, 50))});
         EXPECT_NEAR(meanOf(light, 0), expected.beyond, testsAreSmall() ? 0.05 : 6 * expected.error) << away;
     }
 }
 
 TEST(WalkLight, EqualLayersAreOneMedium) {
-    const sample::Scene scene(sample::makeSphere(1, 24, 48).view());
-    const sample::WalkBody body(scene, 0);
-    const auto points = middles(scene, 60);
-    sample::LayeredMedium layers = medium(0.1);
+    const Ball ball(24, 60);
+    LayeredMedium layers = medium(0.1);
     layers.thickness = 0.2;
-    const auto walked = [&](const sample::LayeredMedium& m) {
-        return walkLight(body, zenith(), points, m, {8}).first;
+    const auto walked = [&](const LayeredMedium& m) {
+        return walkLight(ball.body, zenith(), ball.points, m, {8}).first;
     };
     EXPECT_EQ(walked(layers), walked(medium(0.1)));
-    for (sample::Wave& w : layers.waves) w.outerAbsorption *= 2;
+    for (Wave& w : layers.waves) w.outerAbsorption *= 2;
     EXPECT_NE(walked(layers), walked(medium(0.1)));
     // A white furnace: all light that enters the surface returns.
-    layers.refractiveIndex = sample::fresnelIndex;
-    for (sample::Wave& w : layers.waves) w.outerAbsorption = w.absorption = 0;
-    EXPECT_NEAR(meanOf(walkLight(body, fromEverywhere(), points, layers, {64}), 0), 0.92319, 5e-3)
+    layers.refractiveIndex = fresnelIndex;
+    for (Wave& w : layers.waves) w.outerAbsorption = w.absorption = 0;
+    EXPECT_NEAR(meanOf(walkLight(ball.body, fromEverywhere(), ball.points, layers, {64}), 0), 0.92319, 5e-3)
         << "diffuse Fresnel transmission";
 }
 
 TEST(WalkLight, LargePlaneReflectsWhatTheMediumWasMadeFor) {
-    const sample::Scene scene(largeBox().view());
-    const sample::WalkBody body(scene, 0);
+    const Scene scene(largeBox().view());
+    const WalkBody body(scene, 0);
     const std::array<double, 3> reflectance{0.8, 0.5, 0.25};
-    for (const auto boundary : {sample::Boundary::IndexMatched, sample::Boundary::Fresnel}) {
-        const sample::Medium m = sample::burleyMedium({0.9, 0.9, 0.9}, reflectance, boundary);
-        const std::vector<sample::SurfacePoint> middle(sized(32, 2), {0, {0.5, 0, 0.5}});
-        const sample::WalkedLight light =
-            walkLight(body, fromEverywhere(), middle, m, {uint32_t(sized(600, 50))});
+    for (const auto boundary : {Boundary::IndexMatched, Boundary::Fresnel}) {
+        const Medium m = burleyMedium({0.9, 0.9, 0.9}, reflectance, boundary);
+        const std::vector<SurfacePoint> middle(sized(32, 2), {0, {0.5, 0, 0.5}});
+        const WalkedLight light = walkLight(body, fromEverywhere(), middle, m, {uint32_t(sized(600, 50))});
         for (size_t c = 0; c < 3; ++c) {
             EXPECT_NEAR(meanOf(light, c), reflectance[c], testsAreSmall() ? 0.1 : reflectanceError)
                 << "channel " << c << ", index " << m.refractiveIndex;
@@ -198,14 +196,13 @@ TEST(WalkLight, LargePlaneReflectsWhatTheMediumWasMadeFor) {
 
 TEST(WalkLight, MediumOfBurleysProfile) {
     // docs/mathematics.md, section 14: l = 1.087 d and an albedo of 0.99055 at a reflectance of 0.8.
-    const sample::Medium m =
-        sample::burleyMedium({1, 2, 0.1}, {0.8, 0.8, 0.8}, sample::Boundary::IndexMatched);
+    const Medium m = burleyMedium({1, 2, 0.1}, {0.8, 0.8, 0.8}, Boundary::IndexMatched);
     EXPECT_NEAR(m.meanFreePath[0], 1.087, 0.004);
     EXPECT_NEAR(m.meanFreePath[1], 2 * m.meanFreePath[0], 1e-12);
     EXPECT_NEAR(m.albedo[2], 0.99055, 1e-4);
     double before = 0;
     for (double A : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0}) {
-        const sample::Medium one = sample::burleyMedium({1, 1, 1}, {A, A, A}, sample::Boundary::IndexMatched);
+        const Medium one = burleyMedium({1, 1, 1}, {A, A, A}, Boundary::IndexMatched);
         EXPECT_GT(one.albedo[0], before);
         EXPECT_LT(one.albedo[0], 1);
         EXPECT_TRUE(one.meanFreePath[0] > 0.5 && one.meanFreePath[0] < 5);
@@ -214,12 +211,10 @@ TEST(WalkLight, MediumOfBurleysProfile) {
 }
 
 TEST(WalkLight, SameResultWithAnyNumberOfThreads) {
-    const sample::Scene scene(sample::makeSphere(1, 24, 48).view());
-    const sample::WalkBody body(scene, 0);
-    const auto points = middles(scene, 60);
+    const Ball ball(24, 60);
     const auto walked = [&](int threads, uint64_t seed) {
         omp_set_num_threads(threads);
-        return walkLight(body, zenith(), points, medium(0.1), {8, 0, seed}).first;
+        return walkLight(ball.body, zenith(), ball.points, medium(0.1), {8, 0, seed}).first;
     };
     const int before = omp_get_max_threads();
     EXPECT_EQ(walked(1, 3), walked(5, 3));
@@ -228,91 +223,83 @@ TEST(WalkLight, SameResultWithAnyNumberOfThreads) {
 }
 
 TEST(WalkLight, SamplesForANoise) {
-    const sample::Scene scene(sample::makeSphere(1, 24, 48).view());
-    const sample::WalkBody body(scene, 0);
+    const Ball ball(24, 10);
     for (double noise : {0.02, 0.01}) {
-        const auto light = walkLight(body, zenith(), middles(scene, 10), medium(0.1), {1, noise});
+        const auto light = walkLight(ball.body, zenith(), ball.points, medium(0.1), {1, noise});
         EXPECT_NEAR(light.noise / noise, 1, 0.25) << light.samples;
     }
-    EXPECT_EQ(walkLight(body, zenith(), {}, medium(0.1), {1, 1e-9}).first.size(), 0u);
+    EXPECT_EQ(walkLight(ball.body, zenith(), {}, medium(0.1), {1, 1e-9}).first.size(), 0u);
 }
 
 TEST(WalkLight, CancelsWhileItWalks) {
-    const sample::Scene scene(sample::makeSphere(1, 24, 48).view());
-    const sample::WalkBody body(scene, 0);
-    const auto points = middles(scene, 1);
-    const sample::WalkOptions options{sample::maxWalkSamples, 0, 1,
-                                      [](double) { throw std::domain_error("cancelled"); }};
+    const Ball ball(24, 1);
+    const WalkOptions options{maxWalkSamples, 0, 1, [](double) { throw std::domain_error("cancelled"); }};
     const auto start = std::chrono::steady_clock::now();
-    EXPECT_THROW(walkLight(body, zenith(), points, medium(0.1), options), std::domain_error);
+    EXPECT_THROW(walkLight(ball.body, zenith(), ball.points, medium(0.1), options), std::domain_error);
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10)) << "of many hours";
 }
 
 // A ball inside of a ball. The outer one lets walks of the inner one's medium pass, and shades it.
 TEST(WalkLight, BodiesOfTheirOwn) {
-    sample::Mesh two = sample::makeSphere(1, 24, 48);
+    Mesh two = makeSphere(1, 24, 48);
     two.materials.assign(two.triangles.size() / 3, 1);
-    sample::Mesh outer = sample::makeSphere(2, 24, 48);
+    Mesh outer = makeSphere(2, 24, 48);
     outer.materials.assign(outer.triangles.size() / 3, 2);
     const size_t inner = two.materials.size();
     two.append(outer);
-    const sample::Scene scene(two.view()), alone(sample::makeSphere(1, 24, 48).view());
-    const sample::WalkBody body(scene, 1);
-    std::vector<sample::SurfacePoint> points = middles(scene, 100);
-    std::erase_if(points, [&](const auto& p) { return p.triangle >= inner; });
+    const Scene scene(two.view());
+    const WalkBody body(scene, 1);
+    const Ball alone(24, 100);
+    std::vector<SurfacePoint> points = alone.points;
     EXPECT_EQ(walkLight(body, fromEverywhere(), points, medium(0.2), {8}).first,
-              walkLight(sample::WalkBody(alone, 0), fromEverywhere(), points, medium(0.2), {8}).first);
+              walkLight(alone.body, fromEverywhere(), points, medium(0.2), {8}).first);
     for (float v : walkLight(body, zenith(), points, medium(0.2), {8}).first)
         EXPECT_EQ(v, 0) << "in the shadow";
     points.push_back({uint32_t(inner), {1, 0, 0}});
     EXPECT_THROW(walkLight(body, zenith(), points, medium(0.2), {8}), std::invalid_argument);
-    EXPECT_THROW(sample::WalkBody(scene, 3), std::invalid_argument);
+    EXPECT_THROW(WalkBody(scene, 3), std::invalid_argument);
 }
 
 TEST(WalkLight, StartsInsideOfSharpCorners) {
-    sample::Mesh needle;
+    Mesh needle;
     needle.positions = {0, 0, 0, 0, 1, 0, 0, 0, 1, 5, 0.3f, 0.3f};
     needle.triangles = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
-    const sample::Scene scene(needle.view());
-    std::vector<sample::SurfacePoint> corners;
+    const Scene scene(needle.view());
+    std::vector<SurfacePoint> corners;
     for (uint32_t t = 0; t < 4; ++t)
         for (int k = 0; k < 3; ++k) corners.push_back({t, {double(k == 0), double(k == 1), double(k == 2)}});
-    const sample::WalkedLight light =
-        walkLight(sample::WalkBody(scene, 0), fromEverywhere(), corners, medium(0.1), {64});
+    const WalkedLight light = walkLight(WalkBody(scene, 0), fromEverywhere(), corners, medium(0.1), {64});
     EXPECT_EQ(light.lost, 0u);
     for (float v : light.first) EXPECT_GT(v, 0.5);
 }
 
 TEST(WalkLight, RefusesWhatHasNoResult) {
-    const sample::Scene scene(sample::makeSphere(1, 8, 16).view());
-    const sample::WalkBody body(scene, 0);
-    const std::vector<sample::SurfacePoint> points{{0, {1, 0, 0}}};
-    const auto refused = [&](const sample::LayeredMedium& m, const sample::WalkOptions& options = {}) {
-        EXPECT_THROW(walkLight(body, zenith(), points, m, options), std::invalid_argument);
+    const Ball ball(8, 1000);
+    const auto refused = [&](const LayeredMedium& m, const WalkOptions& options = {}) {
+        EXPECT_THROW(walkLight(ball.body, zenith(), ball.points, m, options), std::invalid_argument);
     };
     for (double path : {0.0, -1.0, double(INFINITY), std::nan("")}) refused(medium(path));
     for (double albedo : {-0.1, 1.1, std::nan("")}) refused(medium(1, albedo));
     refused(medium(1), {0});
-    refused(medium(1), {sample::maxWalkSamples + 1});
+    refused(medium(1), {maxWalkSamples + 1});
     refused(medium(1), {1, std::nan("")});
     refused({});
     for (const double thickness : {-1.0, std::nan("")}) {
-        sample::LayeredMedium layers = medium(1);
+        LayeredMedium layers = medium(1);
         layers.thickness = thickness;
         refused(layers);
     }
-    sample::Medium glass = medium(1);
+    Medium glass = medium(1);
     glass.refractiveIndex = 0.5;
     refused(glass);
     // A white medium behind a boundary, and an open mesh: walks end.
     glass.refractiveIndex = 3;
     glass.albedo = white;
     glass.meanFreePath = {1e-3, 1e3, 1};
-    for (float v : walkLight(body, fromEverywhere(), points, glass, {2}).first)
+    for (float v : walkLight(ball.body, fromEverywhere(), ball.points, glass, {2}).first)
         EXPECT_TRUE(v >= 0 && v <= 1.001f);
-    const sample::Scene sheet(sample::makeRectangle(-1, 1, -1, 1, 0).view());
-    const sample::WalkedLight open =
-        walkLight(sample::WalkBody(sheet, 0), zenith(), points, medium(0.1), {64});
+    const Scene sheet(makeRectangle(-1, 1, -1, 1, 0).view());
+    const WalkedLight open = walkLight(WalkBody(sheet, 0), zenith(), ball.points, medium(0.1), {64});
     EXPECT_GT(open.lost, 0u);
     for (float v : open.first) EXPECT_TRUE(std::isfinite(v));
 }
@@ -359,9 +346,8 @@ TEST(WalkLight, HeadEqualsAnotherProgramsWalk) {
         GTEST_SKIP() << "PELLUCID_RULER_DIR, PELLUCID_GBUFFER_DIR and PELLUCID_ORACLE_DIR are needed";
     const pellucid::io::PartedMesh head = subdividedHead(oracle);
     ASSERT_EQ(head.mesh.triangleCount(), 2u * 141472);
-    const sample::Scene scene(
-        sample::MeshView{head.mesh.positions, head.mesh.normals, {}, {}, head.mesh.triangles, {}});
-    const sample::WalkBody body(scene, 0);
+    const Scene scene(MeshView{head.mesh.positions, head.mesh.normals, {}, {}, head.mesh.triangles, {}});
+    const WalkBody body(scene, 0);
     const pellucid::io::Image gbuffer = pellucid::io::readImage(gbuffers + std::string("/head_gbuf.exr"));
     const std::vector<float> positions = gbuffer.interleaved(
         std::vector<std::string>{"ViewLayer.Position.X", "ViewLayer.Position.Y", "ViewLayer.Position.Z"});
@@ -385,15 +371,15 @@ TEST(WalkLight, HeadEqualsAnotherProgramsWalk) {
             rows.push_back(row);
         }
         std::vector<double> off;
-        const std::vector<sample::SurfacePoint> points = nearestPoints(scene, from, off);
+        const std::vector<SurfacePoint> points = nearestPoints(scene, from, off);
         EXPECT_LT(*std::max_element(off.begin(), off.end()), 0.01) << "cm";
-        sample::Lighting lighting = zenith();
+        Lighting lighting = zenith();
         lighting.lights[0].toLight = normalize(c.toLight);
         // Lengths of the profile in cm.
         const double d = 0.1 * c.scale;
-        const sample::Medium m = sample::burleyMedium({0.29205 * d, 0.10902 * d, 0.05411 * d},
-                                                      {0.8, 0.8, 0.8}, sample::Boundary::IndexMatched);
-        const sample::WalkedLight light = walkLight(body, lighting, points, m, {uint32_t(sized(64, 4))});
+        const Medium m =
+            burleyMedium({0.29205 * d, 0.10902 * d, 0.05411 * d}, {0.8, 0.8, 0.8}, Boundary::IndexMatched);
+        const WalkedLight light = walkLight(body, lighting, points, m, {uint32_t(sized(64, 4))});
         for (size_t channel = 0; channel < 3; ++channel) {
             // Both programs have two halves: the product of their differences has no noise in the mean.
             double sum = 0, square = 0, bias = 0, spread = 0;
@@ -403,8 +389,6 @@ TEST(WalkLight, HeadEqualsAnotherProgramsWalk) {
                 sum += e * f, square += e * f * e * f, bias += (e + f) / 2, spread += (e + f) * (e + f) / 4;
             }
             const double n = double(rows.size()), uncertainty = std::sqrt(square) / n;
-            std::printf("%s, channel %zu: squared difference %.3g +- %.2g, bias %.2g\n", c.file, channel,
-                        sum / n, uncertainty, bias / n);
             EXPECT_LT(sum / n, headError * headError + 3 * uncertainty) << c.file << ", channel " << channel;
             EXPECT_NEAR(bias / n, 0, headBias + 3 * std::sqrt(spread) / n)
                 << c.file << ", channel " << channel;
