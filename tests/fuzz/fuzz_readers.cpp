@@ -13,10 +13,14 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
 #include <new>
 #include <set>
 
 #include "fuzz/readers.h"
+#include "io/input_file.h"
 
 namespace {
 
@@ -62,7 +66,7 @@ void work(const Options& o, Place& place, double begin) {
         for (const auto& entry : fs::directory_iterator(fs::path(o.at("--corpus")) / reader.name, none))
             files.insert(entry.path());
         std::vector<std::string> whole;
-        for (const fs::path& file : files) whole.push_back(fuzz::bytesOf(file));
+        for (const fs::path& file : files) whole.push_back(pellucid::io::readWholeFile(file));
         whole.insert(whole.end(), reader.seeds.begin(), reader.seeds.end());
         const double share = only.empty() ? double(place.reader + 1) / double(readers.size()) : 1,
                      end = begin + share * std::stod(seconds);

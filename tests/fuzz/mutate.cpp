@@ -1,5 +1,7 @@
 #include "fuzz/readers.h"
 
+#include <algorithm>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 namespace fuzz {

@@ -1,16 +1,11 @@
 // Every reader of untrusted files as a function of bytes, with seed files; and damage to bytes, the same for
 // the same numbers.
 #pragma once
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <nlohmann/json_fwd.hpp>
-#include <pellucid/pellucid.hpp>
 #include <random>
-#include <sstream>
+#include <string>
+#include <vector>
 
 namespace fuzz {
 
@@ -47,43 +42,5 @@ std::vector<Reader> readers();
 
 // Whether `error` is a documented error of the readers.
 bool promised(const std::exception& error);
-
-// Parts of readers(), by what they read.
-
-class Folder {
-  public:
-    Folder() {
-        char name[] = "/tmp/pellucid-fuzz-XXXXXX";
-        if (!::mkdtemp(name)) throw std::runtime_error("no temporary folder");
-        path_ = name;
-    }
-    ~Folder() { std::filesystem::remove_all(path_); }
-    std::string operator/(const std::string& name) const { return path_ + "/" + name; }
-
-  private:
-    std::string path_;
-};
-
-inline std::string bytesOf(const std::string& path) {
-    std::ostringstream text;
-    text << std::ifstream(path, std::ios::binary).rdbuf();
-    return text.str();
-}
-
-// The words of a text between blanks.
-inline std::vector<std::string> wordsOf(const std::string& text) {
-    std::istringstream words(text);
-    return {std::istream_iterator<std::string>(words), {}};
-}
-
-// A small picture, as OpenImageIO writes it: by the compression `how`, in tiles of that side.
-std::string picture(const Folder& folder, const std::string& extension, int channels,
-                    const std::string& how = "", int tile = 0, const char* type = "uint8");
-
-void addMeshes(std::vector<Reader>& all, const Folder& folder);
-void addImages(std::vector<Reader>& all, const Folder& folder);
-Reader table(const Folder& folder, const pellucid::Device& device);
-Reader topology(const pellucid::Device& device);
-Reader gltfScenes(const Folder& folder);
 
 }  // namespace fuzz
