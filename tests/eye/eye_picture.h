@@ -1,12 +1,25 @@
 // A picture of one eye: the G-buffer of its exact surface, shaded by the library and by the tracer.
 #pragma once
-#include "eye/eye_lut_error.h"
-#include "reference/shade.h"
+#include "reference/eye.h"
+#include "shading/shade_scene.h"
 
 namespace eye_test {
 
 using reference::Rgb;
 using reference::Vec3;
+
+inline reference::Eye referenceOf(const PelEye& e) {
+    reference::Eye eye;
+    eye.sclera = e.scleraRadius, eye.cornea = e.corneaRadius, eye.conic = e.corneaConic,
+    eye.limbus = e.limbusRadius;
+    eye.limbusWidth = e.limbusWidth, eye.limbusDarkening = e.limbusDarkening, eye.chamber = e.chamberDepth;
+    eye.nCornea = e.corneaIndex, eye.nAqueous = e.aqueousIndex, eye.concavity = e.irisConcavity;
+    eye.iris = e.irisRadius > 0 ? e.irisRadius : e.limbusRadius, eye.pupil = e.pupilRadius;
+    eye.texturePupil = e.texturePupil, eye.tearRoughness = e.tearRoughness,
+    eye.wetLineRoughness = e.wetLineRoughness;
+    eye.nTear = e.tearIndex;
+    return eye;
+}
 
 struct EyeScene {
     PelEye eye = pelEyeDefaults();
@@ -27,10 +40,9 @@ struct EyeScene {
         for (int i = 0; i < 3; ++i) eye.center[i] = center[i], eye.gaze[i] = gaze[i];
     }
     void addLight(Vec3 toLight, Rgb color) {
-        PelLight light = pelLightDefaults();
-        const Vec3 l = normalized(toLight);
-        for (int i = 0; i < 3; ++i) light.toLight[i] = float(l[i]), light.color[i] = float(color[i]);
-        lights.push_back(light);
+        PelLight& light = lights.emplace_back(pelLightDefaults());
+        shade_test::copyTo(light.toLight, normalized(toLight));
+        shade_test::copyTo(light.color, color);
     }
     // Bands round and rays outwards, of three colours.
     void makeTexture(int n) {
@@ -56,7 +68,7 @@ struct EyePixel {
 
 class EyePicture {
   public:
-    const pellucid::Device device{""};
+    const pellucid::Device device = ::device();
 
     explicit EyePicture(const EyeScene& scene)
         : s_(scene), truth_(referenceOf(scene.eye)), texture_{scene.textureSize, scene.textureSize, {}} {
@@ -79,44 +91,35 @@ class EyePicture {
 
     // `caustics`: without them the library's own.
     std::vector<float> shade(PelShaderStats* stats = nullptr, const pellucid::Lut& caustics = {}) const {
-        std::vector<float> position, normal;
-        std::vector<uint8_t> id;
-        for (const EyePixel& p : pixels) {
-            for (int c = 0; c < 3; ++c)
-                position.push_back(float(p.position[c])), normal.push_back(float(p.normal[c]));
-            id.push_back(p.shown);
-        }
-        const pellucid::Buffer out(device, std::vector<float>(3 * pixels.size()));
-        pellucid::Shader shader(device);
-        PelShaderOptions options = pelShaderOptionsDefaults();
-        options.millimetresPerUnit = float(s_.unit);
-        options.countPixels = 1;
-        options.disableSkipping = !s_.skipping;
-        PelCamera camera = pelCameraDefaults();
-        for (int i = 0; i < 3; ++i) camera.position[i] = float(s_.camera[i]);
-        shader.set(options)
-            .set(camera)
-            .set(s_.ambient)
-            .setMaterial(1, s_.sclera)
-            .setEye(1, s_.eye, caustics)
-            .set(s_.lights);
-        const auto image = [&](const auto& values, PelFormat format, int size) {
-            return imageDesc(pellucid::Buffer(device, values), format, uint32_t(size), uint32_t(size));
+        shade_test::Frame f;
+        f.width = f.height = uint32_t(s_.size);
+        auto& position = f.slots[PEL_SLOT_POSITION] = {3, {}};
+        auto& normal = f.slots[PEL_SLOT_NORMAL_SHADING] = {3, {}};
+        auto& id = f.slots[PEL_SLOT_MATERIAL] = {1, {}};
+        for (const EyePixel& p : pixels)
+            position.push(p.position), normal.push(p.normal), id.values.push_back(p.shown);
+        // All inputs are there, so that all pictures are made by the same programs.
+        const auto input = [&](const std::vector<float>& values, uint32_t components, float otherwise) {
+            return shade_test::Image{
+                components, values.empty() ? std::vector<float>(components * f.pixels(), otherwise) : values};
         };
-        shader.set(PEL_SLOT_RADIANCE,
-                   imageDesc(out, PEL_FORMAT_RGB32F, uint32_t(s_.size), uint32_t(s_.size)));
-        shader.set(PEL_SLOT_POSITION, image(position, PEL_FORMAT_RGB32F, s_.size));
-        shader.set(PEL_SLOT_NORMAL_SHADING, image(normal, PEL_FORMAT_RGB32F, s_.size));
-        shader.set(PEL_SLOT_MATERIAL, image(id, PEL_FORMAT_R8_UINT, s_.size));
-        if (s_.textureSize) shader.setIrisTexture(1, image(s_.texture, PEL_FORMAT_RGB32F, s_.textureSize));
-        if (!s_.indirect.empty())
-            shader.set(PEL_SLOT_INDIRECT, image(s_.indirect, PEL_FORMAT_RGB32F, s_.size));
-        if (!s_.wetness.empty()) shader.set(PEL_SLOT_WETNESS, image(s_.wetness, PEL_FORMAT_R32F, s_.size));
-        if (!s_.shadow.empty())
-            shader.set(0, PEL_LIGHT_WIDE_SHADOW, image(s_.shadow, PEL_FORMAT_R32F, s_.size));
-        shader.commit().execute();
-        if (stats) *stats = shader.stats();
-        return out.readAll<float>();
+        f.slots[PEL_SLOT_INDIRECT] = input(s_.indirect, 3, 0);
+        f.slots[PEL_SLOT_WETNESS] = input(s_.wetness, 1, 0);
+        f.materials[1] = s_.sclera;
+        f.curvatureLut = f.shadowLut = false;
+        for (const PelLight& light : s_.lights) f.lights.push_back({light, input({}, 1, 1)});
+        if (!s_.shadow.empty()) f.lights[0].wide.values = s_.shadow;
+        f.ambient = s_.ambient;
+        shade_test::copyTo(f.camera.position, s_.camera);
+        f.options.millimetresPerUnit = float(s_.unit);
+        f.options.disableSkipping = !s_.skipping;
+        return shade_test::shade(device, f, {}, stats, [&](pellucid::Shader& shader) {
+            shader.setEye(1, s_.eye, caustics);
+            const auto side = uint32_t(s_.textureSize);
+            if (side)
+                shader.setIrisTexture(
+                    1, imageDesc(pellucid::Buffer(device, s_.texture), PEL_FORMAT_RGB32F, side, side));
+        });
     }
 
     // The tracer's picture. Caustics by `photons` for each light.
@@ -125,7 +128,7 @@ class EyePicture {
         for (const PelLight& light : s_.lights)
             caustics.push_back(tracePhotons(
                 truth_, std::acos(std::clamp(toEye(vec(light.toLight)).z, -1.0, 1.0)), 128, 64, photons, 5));
-        std::map<int, double> ambient;  // by 1/64 of the iris' radius
+        std::map<int, double> ambient;  // by 1/24 of the iris' radius
         std::vector<double> picture;
         for (size_t k = 0; k < pixels.size(); ++k) {
             const EyePixel& p = pixels[k];
@@ -181,10 +184,10 @@ class EyePicture {
         const Rgb everywhere = vec(s_.ambient.constant);
         onSclera = onSclera + everywhere;
         if (h.share > 0 && everywhere.x > 0) {
-            const double at = h.radius / truth_.iris * 64;
-            const int i = std::min(int(at), 63);
+            const double at = h.radius / truth_.iris * 24;
+            const int i = std::min(int(at), 23);
             for (const int j : {i, i + 1})
-                if (!known.contains(j)) known[j] = ambientOnIris(truth_, truth_.iris * j / 64, 96);
+                if (!known.contains(j)) known[j] = ambientOnIris(truth_, truth_.iris * j / 24, 72);
             onIris = onIris + (known[i] + (at - i) * (known[i + 1] - known[i])) * everywhere;
         }
         Rgb sum = (1 - h.share) * (vec(s_.sclera.albedo) * onSclera) + gloss;
@@ -206,7 +209,6 @@ class EyePicture {
 
 struct PictureError {
     double rms = 0, worst = 0;
-    size_t worstPixel = 0;
 };
 
 inline PictureError differenceOf(const EyePicture& picture, const std::vector<float>& is,
@@ -219,7 +221,7 @@ inline PictureError differenceOf(const EyePicture& picture, const std::vector<fl
         for (size_t c = 0; c < 3; ++c) {
             const double d = std::abs(is[3 * k + c] - should[3 * k + c]);
             sum += d * d, ++count;
-            if (d > error.worst) error.worst = d, error.worstPixel = k;
+            error.worst = std::max(error.worst, d);
         }
     }
     error.rms = std::sqrt(sum / double(count));
