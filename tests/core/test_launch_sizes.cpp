@@ -94,8 +94,12 @@ TEST_F(LaunchSizes, DamagedFilesAreIgnoredWithTheReason) {
 
 TEST_F(LaunchSizes, NoSizeChangesABit) {
     using namespace lit_scenes;
-    const std::map<int, std::vector<LaunchPolicy>> others{
-        {1, {{16, 2, 4, 256}}}, {int(pellucid::Device("").info().mathWidth), {{4, 16, 128, 64}}}};
+    const std::map<int, LaunchPolicy> others{{1, {16, 2, 4, 256}},
+                                             {int(device().info().mathWidth), {4, 16, 128, 64}}};
+    const Profile skin = Profile::skin();
+    SceneRequest request;
+    request.size = 144, request.mapSize = 512;
+    const LitScene scene = Stage(device(), relief(60, 6, pores), 1).look(request, skin);
     struct Made {
         std::vector<std::vector<float>> values;
         std::string warnings;
@@ -107,7 +111,7 @@ TEST_F(LaunchSizes, NoSizeChangesABit) {
                           &made);
         write("tuning.txt", pel::launchText(lanes::deviceOf(lanes).info(), policy));
         const pellucid::Device device = lanes::deviceOf(lanes);
-        for (const Profile& profile : {Profile::skin(), Profile::named("jade")}) {
+        for (const Profile& profile : {skin, Profile::named("jade")}) {
             PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
             PelShadowLutDesc shadow = pelShadowLutDescDefaults();
             curvature.profile = shadow.profile = profile.get();
@@ -115,12 +119,10 @@ TEST_F(LaunchSizes, NoSizeChangesABit) {
             made.values.push_back(pellucid::Lut(device, curvature).read<float>(PEL_LUT_FLOAT));
             made.values.push_back(pellucid::Lut(device, shadow).read<float>(PEL_LUT_FLOAT));
         }
-        SceneRequest request;
-        request.size = 144, request.mapSize = 512;
-        const Profile skin = Profile::skin();
-        const LitScene scene = Stage(lanes::deviceOf(lanes), relief(60, 6, pores), 1).look(request, skin);
         for (const PelScattering method : {PEL_SCATTERING_PREINTEGRATED, PEL_SCATTERING_AUTO,
                                            PEL_SCATTERING_LIGHT, PEL_SCATTERING_SCREEN}) {
+            // One lane shares its kernels' code with several, and takes as long to compile.
+            if (lanes == 1 && method != PEL_SCATTERING_AUTO && method != PEL_SCATTERING_SCREEN) continue;
             ShadeRequest how;
             how.scattering = method, how.scatterTaps = method == PEL_SCATTERING_SCREEN ? 8 : 0;
             made.values.push_back(shoot(device, scene, skin, 1, how).light);
@@ -129,14 +131,11 @@ TEST_F(LaunchSizes, NoSizeChangesABit) {
         return made;
     };
     tuning_.set(path("tuning.txt").c_str());
-    for (const auto& [lanes, policies] : others) {
-        const Made usual = make(lanes, pel::builtInPolicy(uint32_t(lanes)));
-        for (const LaunchPolicy& policy : policies) {
-            const Made other = make(lanes, policy);
-            EXPECT_EQ(other.warnings, "");
-            for (size_t i = 0; i < usual.values.size(); ++i)
-                EXPECT_EQ(usual.values[i], other.values[i]) << lanes << " lanes, " << i;
-        }
+    for (const auto& [lanes, policy] : others) {
+        const Made usual = make(lanes, pel::builtInPolicy(uint32_t(lanes))), other = make(lanes, policy);
+        EXPECT_EQ(other.warnings, "");
+        for (size_t i = 0; i < usual.values.size(); ++i)
+            EXPECT_EQ(usual.values[i], other.values[i]) << lanes << " lanes, " << i;
     }
     std::string said;
     pelSetLogCallback(
