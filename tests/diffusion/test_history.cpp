@@ -147,7 +147,6 @@ TEST(History, AtRestComesCloserToAllTaps) {
             last = difference(p, now.light, manyTaps).rms;
             if (k == 0) first = last;
         }
-        std::printf("rms %.2e after one frame, %.2e after 16\n", first, last);
         EXPECT_LT(last, 0.45 * first);
     }
 }

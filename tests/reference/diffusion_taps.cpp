@@ -7,11 +7,15 @@ namespace {
 
 constexpr double mostGain = 8, leastViewCosine = 0.25, alike = 16;
 
-// A rising function as a table, with its inverse by bisection.
+// The integral of a density from 0 on, as a table; 1 at `end`. By Gauss' rule of two points in each step.
 class Rising {
   public:
-    Rising(double end, const std::function<Rgb(double, double)>& added) : end_(end), values_{Rgb{}} {
-        for (int i = 0; i < count; ++i) values_.push_back(values_.back() + added(at(i), at(i + 1)));
+    Rising(double end, const std::function<Rgb(double)>& density) : end_(end), values_{Rgb{}} {
+        for (int i = 0; i < count; ++i) {
+            const double middle = (at(i) + at(i + 1)) / 2, half = (at(i + 1) - at(i)) / 2;
+            const Rgb sum = density(middle - half / std::sqrt(3.0)) + density(middle + half / std::sqrt(3.0));
+            values_.push_back(values_.back() + half * sum);
+        }
         const Rgb all = values_.back();
         for (Rgb& v : values_) v = v / all;
     }
@@ -62,9 +66,7 @@ double at(const std::vector<double>& values, size_t i) {
 
 // Light on a plane from within a distance, of that from within the reach.
 Rising enclosedLight(const Profile& profile) {
-    return Rising(scatterReach(profile), [&](double a, double b) {
-        return enclosedEnergy(profile, b) - (a > 0 ? enclosedEnergy(profile, a) : Rgb{});
-    });
+    return Rising(scatterReach(profile), [&](double r) { return 2 * pi * r * profile.radial(r); });
 }
 
 Rgb ratio(Rgb a, Rgb b, double gain) {
@@ -206,15 +208,15 @@ std::vector<Rgb> blendHistory(const TapScene& s, const Profile& profile, const s
             Rgb earlier{};
             double found = 0;
             int frames = 0;
-            const bool finite = std::isfinite(column) && std::isfinite(row);
-            for (int v = 0; finite && !history.empty() && v < picture.height; ++v)
-                for (int u = 0; u < picture.width; ++u) {
-                    const double near =
-                        std::max(1 - std::abs(column - u), 0.0) * std::max(1 - std::abs(row - v), 0.0);
-                    const HistoryPixel& before = history[picture.at(u, v)];
+            const double left = std::floor(column), top = std::floor(row);
+            for (double v : {top, top + 1})
+                for (double u : {left, left + 1}) {
+                    const double near = (1 - std::abs(column - u)) * (1 - std::abs(row - v));
+                    const bool inside = u >= 0 && v >= 0 && u < picture.width && v < picture.height;
+                    if (history.empty() || !inside || !(near > 0)) continue;
+                    const HistoryPixel& before = history[picture.at(int(u), int(v))];
                     const double apart = before.distance - distance;
-                    if (!(near > 0) || before.id != picture.ids[here] ||
-                        !(apart * apart <= alike * all[here].area))
+                    if (before.id != picture.ids[here] || !(apart * apart <= alike * all[here].area))
                         continue;
                     frames = found > 0 ? std::min(frames, before.frames) : before.frames;
                     earlier = earlier + near * before.light;
@@ -255,11 +257,7 @@ std::vector<Rgb> blendHistory(const TapScene& s, const Profile& profile, const s
 std::vector<Rgb> scatterSeparably(const TapScene& s, const Profile& profile) {
     const ScatterPicture& picture = s.picture;
     const double reach = scatterReach(profile);
-    const Rising half(reach, [&](double a, double b) {
-        return 0.5 * (b - a) *
-               (profile.lineSpread((a + b) / 2 - (b - a) / std::sqrt(12.0)) +
-                profile.lineSpread((a + b) / 2 + (b - a) / std::sqrt(12.0)));
-    });
+    const Rising half(reach, [&](double s) { return profile.lineSpread(s); });
     // Half of the pieces by light, half by the root of length.
     std::vector<double> ends;
     for (int i = 0; i <= s.taps; ++i) {

@@ -282,13 +282,9 @@ ProfilePtr tableProfile(std::vector<double> distances, std::vector<Rgb> values) 
     return std::make_shared<TableProfile>(std::move(distances), std::move(values));
 }
 
-ProfilePtr scaledProfile(ProfilePtr profile, double factor) {
-    return std::make_shared<ScaledProfile>(std::move(profile), factor);
-}
-
 ProfilePtr profileForRadius(ProfilePtr profile, double diffusionRadius) {
     const double factor = diffusionRadius / profile->radius();
-    return scaledProfile(std::move(profile), factor);
+    return std::make_shared<ScaledProfile>(std::move(profile), factor);
 }
 
 namespace {

@@ -66,8 +66,7 @@ ProfilePtr dipoleProfile(Rgb absorption, Rgb reducedScattering, double eta);
 // Measured radial values: linear between the distances, constant before the first, zero after the last.
 ProfilePtr tableProfile(std::vector<double> distances, std::vector<Rgb> values);
 
-// The same profile with every length multiplied by factor, radius() included.
-ProfilePtr scaledProfile(ProfilePtr profile, double factor);
+// The same profile with all lengths stretched alike, so that its radius() is `diffusionRadius`.
 ProfilePtr profileForRadius(ProfilePtr profile, double diffusionRadius);
 
 // Standard deviation of the line spread per channel, by quadrature of radial: sqrt(1/2 * integral of R d² 2

@@ -1,7 +1,5 @@
 #include "reference/surface_integral.h"
 
-#include "reference/lut.h"
-
 namespace reference {
 namespace {
 
@@ -89,10 +87,6 @@ Rgb surfaceIntegral(const Profile& profile, const std::vector<LitTriangle>& mesh
     Rgb sum{};
     for (const LitTriangle& t : mesh) sum = sum + adaptive(kernel, t, sevenPoints(kernel, t), 0);
     return sum;
-}
-
-Rgb surfaceIntegralOfSphere(const Profile& profile, double radius, double angle) {
-    return overSphere(profile, angle, radius, {1, 1, 1});
 }
 
 }  // namespace reference

@@ -16,8 +16,4 @@ struct LitTriangle {
 // to 1 on a plane within. Error about 1e-7 times the largest irradiance.
 Rgb surfaceIntegral(const Profile& profile, const std::vector<LitTriangle>& mesh, Vec3 x, Rgb cut = {});
 
-// On a sphere of that radius round the origin, lit by a parallel light of irradiance 1 that makes the angle
-// with x's normal: the closed form `sphere` of section 2, not renormalised.
-Rgb surfaceIntegralOfSphere(const Profile& profile, double radius, double angle);
-
 }  // namespace reference
