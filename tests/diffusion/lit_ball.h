@@ -68,7 +68,9 @@ inline std::vector<float> parallelMap(float* matrix, Vec3 toLight, double extent
     });
 }
 
-inline LitBall makeBall(Form form, Vec3 toLight, uint32_t side) {
+// Lit from a direction of any length.
+inline LitBall makeBall(Form form, Vec3 from, uint32_t side) {
+    const Vec3 toLight = normalized(from);
     LitBall ball;
     PelLight& l = ball.light;
     ball.toLight = toLight;
@@ -145,8 +147,8 @@ inline LitBall makeBall(Form form, Vec3 toLight, uint32_t side) {
 }
 
 // A ball of as much detail for every form: a cube's face is 90 degrees wide.
-inline LitBall evenBall(Form form, Vec3 toLight, uint32_t side) {
-    return makeBall(form, normalized(toLight), form == Form::cube || form == Form::radial ? 2 * side : side);
+inline LitBall evenBall(Form form, Vec3 from, uint32_t side) {
+    return makeBall(form, from, form == Form::cube || form == Form::radial ? 2 * side : side);
 }
 
 // The ball from +z, each pixel with the light of all.

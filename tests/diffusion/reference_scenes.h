@@ -56,17 +56,6 @@ inline void addMap(ReferenceScene& r, const std::string& base) {
     for (int k = 0; k < 3; ++k) r.light.toLight[k] = float(json["light"]["direction_towards_light_world"][k]);
 }
 
-// The last so many of a file.
-inline std::vector<float> readHalves(const std::string& path, size_t count) {
-    std::ifstream file(path, std::ios::binary);
-    std::vector<uint16_t> halves(count);
-    file.seekg(-std::streamoff(2 * count), std::ios::end);
-    file.read(reinterpret_cast<char*>(halves.data()), std::streamsize(2 * count));
-    std::vector<float> values;
-    for (uint16_t h : halves) values.push_back(fromHalf(h));
-    return values;
-}
-
 inline ReferenceScene head1536(const std::string& references, const std::string& gbuffers) {
     const pellucid::io::Image image = pellucid::io::readImage(references + "/head_side_1536.exr");
     ReferenceScene r;
@@ -97,9 +86,9 @@ inline void readGbuffer(ReferenceScene& r, const std::string& path) {
 inline ReferenceScene headTimesFour(const std::string& references, const std::string& gbuffers) {
     ReferenceScene r;
     readGbuffer(r, gbuffers + "/head_gbuf.exr");
-    const std::vector<float> e = readHalves(references + "/head_side_irradiance_f16.npy", r.ids.size());
-    for (float v : e) r.irradiance.insert(r.irradiance.end(), 3, v);
-    r.truth = readHalves(references + "/head_side_x4_surface_integral_f16.npy", 3 * r.ids.size());
+    for (float v : pellucid::io::readNpy(references + "/head_side_irradiance_f16.npy").values)
+        r.irradiance.insert(r.irradiance.end(), 3, v);
+    r.truth = pellucid::io::readNpy(references + "/head_side_x4_surface_integral_f16.npy").values;
     r.profileScale = 4;
     addMap(r, gbuffers + "/head_side");
     return r;

@@ -43,12 +43,6 @@ reference::MappedLight exactLight(const LitBall& ball) {
     return light;
 }
 
-std::vector<LitBall> lightsFrom(std::initializer_list<Vec3> directions, uint32_t mapSide) {
-    std::vector<LitBall> lights;
-    for (Vec3 d : directions) lights.push_back(makeBall(Form::parallel, normalized(d), mapSide));
-    return lights;
-}
-
 // Along +z, over `extent` mm and from 20 mm below the plane z = 0.
 LitBall lampFromBehind(double extent) {
     LitBall lamp;
@@ -69,10 +63,6 @@ Frame sheet(uint32_t side, PelScattering method) {
         if (i % 3 < 2) f.picture.positions[i] -= 0.05f * float(side);
     f.options.targetError = 0;
     return f;
-}
-
-std::string nameOf(Form form, Vec3 d) {
-    return "form " + std::to_string(int(form)) + " from " + std::to_string(d.x) + " " + std::to_string(d.z);
 }
 
 // Irradiance of a ball over its lit part, by midpoints in the angles round the light. `directed`: of the
@@ -96,21 +86,20 @@ reference::Rgb surfaceIntegral(const LitBall& ball, const reference::Profile& pr
 
 }  // namespace
 
-// Every form of map; lights along the axes, whose matrices are full of zeros; and three lights at a time,
-// each with its own colour.
+// Every form of map; three lights at a time, each with its own colour; and lights along the axes, whose
+// matrices are full of zeros.
 TEST(LightSpace, IsTheSumOverAllTexelsOfAllLights) {
-    const uint32_t mapSide = sized(128u, 48u), axisSide = sized(64u, 48u);
-    std::vector<std::pair<std::string, std::vector<LitBall>>> scenes;
+    const uint32_t mapSide = sized(96u, 48u);
+    std::vector<std::vector<LitBall>> scenes;
     const Vec3 from{0.7, 0.2, -0.5};
-    for (Form form : forms) scenes.push_back({nameOf(form, from), {evenBall(form, from, mapSide)}});
-    const size_t first = scenes.size();
+    for (Form form : forms) scenes.push_back({evenBall(form, from, mapSide)});
+    scenes.push_back({makeBall(Form::parallel, from, mapSide),
+                      makeBall(Form::parallel, {-0.6, 0.5, -0.2}, mapSide),
+                      makeBall(Form::spot, {-0.2, -0.6, 0.5}, mapSide)});
+    const size_t firstAxis = scenes.size();
     for (Form form : {Form::parallel, Form::perspective, Form::cube})
         for (Vec3 axis : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 0, 1}})
-            scenes.push_back({nameOf(form, axis), {evenBall(form, axis, axisSide)}});
-    const size_t last = scenes.size();
-    std::vector<LitBall> three = lightsFrom({from, {-0.6, 0.5, -0.2}}, mapSide);
-    three.push_back(evenBall(Form::spot, {-0.2, -0.6, 0.5}, mapSide));
-    scenes.push_back({"three lights", three});
+            scenes.push_back({evenBall(form, axis, sized(64u, 48u))});
     // Far wider than the ball, so that only flux counts; as wide as it, so that places count; and skin, whose
     // narrow Gaussians have tails.
     const struct {
@@ -125,18 +114,15 @@ TEST(LightSpace, IsTheSumOverAllTexelsOfAllLights) {
          reference::gaussiansProfile({{4, {1, 0.8, 0.6}}, {1.5, {0, 0.2, 0.4}}}), tolerance::lightPlaces},
         {"skin", Profile::skin(), reference::skinProfile(), tolerance::lightTails}};
     for (size_t k = 0; k < scenes.size(); ++k) {
-        const auto& [name, lights] = scenes[k];
         std::vector<reference::MappedLight> exact;
-        for (const LitBall& light : lights) exact.push_back(exactLight(light));
-        const bool axis = k >= first && k < last;
+        for (const LitBall& light : scenes[k]) exact.push_back(exactLight(light));
         for (const auto& c : cases) {
-            if (axis && c.profile.get() != cases[1].profile.get()) continue;
-            Frame f = frameOf(lights, axis ? sized(20u, 10u) : sized(24u, 10u), byLight, 0, c.profile);
+            if (k >= firstAxis && c.profile.get() != cases[1].profile.get()) continue;
+            Frame f = frameOf(scenes[k], sized(16u, 10u), byLight, 0, c.profile);
             f.options.targetError = 0;
             const auto truth = reference::scatterFromLights(f.picture.exact(), exact, *c.exact);
-            const Difference d = difference(f.picture, f.shade().light, truth);
-            std::printf("%s, %s: rms %.4f, most %.4f\n", name.c_str(), c.name, d.relative, d.most);
-            EXPECT_LT(d.relative, c.most) << name << ", " << c.name;
+            EXPECT_LT(difference(f.picture, f.shade().light, truth).relative, c.most)
+                << "scene " << k << ", " << c.name;
         }
     }
 }
@@ -148,7 +134,7 @@ TEST(LightSpace, OnlyTexelsWithinReachAreMade) {
     const Profile profile = Profile::gaussians({{0.002f, {1, 0.8f, 0.6f}}});
     constexpr uint32_t side = 48;
     for (const auto& [method, form] : {std::pair{byLight, Form::parallel}, {byAuto, Form::perspective}}) {
-        const LitBall light = makeBall(form, normalized(Vec3{0.7, 0.2, 0.5}), mapSide);
+        const LitBall light = makeBall(form, {0.7, 0.2, 0.5}, mapSide);
         Frame whole = frameOf({light}, side, method, 0, profile);
         whole.options.targetError = 0;
         const uint64_t all = whole.shade().stats.texelsReached;
@@ -175,7 +161,7 @@ TEST(LightSpace, OnlyTexelsWithinReachAreMade) {
 // These texels suffice: further pixels on all sides, for which more of the map is used, change no bit.
 TEST(LightSpace, TexelsBeyondReachDoNotCount) {
     constexpr uint32_t side = 48, middle = side / 2, row = middle + 1;  // of three pixels
-    const LitBall ball = makeBall(Form::parallel, normalized(Vec3{0.7, 0.2, 0.5}), sized(768u, 192u));
+    const LitBall ball = makeBall(Form::parallel, {0.7, 0.2, 0.5}, sized(768u, 192u));
     // The second: of the radius, by pixel.
     for (const auto& [sigma, factor] : {std::pair{0.05f, 1.0f}, {0.4f, 1.0f}, {0.1f, 4.0f}}) {
         const Profile profile = Profile::gaussians({{sigma * sigma, {1, 0.8f, 0.6f}}});
@@ -206,7 +192,7 @@ TEST(LightSpace, TexelsBeyondReachDoNotCount) {
 TEST(LightSpace, BordersOfCascadesShowNoSteps) {
     const uint32_t side = sized(96u, 32u);
     const auto lightAt = [&](double border) {  // mm from the axis
-        LitBall ball = makeBall(Form::parallel, normalized(Vec3{0.3, 0.2, 1}), 40);
+        LitBall ball = makeBall(Form::parallel, {0.3, 0.2, 1}, 40);
         const LitBall fine = ball;
         ball.maps.insert(ball.maps.begin(),
                          parallelMap(ball.light.worldToShadow, ball.toLight, 2 * border, 40, false));
@@ -227,7 +213,7 @@ TEST(LightSpace, BordersOfCascadesShowNoSteps) {
 TEST(LightSpace, ANarrowProfileLeavesLightWhereItFalls) {
     const uint32_t side = sized(96u, 32u);
     for (const uint32_t mapSide : {16u, 64u}) {
-        const LitBall ball = makeBall(Form::parallel, normalized(Vec3{0.3, 0.2, 1}), mapSide);
+        const LitBall ball = makeBall(Form::parallel, {0.3, 0.2, 1}, mapSide);
         const Picture p = pictureOf(ball, side);
         for (const float width : {0.03f, 0.06f, 0.12f, 0.24f}) {
             const std::vector<float> light = frameOf({ball}, side, byLight, width).shade().light;
@@ -258,8 +244,6 @@ TEST(LightSpace, TexelsOfOtherObjectsDoNotCount) {
         };
         const auto beside = lightBeside(2), nothing = lightBeside(9), same = lightBeside(1);
         const Picture p = pictureOf(makeBall(Form::parallel, {0, 0, 1}, 16), side);
-        std::printf("beside another object: %.4f, beside the same: %.4f\n",
-                    difference(p, beside, nothing).most, difference(p, same, nothing).most);
         EXPECT_LT(difference(p, beside, nothing).most, 0.01 * difference(p, same, nothing).most);
     }
 }
@@ -267,7 +251,8 @@ TEST(LightSpace, TexelsOfOtherObjectsDoNotCount) {
 // Light is additive: the result for two lights is the sum of the results for each alone.
 TEST(LightSpace, TwoLightsAreTheSumOfEachAlone) {
     const uint32_t side = sized(64u, 20u);
-    const std::vector<LitBall> both = lightsFrom({{0.7, 0.2, -0.5}, {-0.6, 0.5, -0.4}}, sized(192u, 64u));
+    const std::vector<LitBall> both{makeBall(Form::parallel, {0.7, 0.2, -0.5}, sized(192u, 64u)),
+                                    makeBall(Form::parallel, {-0.6, 0.5, -0.4}, sized(192u, 64u))};
     for (const float width : {0.4f, 2.7f})
         for (PelScattering method : {byLight, byAuto}) {
             const auto light = [&](const std::vector<LitBall>& lights) {
@@ -280,8 +265,6 @@ TEST(LightSpace, TwoLightsAreTheSumOfEachAlone) {
             std::vector<float> sum = first.light;
             std::ranges::transform(sum, light({both[1]}).light, sum.begin(), std::plus());
             const Difference d = difference(pictureOf(both, side), together.light, sum);
-            std::printf("method %d, radius %g: rms %.4f, most %.4f\n", int(method), double(width), d.relative,
-                        d.most);
             // A small picture has too few tiles to choose the same ones for two lights as for each.
             if (!testsAreSmall() || method == byLight) {
                 EXPECT_LT(d.relative, tolerance::lightsAddUp) << int(method) << ", radius " << width;
@@ -330,8 +313,6 @@ TEST(LightSpace, ThroughABallIsTheSurfaceIntegralForEveryFormOfMap) {
             double square = 0, whole = 0;
             for (size_t k = 0; k < dark.size(); ++k)
                 square += std::pow(light[3 * dark[k]] - truth[k].x, 2), whole += truth[k].x * truth[k].x;
-            std::printf("form %d, method %d, known %d: %.3f off, of %.3f\n", int(form), int(method), known,
-                        std::sqrt(square / whole), std::sqrt(whole / double(dark.size())));
             EXPECT_GT(std::sqrt(whole / double(dark.size())), 0.03);
             EXPECT_LT(std::sqrt(square / whole),
                       method == byLight ? tolerance::lightThroughBall : tolerance::hiddenThroughBall)
@@ -390,7 +371,7 @@ TEST(LightSpace, SlabsLetThroughWhatRandomWalksDo) {
     const uint32_t side = sized(48u, 24u);
     const float paths[] = {1.1f * d, 1.1f * d, 1.1f * d}, white[] = {0.8f, 0.8f, 0.8f};
     LitBall lamp = lampFromBehind(extent);
-    for (double thickness : {0.3, 0.6, 1.0, 2.5, 4.0}) {
+    for (double thickness : {0.3, 1.0, 4.0}) {
         const reference::WalkResult walked =
             reference::walkSlab({path, 0.99055}, thickness, 1, 1, sized(100000, 1000), 7);
         for (const int k : {0, 1, 2, 3}) {
@@ -458,7 +439,7 @@ TEST(LightSpace, SlabsReflectWhatRandomWalksDo) {
             Frame f = sheetOf(method, kind);
             const PelProfileInfo info = f.profile.info();
             const std::vector<float> endless = f.shade().light;
-            for (float thickness : {0.1f, 0.3f, 1.0f, 3.0f, 10.0f}) {
+            for (float thickness : {0.1f, 1.0f, 10.0f}) {
                 f.images[PEL_SLOT_THICKNESS].assign(f.picture.pixels(), thickness);
                 const std::vector<float> light = f.shade().light;
                 for (size_t c = 0; c < 3; ++c) {
@@ -530,8 +511,8 @@ TEST(LightSpace, NothingIsLitBetweenSurfaces) {
 // Exchanging channels of lights and profile exchanges the channels of the result, to the bit.
 TEST(LightSpace, ChannelsAreTreatedAlike) {
     for (const PelScattering method : {byLight, byAuto}) {
-        Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{0.9, 0, -0.4}), sized(256u, 64u)),
-                           makeBall(Form::perspective, normalized(Vec3{-0.8, 0.5, 0.2}), sized(256u, 64u))},
+        Frame f = frameOf({makeBall(Form::parallel, {0.9, 0, -0.4}, sized(256u, 64u)),
+                           makeBall(Form::perspective, {-0.8, 0.5, 0.2}, sized(256u, 64u))},
                           sized(96u, 24u), method);
         f.giveIrradiance = false;
         const auto shaded = [&](int first) {
@@ -564,24 +545,13 @@ TEST(LightSpace, TexelsThatTheCameraSeesCountOnce) {
         }
 }
 
-TEST(LightSpace, AnIdIsButAName) {
-    for (PelScattering method : {byLight, byAuto}) {
-        Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{0.9, 0.2, -0.1}), sized(256u, 64u))},
-                          sized(48u, 24u), method, 0.4f);
-        const std::vector<float> one = f.shade().light;
-        f.materials = 2;
-        for (uint8_t& id : f.picture.ids) id *= 2;
-        EXPECT_EQ(f.shade().light, one) << int(method);
-    }
-}
-
 // If a light has no map, the result is as by `screen`, with a warning. The same holds for more than 24 maps,
 // counting each face of a cube.
 TEST(LightSpace, WithoutAllMapsTheScreenDoes) {
     const auto said = [](const Shown& lit) {
         return lit.warnings.find("not all light comes from shadow maps") != std::string::npos;
     };
-    Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{1, 0.2, 0.4}), 64)}, 40, byLight, 0.4f);
+    Frame f = frameOf({makeBall(Form::parallel, {1, 0.2, 0.4}, 64)}, 40, byLight, 0.4f);
     f.lamps[0].maps.clear();
     const Shown light = f.shade();
     f.material.scattering = PEL_SCATTERING_SCREEN;
@@ -589,7 +559,7 @@ TEST(LightSpace, WithoutAllMapsTheScreenDoes) {
     EXPECT_EQ(light.light, screen.light);
     EXPECT_TRUE(said(light)) << light.warnings;
     EXPECT_FALSE(said(screen));
-    const Vec3 toLight = normalized(Vec3{0.3, 0.2, 1});
+    const Vec3 toLight{0.3, 0.2, 1};
     std::vector<LitBall> lights;
     for (int cubes = 0; cubes <= 4; ++cubes) {
         EXPECT_EQ(said(frameOf(lights, 16, byLight).shade()), cubes == 0) << cubes;
@@ -603,7 +573,7 @@ TEST(LightSpace, WithoutAllMapsTheScreenDoes) {
 // if there is a map, and without a map the material is shaded by tables.
 TEST(LightSpace, PlainShadowImagesAreScatteredBy) {
     constexpr uint32_t side = 40;
-    Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{0.5, 0.2, 0.8}), 64)}, side, byAuto, 0.4f);
+    Frame f = frameOf({makeBall(Form::parallel, {0.5, 0.2, 0.8}, 64)}, side, byAuto, 0.4f);
     Frame exact = f;
     f.giveIrradiance = false;
     std::vector<float> shadow;
@@ -629,7 +599,7 @@ TEST(LightSpace, PlainShadowImagesAreScatteredBy) {
 // PEL_SLOT_INDIRECT is irradiance as that of the lights is, and no occlusion dims it.
 TEST(LightSpace, IndirectLightScattersAsThatOfLights) {
     constexpr uint32_t side = 40;
-    Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{0.5, 0.2, 0.8}), 64)}, side, byAuto, 0.4f);
+    Frame f = frameOf({makeBall(Form::parallel, {0.5, 0.2, 0.8}, 64)}, side, byAuto, 0.4f);
     Frame exact = f;
     f.giveIrradiance = false;
     std::vector<float>& indirect = f.images[PEL_SLOT_INDIRECT];

@@ -27,8 +27,7 @@ constexpr uint32_t texels = 8;  // along a side of the scattered texture
 
 // A ball of 2 mm under a light with its map, by a narrow skin.
 Frame frame(uint32_t side, uint32_t mapSide = 64) {
-    Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{1, 0.2, 0.3}), mapSide)}, side,
-                      PEL_SCATTERING_AUTO, 0.4f);
+    Frame f = frameOf({makeBall(Form::parallel, {1, 0.2, 0.3}, mapSide)}, side, PEL_SCATTERING_AUTO, 0.4f);
     f.options.targetError = 1e-4f;
     return f;
 }
@@ -149,22 +148,23 @@ TEST(ScatterBadInput, RadiiFromAMillionthToAMillionPixels) {
 
 TEST(ScatterBadInput, PicturesOfOnePixel) {
     const auto light = [](double x, double) { return Vec3{1, 0.5, x}; };
+    const std::tuple<uint32_t, uint32_t, uint32_t, float> pictures[] = {{1, 1, 1, 0.4f},  {1, 1, 16, 1e-6f},
+                                                                        {1, 1, 16, 1e6f}, {1, 9, 16, 1e6f},
+                                                                        {9, 1, 1, 0.4f},  {2, 2, 16, 1e-6f}};
     for (const Way& way : everyWay)
-        for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 9u}, {9u, 1u}, {2u, 2u}})
-            for (const auto& [mapSide, radius] : {std::pair{1u, 0.4f}, {16u, 1e-6f}, {16u, 1e6f}}) {
-                Frame f = frame(plane(width, height, 0.2, light), mapSide);
-                f.material.diffusionRadius = radius;
-                const Shown lit = shade(f, way);
-                const std::string where = std::string(way.name) + ", " + std::to_string(width) + " x " +
-                                          std::to_string(height) + ", map of " + std::to_string(mapSide);
-                expectLight(lit.light, 2, where);
-                EXPECT_EQ(lit.stats.pixelsInvalid, 0u) << where;
-                EXPECT_EQ(lit.stats.pixelsShaded, width * height) << where;
-                if (width * height == 1 && radius < 1 && way.gathers &&
-                    way.scattering != PEL_SCATTERING_LIGHT) {
-                    EXPECT_NEAR(lit.light[0], 1, 1e-5) << where;
-                }
+        for (const auto& [width, height, mapSide, radius] : pictures) {
+            Frame f = frame(plane(width, height, 0.2, light), mapSide);
+            f.material.diffusionRadius = radius;
+            const Shown lit = shade(f, way);
+            const std::string where = std::string(way.name) + ", " + std::to_string(width) + " x " +
+                                      std::to_string(height) + ", map of " + std::to_string(mapSide);
+            expectLight(lit.light, 2, where);
+            EXPECT_EQ(lit.stats.pixelsInvalid, 0u) << where;
+            EXPECT_EQ(lit.stats.pixelsShaded, width * height) << where;
+            if (width * height == 1 && radius < 1 && way.gathers && way.scattering != PEL_SCATTERING_LIGHT) {
+                EXPECT_NEAR(lit.light[0], 1, 1e-5) << where;
             }
+        }
 }
 
 TEST(ScatterBadInput, EveryPixelOfItsOwnId) {

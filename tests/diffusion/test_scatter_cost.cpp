@@ -61,8 +61,6 @@ TEST(ScatterCost, MuchOfAFrontLitHeadTakesNoTap) {
         const PelShaderStats stats = f.shade().stats;
         const double all = double(stats.pixelsScattered + stats.pixelsKept),
                      kept = double(stats.pixelsKept) / all;
-        std::printf("%.3f of %.0f pixels take no tap, %.1f taps a pixel\n", kept, all,
-                    double(stats.scatterTaps) / all);
         if (!testsAreSmall()) {
             EXPECT_GT(kept, tolerance::keptOfHead);
         }
@@ -96,7 +94,7 @@ TEST(ScatterCost, WhatIsNotCoveredCostsNothing) {
 // kernel of a method is launched.
 TEST(ScatterCost, WithoutLightNothingIsDone) {
     // With a shadow map: a ball that the light does not reach has no hidden lit surface either.
-    LitBall nothing = makeBall(Form::parallel, normalized(Vec3{0.3, 0.2, -1}), 64);
+    LitBall nothing = makeBall(Form::parallel, {0.3, 0.2, -1}, 64);
     std::ranges::fill(nothing.maps[0], 1.0f);
     const uint32_t side = sized(128u, 64u);
     for (Frame f : {stripes(side, side, PEL_SCATTERING_AUTO), stripes(side, side, PEL_SCATTERING_SCREEN),
@@ -142,9 +140,9 @@ TEST(ScatterCost, OneLaneSumsAsManyBlocksAsSeveral) {
 TEST(ScatterCost, AFrameAfterAnotherTakesFewCommands) {
     const Device oneLane = lanes::deviceOf(1);
     const uint32_t side = sized(128u, 64u);
-    Frame f = frameOf({makeBall(Form::parallel, normalized(Vec3{0.3, 0.2, 1}), 64),
-                       makeBall(Form::parallel, normalized(Vec3{0.9, 0.2, -0.3}), 64)},
-                      side, PEL_SCATTERING_AUTO);
+    Frame f =
+        frameOf({makeBall(Form::parallel, {0.3, 0.2, 1}, 64), makeBall(Form::parallel, {0.9, 0.2, -0.3}, 64)},
+                side, PEL_SCATTERING_AUTO);
     f.giveIrradiance = false;
     f.materials = 2;
     f.material.curvatureGain = 1;

@@ -97,7 +97,7 @@ TEST(ShadeHeld, FramesInBandsWithPasses) {
 // Tables, widths and transmission that the commit makes; scattering by every method that the screen has.
 TEST(ShadeHeld, FramesWithProfilesThatScatter) {
     using namespace lit_ball;
-    const LitBall ball = makeBall(Form::parallel, reference::normalized(Vec3{0.3, 0.2, 1}), 48);
+    const LitBall ball = makeBall(Form::parallel, {0.3, 0.2, 1}, 48);
     const Picture p = pictureOf(ball, 24);
     std::vector<float> normals = p.positions, curvature(p.pixels(), 0.5f);
     for (float& n : normals) n /= float(radius);

@@ -153,7 +153,6 @@ TEST(SkinMaps, EvenMapsAreAPlainMaterial) {
         std::copy_n(pellucid::skinInfo(skinOf(melanin, 0.01f)).albedo, 3, plain.material.albedo);
         const std::vector<float> light = maps.shade().light;
         const Difference d = difference(p, light, plain.shade().light);
-        std::printf("melanin %g: rms %.2e, most %.2e\n", double(melanin), d.rms, d.most);
         EXPECT_LT(d.most, within);
         maps.picture.ids.clear();  // all pixels are of material 1 then
         EXPECT_EQ(maps.shade().light, light);

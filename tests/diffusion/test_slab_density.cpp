@@ -4,7 +4,6 @@
 #include "shared/diffusion.h"
 
 TEST(SlabDensity, EqualsItsFormulaInEachChannel) {
-    const pellucid::Device device("");
     constexpr cl_uint count = 256;
     constexpr float widest = 0.3f, spread[] = {0.4f, 0.9f, 1.6f};
     std::vector<float> terms, squared, cosine;
@@ -27,8 +26,8 @@ __kernel void evaluate(__global const float* terms, __global const float* square
     storew(channel == 0 ? v.x : channel == 1 ? v.y : v.z, item, out);
 })";
     for (const int lanes : {1, 16}) {
-        const std::vector<float> made = runOwnKernel(device, source, lanes, 3 * count, terms, squared, cosine,
-                                                     count, widest, spread[0], spread[1], spread[2]);
+        const std::vector<float> made = runOwnKernel(device(), source, lanes, 3 * count, terms, squared,
+                                                     cosine, count, widest, spread[0], spread[1], spread[2]);
         for (size_t k = 0; k < made.size(); ++k) {
             const size_t c = k / count, i = k % count;
             const double cosines = std::max(double(cosine[i]), 0.05), depth = std::sqrt(squared[i]) * cosines;

@@ -164,7 +164,6 @@ TEST(TextureScatter, VariancesAddToTheProfile) {
     }
     const Difference d = difference(p, t.run(p.irradiance, Profile::skin()),
                                     reference::scatterOnScreen(p.exact(), *reference::skinProfile()));
-    std::printf("plane: rms %.1e\n", d.rms);
     EXPECT_LT(d.rms, tolerance::texturePlane);
     EXPECT_EQ(t.scatter.stats().gaussians, 6u);
 }
@@ -202,7 +201,6 @@ TEST(TextureScatter, ASphereIsNearItsSurfaceIntegral) {
     std::ranges::fill(all.ids, 1);
     const auto truth = integral.readAll<float>();
     const double rms = difference(all, scattered, truth).rms, without = difference(all, lambert, truth).rms;
-    std::printf("sphere: rms %.4f, Lambert %.4f\n", rms, without);
     EXPECT_LT(rms, tolerance::textureSphere);
     EXPECT_LT(rms, 0.35 * without);
 }
@@ -273,7 +271,6 @@ TEST(TextureScatter, OtherProfilesAreAFewGaussians) {
         for (float v : t.run(e, burley, params)) ASSERT_NEAR(v, 1, 1e-4);
         EXPECT_EQ(t.scatter.stats().gaussians, count);
         const double error = t.scatter.stats().profileError;
-        std::printf("burley by %u Gaussians: %.4f of the light\n", count, error);
         EXPECT_LT(error, before);
         EXPECT_NEAR(error, measured, 1e-4);
         before = error;

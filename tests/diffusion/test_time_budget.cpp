@@ -1,6 +1,7 @@
 // PelShaderOptions.timeBudget: the choices of auto by a record of the device, and damaged records.
 #include "diffusion/lit_scenes.h"
-#include "test.h"
+#include "io/io_files.h"
+#include "variable.h"
 
 using namespace lit_scenes;
 
@@ -20,14 +21,13 @@ constexpr Row rows[] = {{"none", PEL_SCATTERING_NONE, 0, 0, 1, 0.05},
                         {"light-half", PEL_SCATTERING_LIGHT, 0, 900, 3, 0.006, true},
                         {"light", PEL_SCATTERING_LIGHT, 0, 4000, 5, 0.004}};
 
-class TimeBudget : public ::testing::Test {
+class TimeBudget : public FolderTest {
   protected:
-    void SetUp() override { ::setenv("PELLUCID_TUNING", path_.c_str(), 1); }
-    void TearDown() override {
-        ::unsetenv("PELLUCID_TUNING");
-        std::remove(path_.c_str());
+    void SetUp() override {
+        FolderTest::SetUp();
+        tuning_.set(record().c_str());
     }
-    void write(const std::string& text) { std::ofstream(path_, std::ios::binary) << text; }
+    std::string record() const { return path("record.txt"); }
     void writeRecord(const std::string& device) {
         std::string text = "pellucid tuning 1\r\n\n# for a test\ndevice another, one\nauto 0 0 0 0\n";
         text += "device " + device + "\n";
@@ -37,7 +37,7 @@ class TimeBudget : public ::testing::Test {
                           r.error);
             text += line;
         }
-        write(text);
+        write("record.txt", text);
     }
     Shot shot(const LitScene& scene, PelScattering method, float target, float budget = 0,
               bool half = false) {
@@ -51,10 +51,8 @@ class TimeBudget : public ::testing::Test {
         request.size = 64, request.mapSize = 128, request.ambient = ambient;
         return Stage(device(), ball(10, 60), 1).look(request, profile_);
     }
-    const std::string path_ = (std::filesystem::temp_directory_path() /
-                               ("pellucid-tuning-" + std::to_string(::getpid()) + ".txt"))
-                                  .string(),
-                      device_ = std::string(device().info().name) + ", " + device().info().platform;
+    const Variable tuning_{"PELLUCID_TUNING"};
+    const std::string device_ = std::string(device().info().name) + ", " + device().info().platform;
     const Profile profile_ = Profile::skin();
 };
 
@@ -133,9 +131,9 @@ TEST_F(TimeBudget, GuessesWithoutARecord) {
         EXPECT_EQ(of.takenHalfRate, uint64_t(budget > 1));
         EXPECT_LT(of.expectedError, last);
         last = of.expectedError;
-        ::unsetenv("PELLUCID_TUNING");
+        tuning_.set(nullptr);
         EXPECT_EQ(shot(lit, PEL_SCATTERING_AUTO, 0.002f, budget).stats.expectedError, last);
-        SetUp();
+        tuning_.set(record().c_str());
     }
 }
 
@@ -164,8 +162,8 @@ TEST_F(TimeBudget, RefusesDamagedRecordsByName) {
                 "more than 64 settings"}};
     const LitScene lit = scene();
     for (const auto& [text, said] : bad) {
-        write(text);
-        expectRefused({"PELLUCID_TUNING: ", path_.c_str(), said},
+        const std::string file = write("record.txt", text);
+        expectRefused({"PELLUCID_TUNING: ", file.c_str(), said},
                       [&] { shot(lit, PEL_SCATTERING_AUTO, 0.002f, 1); });
         shot(lit, PEL_SCATTERING_AUTO, 0.002f);  // without a budget nobody reads it
     }

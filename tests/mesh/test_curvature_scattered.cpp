@@ -17,10 +17,10 @@ struct Errors {
 
 // Where a surface is flat, parts of a tenth of its RMS curvedness. Away from borders: the outermost triangles
 // of scattered points are slivers along many edges of others.
-Errors errorsOf(const AnalyticMesh& mesh, uint32_t passes, const FlatMesh* flat = nullptr) {
+Errors errorsOf(const AnalyticMesh& mesh, const FlatMesh* flat = nullptr) {
     const std::vector<float> values =
-        valuesOf(pairOf(mesh.mesh).mesh, paramsOf(PEL_CURVATURE_QUADRIC, passes, PEL_QUANTITY_MEAN));
-    std::vector<bool> border = nearBorder(mesh.mesh, 4 + int(passes));
+        valuesOf(pairOf(mesh.mesh).mesh, paramsOf(PEL_CURVATURE_QUADRIC, 0, PEL_QUANTITY_MEAN));
+    std::vector<bool> border = nearBorder(mesh.mesh, 4);
     for (size_t v = 0; flat && v < border.size(); ++v) {
         const Vec2 p = flat->points[v];
         if (std::min({p.x, p.y, 1 - p.x, 1 - p.y}) < 0.03) border[v] = true;
@@ -50,44 +50,37 @@ const std::pair<const char*, Surface> surfaces[] = {{"ellipsoid", ellipsoidCap(1
                                                     {"monkey saddle", monkeySaddle(1)},
                                                     {"bump", gaussianBump(0.5, 0.4, 2)}};
 
-std::vector<std::pair<const char*, FlatMesh>> denseMeshes() {
-    return {{"Delaunay", delaunay(uniformPoints(20000, 1))},
-            {"poked twice", poked(flatGrid(140, 140), 0.2, 2, 3)},
-            {"red and green", redGreen(flatGrid(90, 90), 0.3, 1)}};
-}
-
-void expectAccurate(const char* name, const FlatMesh& flat, bool alsoMade = true) {
-    for (const auto& [surface, shape] : surfaces)
-        for (bool made : {false, true}) {
-            if (made && !alsoMade) continue;
-            AnalyticMesh mesh = lifted(flat, shape);
-            if (made) mesh.mesh.normals = estimatedNormals(mesh.mesh);
-            const Errors errors = errorsOf(mesh, 0, &flat);
-            EXPECT_LE(errors.rms, tolerance::scatteredRms) << name << ", " << surface << ", made " << made;
-            EXPECT_LE(errors.worst, tolerance::scatteredWorst)
-                << name << ", " << surface << ", made " << made;
-        }
-}
-
 }  // namespace
 
-TEST(CurvatureScattered, PointsAndTrianglesSplitAtTheirCentroids) {
-    for (const auto& [name, flat] : denseMeshes()) expectAccurate(name, flat);
-    // Each split triangle has a vertex of valence 3 inside.
-    expectAccurate("poked, coarse", poked(flatGrid(40, 40), 0.3, 1, 21));
-    // Normals averaged over slivers within slivers are off by 8 degrees: only exact ones.
-    expectAccurate("poked four times", poked(flatGrid(70, 70), 0.7, 4, 3), false);
-    // Without the points of the three-ring the worst of these are 13 to 98 % off.
-    for (uint32_t seed : {23u, 25u, 28u})
-        expectAccurate("random, poked three times", poked(delaunay(uniformPoints(2500, seed)), 0.5, 3, seed),
-                       false);
-}
-
-TEST(CurvatureScattered, RedGreenRefinement) {
-    // Some vertices halve an edge of a sliver. They have four neighbours and few points, which amplify the
-    // rounding of float positions: those of the three-ring belong to them.
-    for (uint32_t seed : {4u, 6u, 7u, 9u})
-        expectAccurate("red and green, random", redGreen(delaunay(uniformPoints(5000, seed)), 0.3, seed));
+TEST(CurvatureScattered, AnyNumberOfNeighboursAtAnyDistance) {
+    const struct {
+        const char* name;
+        FlatMesh flat;
+        bool alsoMade = true;  // by normals that are made, too
+    } meshes[] = {
+        {"Delaunay", delaunay(uniformPoints(20000, 1))},
+        {"poked twice", poked(flatGrid(140, 140), 0.2, 2, 3)},
+        {"red and green", redGreen(flatGrid(90, 90), 0.3, 1)},
+        // Each split triangle has a vertex of valence 3 inside.
+        {"poked, coarse", poked(flatGrid(40, 40), 0.3, 1, 21)},
+        // Normals averaged over slivers within slivers are off by 8 degrees: only exact ones.
+        {"poked four times", poked(flatGrid(70, 70), 0.7, 4, 3), false},
+        // Without the points of the three-ring the worst of these are 13 % off and more: some vertices have
+        // three neighbours, or halve an edge of a sliver.
+        {"random, poked three times", poked(delaunay(uniformPoints(2500, 23)), 0.5, 3, 23), false},
+        {"red and green, random", redGreen(delaunay(uniformPoints(5000, 4)), 0.3, 4)},
+    };
+    for (const auto& [name, flat, alsoMade] : meshes)
+        for (const auto& [surface, shape] : surfaces)
+            for (int made = 0; made <= int(alsoMade); ++made) {
+                AnalyticMesh mesh = lifted(flat, shape);
+                if (made) mesh.mesh.normals = estimatedNormals(mesh.mesh);
+                const Errors errors = errorsOf(mesh, &flat);
+                EXPECT_LE(errors.rms, tolerance::scatteredRms)
+                    << name << ", " << surface << ", made " << made;
+                EXPECT_LE(errors.worst, tolerance::scatteredWorst)
+                    << name << ", " << surface << ", made " << made;
+            }
 }
 
 TEST(CurvatureScattered, FitsOfLowerDegreeAreCounted) {
@@ -115,17 +108,6 @@ TEST(CurvatureScattered, FitsOfLowerDegreeAreCounted) {
     EXPECT_LT(lowOfGrid(24), 50u);
 }
 
-TEST(CurvatureScattered, TheDefaultIsNearTheTruth) {
-    // The error of the default, two uniform passes, against the surface itself. On random triangles the mean
-    // position of the neighbours is not that of the vertex, so that the passes add an error of their own.
-    for (const auto& [name, flat] : denseMeshes())
-        for (const auto& [surface, shape] : surfaces) {
-            const Errors errors = errorsOf(lifted(flat, shape), 2, &flat);
-            EXPECT_LE(errors.rms, tolerance::scatteredPassesRms) << name << ", " << surface;
-            EXPECT_LE(errors.worst, tolerance::scatteredPassesWorst) << name << ", " << surface;
-        }
-}
-
 TEST(CurvatureScattered, SlenderCellsOfATorus) {
     // A strip of a torus in cells 1 : 25 and 1 : 125, long round the tube. Positions are known to 2.4e-7
     // there, which counts over the square of the shorter edge.
@@ -133,7 +115,7 @@ TEST(CurvatureScattered, SlenderCellsOfATorus) {
         Surface strip = torusSurface(3, 1);
         strip.uEnd *= 60.0 / columns;
         strip.wrapsU = false;
-        const Errors errors = errorsOf(tessellate(strip, 60, 64, Tessellation::regular), 0);
+        const Errors errors = errorsOf(tessellate(strip, 60, 64, Tessellation::regular));
         EXPECT_LE(errors.worst, tolerance::slenderTorus * std::pow(columns / 4800.0, 2)) << columns;
     }
 }
