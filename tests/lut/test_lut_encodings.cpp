@@ -61,7 +61,7 @@ void expectFaceWorks(const Lut& lut, const char* exactFile, const char* theirFil
 
 TEST(LutEncodings, CurvatureRoundsTruth) {
     const auto [desc, spec] = described<reference::CurvatureLutSpec>(pelCurvatureLutDescFaceWorks());
-    const Lut lut(Device(""), desc);
+    const Lut lut(device(), desc);
     const auto profile = reference::skinProfile();
     const auto u = [spec = spec](int x) { return spec.u(x); };
     uint64_t clipped = 0, all = 0;
@@ -82,7 +82,7 @@ TEST(LutEncodings, CurvatureRoundsTruth) {
 
 TEST(LutEncodings, ShadowRoundsTruth) {
     const auto [desc, spec] = described<reference::ShadowLutSpec>(pelShadowLutDescFaceWorks());
-    const Lut lut(Device(""), desc);
+    const Lut lut(device(), desc);
     const auto profile = reference::skinProfile();
     expectRounded(lut, desc.height, [&, spec = spec](int x, int y) {
         return reference::faceworksShadowSteps(reference::shadowTexel(spec, *profile, x, y), x, 256);
@@ -91,12 +91,12 @@ TEST(LutEncodings, ShadowRoundsTruth) {
 }
 
 TEST(LutEncodings, FaceWorksCurvatureTable) {
-    expectFaceWorks(Lut(Device(""), pelCurvatureLutDescFaceWorks()), "truth_lut_curv_A_arc10_f32.npy",
+    expectFaceWorks(Lut(device(), pelCurvatureLutDescFaceWorks()), "truth_lut_curv_A_arc10_f32.npy",
                     "fw_lut_curv_A_u8.npy", false);
 }
 
 TEST(LutEncodings, FaceWorksShadowTable) {
-    expectFaceWorks(Lut(Device(""), pelShadowLutDescFaceWorks()), "truth_lut_shadow_A_withfade_f32.npy",
+    expectFaceWorks(Lut(device(), pelShadowLutDescFaceWorks()), "truth_lut_shadow_A_withfade_f32.npy",
                     "fw_lut_shadow_A_u8.npy", true);
 }
 
@@ -116,5 +116,5 @@ TEST(LutEncodings, HalvesOfAnyTexel) {
     texels.resize(3 * info.specular.width * info.specular.height);
     std::vector<uint16_t> halves;
     for (float texel : texels) halves.push_back(toHalf(std::clamp(texel, -65504.0f, 65504.0f)));
-    EXPECT_EQ(Lut(Device(""), info, texels).read<uint16_t>(PEL_LUT_HALF), halves);
+    EXPECT_EQ(Lut(device(), info, texels).read<uint16_t>(PEL_LUT_HALF), halves);
 }

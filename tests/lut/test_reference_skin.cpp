@@ -206,7 +206,6 @@ TEST(Skin, HasTheColoursOfMeasuredSkin) {
     EXPECT_LT(differencesOf(measured_skin::groups).back(), tolerance::skinMeasured);
     const std::vector<float> people = differencesOf(measured_skin::people);
     ASSERT_EQ(people.size(), 100u);
-    std::printf("median %.2f, 90 %% %.2f, most %.2f\n", people[50], people[90], people[99]);
     EXPECT_LT(people[50], 0.5 * tolerance::skinMeasured);
     EXPECT_LT(people[90], tolerance::skinMeasured);
     EXPECT_LT(people[99], 1.3 * tolerance::skinMeasured);

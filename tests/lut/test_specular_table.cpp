@@ -12,9 +12,8 @@ constexpr size_t count = 4096;
 constexpr uint32_t width = 300, height = 200;
 
 // n, l, v, m per evaluation: ten floats each.
-std::vector<float> evaluate(const pellucid::Device& device, const std::vector<float>& table,
-                            const std::vector<float>& inputs, int lanes) {
-    return runOwnKernel(device, R"(#include "lib/shading/specular_table.clh"
+std::vector<float> evaluate(const std::vector<float>& table, const std::vector<float>& inputs, int lanes) {
+    return runOwnKernel(device(), R"(#include "lib/shading/specular_table.clh"
 #define V(i) vec3(loadw(at, in + (i) * n), loadw(at, in + (i + 1) * n), loadw(at, in + (i + 2) * n))
 __kernel void evaluate(__global const float* in, __global const float* table, uint width, uint height,
                        __global float* out) {
@@ -28,10 +27,9 @@ __kernel void evaluate(__global const float* in, __global const float* table, ui
 }
 
 TEST(SpecularTable, ReadsWhatTheTableHolds) {
-    const pellucid::Device device("");
     PelSpecularLutDesc desc = pelSpecularLutDescDefaults();
     desc.width = width, desc.height = height;
-    const auto rgb = pellucid::Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+    const auto rgb = pellucid::Lut(device(), desc).read<float>(PEL_LUT_FLOAT);
     std::vector<float> table;
     reference::Table truth{int(width), int(height), {}};
     for (size_t i = 0; i < rgb.size(); i += 3) {
@@ -58,7 +56,7 @@ TEST(SpecularTable, ReadsWhatTheTableHolds) {
     // must not read elsewhere, nor disturb others
     inputs[count + 10] = std::numeric_limits<float>::quiet_NaN();
     for (int lanes : {1, 8, 16}) {
-        const auto result = evaluate(device, table, inputs, lanes);
+        const auto result = evaluate(table, inputs, lanes);
         size_t lit = 0;
         for (size_t i = 0; i < count; ++i) {
             const Vec3 n = vec(i, 0), l = vec(i, 3), v = vec(i, 6), h = l + v;

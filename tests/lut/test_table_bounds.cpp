@@ -33,11 +33,11 @@ struct Field {
 
 // Returns false for a description that is refused.
 template <class Desc>
-bool finishes(const Device& device, const Desc& desc, const std::string& what) {
+bool finishes(const Desc& desc, const std::string& what) {
     const std::clock_t start = std::clock();
     bool made = false;
     try {
-        const Lut lut(device, desc);
+        const Lut lut(device(), desc);
         made = true;
     } catch (const Error& e) {
         EXPECT_TRUE(e.code() == PEL_ERROR_INVALID_ARGUMENT || e.code() == PEL_ERROR_OUT_OF_MEMORY)
@@ -57,25 +57,24 @@ void setExtents(Desc& desc, const Extents& e) {
 template <class Desc>
 void expectBounded(const Desc& usual, const std::vector<Field<Desc>>& fields,
                    const std::vector<Extents>& extents) {
-    const Device device("");
     size_t made = 0;
-    for (const Field<Desc>& field : fields)
-        for (const float end : field.ends) {
-            const std::string what = std::string(field.name) + " " + std::to_string(end);
+    for (size_t i = 0; i < fields.size(); ++i)
+        for (const float end : fields[i].ends) {
+            const std::string what = std::string(fields[i].name) + " " + std::to_string(end);
             for (const Extents& e : extents) {
                 Desc desc = usual;
                 setExtents(desc, e);
-                field.set(desc, end);
-                made += finishes(device, desc,
-                                 what + " in " + std::to_string(e.width) + "x" + std::to_string(e.height));
+                fields[i].set(desc, end);
+                made +=
+                    finishes(desc, what + " in " + std::to_string(e.width) + "x" + std::to_string(e.height));
             }
-            for (const Field<Desc>& other : fields)
-                for (const float otherEnd : other.ends) {
+            for (size_t j = i + 1; j < fields.size(); ++j)
+                for (const float otherEnd : fields[j].ends) {
                     Desc desc = usual;
                     setExtents(desc, extents[0]);
-                    field.set(desc, end);
-                    other.set(desc, otherEnd);
-                    made += finishes(device, desc, what + ", " + other.name + " " + std::to_string(otherEnd));
+                    fields[i].set(desc, end);
+                    fields[j].set(desc, otherEnd);
+                    made += finishes(desc, what + ", " + fields[j].name + " " + std::to_string(otherEnd));
                 }
         }
     EXPECT_GT(made, fields.size());
@@ -119,7 +118,6 @@ TEST(TableBounds, OfCausticTables) {
 }
 
 TEST(TableBounds, OfTheLargestProfiles) {
-    const Device device("");
     const uint32_t longest = sized(16384u, 64u);
     for (const auto& [name, profile] : largeProfiles()) {
         for (int form = PEL_FORM_ARC; form <= PEL_FORM_PENNER_RING; ++form)
@@ -128,7 +126,7 @@ TEST(TableBounds, OfTheLargestProfiles) {
                 setExtents(desc, e);
                 desc.form = PelCurvatureForm(form);
                 desc.profile = profile.get();
-                EXPECT_TRUE(finishes(device, desc, name + std::string(", form ") + std::to_string(form)));
+                EXPECT_TRUE(finishes(desc, name + std::string(", form ") + std::to_string(form)));
             }
         for (const float sharpening : {1.0f, 10.0f, 1e6f})
             for (const Extents& e :
@@ -137,36 +135,35 @@ TEST(TableBounds, OfTheLargestProfiles) {
                 setExtents(desc, e);
                 desc.sharpening = sharpening;
                 desc.profile = profile.get();
-                EXPECT_TRUE(finishes(device, desc, name + std::string(", shadow")));
+                EXPECT_TRUE(finishes(desc, name + std::string(", shadow")));
             }
         for (const float unit : {1.0f, 1e-4f, 1e4f}) {
             PelEyeLutDesc desc = pelEyeLutDescDefaults();
             desc.profile = profile.get();
             desc.millimetresPerUnit = unit;
-            EXPECT_TRUE(finishes(device, desc, name + std::string(", caustic")));
+            EXPECT_TRUE(finishes(desc, name + std::string(", caustic")));
         }
     }
 }
 
 TEST(TableBounds, RefusalsNameTheField) {
-    const Device device("");
     PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
     specular.width = 1 << 14, specular.height = 1 << 13;
-    EXPECT_FALSE(finishes(device, specular, "2^27 texels"));
+    EXPECT_FALSE(finishes(specular, "2^27 texels"));
     EXPECT_NE(std::string(pelGetErrorMessage()).find("PelSpecularLutDesc.width"), std::string::npos);
     // An iris far smaller than the limbus, which takes many cells.
     PelEyeLutDesc desc = pelEyeLutDescDefaults();
     for (const float radius : {0.05f, 1e-6f}) {
         desc.irisRadius = radius;
-        expectRefused("PelEyeLutDesc.irisRadius", [&] { Lut(device, desc); });
+        expectRefused("PelEyeLutDesc.irisRadius", [&] { Lut(device(), desc); });
     }
     // Each texel takes light of nearly each other one of its slice.
     const Profile skin = Profile::skin();
     desc = pelEyeLutDescDefaults();
     desc.profile = skin.get();
     desc.width = desc.height = 128, desc.depth = 64;
-    expectRefused("products", [&] { Lut(device, desc); });
-    Shader shader(device);
+    expectRefused("products", [&] { Lut(device(), desc); });
+    Shader shader(device());
     shader.setMaterial(1, pelMaterialDefaults());
     PelEye eye = pelEyeDefaults();
     eye.irisRadius = 0.05f, eye.pupilRadius = 0.01f;

@@ -14,7 +14,7 @@ constexpr uint64_t tableBytes = 16ull * (side + 1) * (side + 1);
 
 struct Kind {
     const char* name;
-    std::function<Lut(const Device&, const PelSubmit*)> make;
+    std::function<Lut(const PelSubmit*)> make;
     uint64_t buffers, launches, maxBytes;  // of device memory
 };
 
@@ -24,7 +24,7 @@ std::vector<Kind> kinds() {
         desc.width = desc.height = side;
         desc.profile = profile.get();
         if constexpr (std::is_same_v<decltype(desc), PelCurvatureLutDesc>) desc.form = form;
-        return [=](const Device& device, const PelSubmit* submit) { return Lut(device, desc, submit); };
+        return [=](const PelSubmit* submit) { return Lut(device(), desc, submit); };
     };
     const PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
     const PelShadowLutDesc shadow = pelShadowLutDescDefaults();
@@ -36,13 +36,11 @@ std::vector<Kind> kinds() {
     return {{"arc", of(curvature, skin), 3, 2, tableBytes * 3 / 2},
             {"sphere", of(curvature, skin, PEL_FORM_SPHERE), 3, 2, tableBytes * 3 / 2},
             {"shadow", of(shadow, skin), 2, 1, tableBytes + 4096},
-            {"specular", [=](const Device& d, const PelSubmit* s) { return Lut(d, specular, s); }, 1, 1,
-             tableBytes},
+            {"specular", [=](const PelSubmit* s) { return Lut(device(), specular, s); }, 1, 1, tableBytes},
             {"tabulated arc", of(curvature, table), 6, 2, tableBytes * 2},
             {"tabulated sphere", of(curvature, table, PEL_FORM_SPHERE), 6, 2, tableBytes * 2},
             {"tabulated shadow", of(shadow, table), 5, 2, tableBytes * 9 / 4},
-            {"caustic", [=](const Device& d, const PelSubmit* s) { return Lut(d, eye, s); }, 2, 2,
-             tableBytes * 3 / 2}};
+            {"caustic", [=](const PelSubmit* s) { return Lut(device(), eye, s); }, 2, 2, tableBytes * 3 / 2}};
 }
 
 // Page faults of this process, in which the system hands out pages of zeros.
@@ -55,30 +53,29 @@ std::vector<Kind> kinds() {
 }  // namespace
 
 TEST(TableCost, Counters) {
-    const Device device("");
     {
         const auto before = spy::counts().buffersMade;
-        const Buffer probe(device, 16);
+        const Buffer probe(device(), 16);
         if (spy::counts().buffersMade == before)
             GTEST_SKIP() << "another library stands before the spy (Oclgrind)";
     }
     for (const Kind& kind : kinds()) {
         SCOPED_TRACE(kind.name);
-        kind.make(device, nullptr);  // builds the program
-        const PelDeviceStats stats = device.stats();
+        kind.make(nullptr);  // builds the program
+        const PelDeviceStats stats = device().stats();
         const spy::Counts before = spy::counts();
-        kind.make(device, nullptr);
+        kind.make(nullptr);
         const spy::Counts blocking = spy::counts();
         EXPECT_EQ(blocking.buffersMade - before.buffersMade, kind.buffers);
         EXPECT_EQ(blocking.launches - before.launches, kind.launches);
         EXPECT_EQ(blocking.waits - before.waits, 1u);
-        if (device.info().sharedMemory) {
+        if (device().info().sharedMemory) {
             EXPECT_EQ(blocking.transfers, before.transfers);
         }
         EXPECT_EQ(blocking.programs, before.programs);
-        const bool cleared = device.info().type != PEL_DEVICE_CPU && kind.name == std::string("caustic");
+        const bool cleared = device().info().type != PEL_DEVICE_CPU && kind.name == std::string("caustic");
         EXPECT_EQ(blocking.bytesFilled - before.bytesFilled, cleared ? 4ull * 128 * 64 * 32 : 0);
-        const PelDeviceStats after = device.stats();
+        const PelDeviceStats after = device().stats();
         EXPECT_LE(after.bytesAllocated - stats.bytesAllocated, kind.maxBytes);
         EXPECT_LE(after.bytesToDevice - stats.bytesToDevice, 1200u << 10);
         EXPECT_EQ(after.bytesToHost, stats.bytesToHost);
@@ -86,7 +83,7 @@ TEST(TableCost, Counters) {
         PelEvent made = nullptr;
         const PelSubmit submit{nullptr, 0, &made};
         const uint64_t waits = spy::counts().waits;
-        const Lut lut = kind.make(device, &submit);
+        const Lut lut = kind.make(&submit);
         EXPECT_EQ(spy::counts().waits, waits) << "a call that returns an event does not wait";
         Event(made).wait();
     }
@@ -94,14 +91,13 @@ TEST(TableCost, Counters) {
 
 // A stack takes the launches of one table as long as its texels fit a launch.
 TEST(TableCost, AStackIsMadeTogether) {
-    const Device device("");
     PelLutInfo info = pelLutInfoDefaults();
     info.curvature.width = info.curvature.height = info.shadow.width = info.shadow.height = 16;
     for (const auto& [kind, launches] : {std::pair(PEL_LUT_CURVATURE, 3u), {PEL_LUT_SHADOW, 2}}) {
         info.kind = kind;
         std::vector<uint16_t> texels(64 * 16 * 16 * 3);
         const spy::Counts before = spy::counts();
-        Lut::readStack(device, std::vector(64, info), PEL_LUT_HALF, texels.data(), 2 * texels.size());
+        Lut::readStack(device(), std::vector(64, info), PEL_LUT_HALF, texels.data(), 2 * texels.size());
         if (spy::counts().buffersMade == before.buffersMade)
             GTEST_SKIP() << "another library stands before the spy (Oclgrind)";
         EXPECT_EQ(spy::counts().launches - before.launches, launches);
@@ -115,8 +111,7 @@ TEST(TableCost, PagesAreUsedAgain) {
 #elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     GTEST_SKIP() << "the sanitizer's allocator keeps what is freed";
 #endif
-    const Device device("");
-    if (device.info().type != PEL_DEVICE_CPU || !device.info().sharedMemory || testsAreSmall())
+    if (device().info().type != PEL_DEVICE_CPU || !device().info().sharedMemory || testsAreSmall())
         GTEST_SKIP() << "the library allocates tables itself on CPUs only";
     for (const Kind& kind : kinds()) {
         constexpr int tables = 8;
@@ -124,7 +119,7 @@ TEST(TableCost, PagesAreUsedAgain) {
         int64_t least = INT64_MAX;
         for (int round = 0; round < 4; ++round) {
             const int64_t before = pageFaults();
-            for (int i = 0; i < tables; ++i) kind.make(device, nullptr);
+            for (int i = 0; i < tables; ++i) kind.make(nullptr);
             least = std::min(least, pageFaults() - before);
         }
         EXPECT_LT(least, int64_t(tables * kind.maxBytes / 4096 / 4)) << kind.name;
