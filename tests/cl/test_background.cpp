@@ -3,9 +3,8 @@
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include "test.h"
-
 #include "shading/pass_scene.h"
+#include "variable.h"
 
 using namespace shade_test;
 using pellucid::Device;
@@ -189,12 +188,8 @@ TEST(Background, TheCallersImagesMayGoWhileProgramsAreBuilt) {
 // In these, PoCL has compiled the programs before, but this library kept none.
 class BackgroundAgain : public testing::Test {
   protected:
-    void set(const char* name, const std::string& value) { ::setenv(name, value.c_str(), 1); }
-    void SetUp() override { set("PELLUCID_CACHE", "off"); }
-    void TearDown() override {
-        for (const char* name : {"PELLUCID_CACHE", "PELLUCID_CACHE_DIR", "PELLUCID_BUILD_HELPER"})
-            ::unsetenv(name);
-    }
+    const Variable cache_{"PELLUCID_CACHE", "off"}, folder_{"PELLUCID_CACHE_DIR"},
+        helper_{"PELLUCID_BUILD_HELPER"};
     void expectTakeover() const {
         const Device own("");
         const Frame f = tableFrame();
@@ -208,14 +203,14 @@ class BackgroundAgain : public testing::Test {
 TEST_F(BackgroundAgain, WithoutHelpersThisProcessBuilds) {
     for (const char* program : {"off", "/no/such/program", "/bin/false"}) {
         SCOPED_TRACE(program);
-        set("PELLUCID_BUILD_HELPER", program);
+        helper_.set(program);
         expectTakeover();
     }
 }
 
 TEST_F(BackgroundAgain, AFolderThatCannotBeWrittenIsNoError) {
-    ::unsetenv("PELLUCID_CACHE");
-    set("PELLUCID_CACHE_DIR", "/proc/no-folder");
+    cache_.set(nullptr);
+    folder_.set("/proc/no-folder");
     expectTakeover();
 }
 

@@ -4,10 +4,10 @@
 #include <sys/file.h>
 #include <sys/mount.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 
 #include "cl/machine.h"
 #include "cl/pocl_cache.h"
+#include "core/in_fork.h"
 #include "io/io_files.h"
 #include "system/process.h"
 #include "variable.h"
@@ -19,35 +19,28 @@ namespace {
 
 class PoclCache : public FolderTest {
   protected:
-    // Exit status of a process that is the first to use OpenCL: the result of `work`, or 1000 plus a signal.
-    static int inFork(const std::function<int()>& work) {
-        std::fflush(nullptr);
-        const pid_t child = ::fork();
-        if (child == 0) std::exit(work());
-        int status = 0;
-        ::waitpid(child, &status, 0);
-        return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
-    }
-    // 0, or the error of a small table that is made there after `set` was called.
+    // Of a process that is the first to use OpenCL: 0, or the error of a small table that is made there after
+    // `set` was called.
     int table(const std::function<void()>& set) {
-        return inFork([&]() -> int {
-            ::unsetenv("POCL_CACHE_DIR");
-            ::unsetenv("XDG_CACHE_HOME");
-            ::setenv("HOME", path("home").c_str(), 1);
-            set();
-            try {
-                const pellucid::Device device("");
-                PelSpecularLutDesc desc = pelSpecularLutDescDefaults();
-                desc.width = desc.height = 4;
-                pellucid::Lut(device, desc).read<float>(PEL_LUT_FLOAT);
-                if (std::getenv("POCL_CACHE_DIR") && fs::path(std::getenv("POCL_CACHE_DIR")) != path("own"))
-                    throw pellucid::Error(PEL_ERROR_UNKNOWN, "the environment was left changed");
-            } catch (const pellucid::Error& e) {
-                std::ofstream(path("message")) << e.what();
-                return e.code();
-            }
-            return 0;
-        });
+        return inFork([&]() -> int { std::exit(tableHere(set)); });
+    }
+    int tableHere(const std::function<void()>& set) {
+        ::unsetenv("POCL_CACHE_DIR");
+        ::unsetenv("XDG_CACHE_HOME");
+        ::setenv("HOME", path("home").c_str(), 1);
+        set();
+        try {
+            const pellucid::Device device("");
+            PelSpecularLutDesc desc = pelSpecularLutDescDefaults();
+            desc.width = desc.height = 4;
+            pellucid::Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+            if (std::getenv("POCL_CACHE_DIR") && fs::path(std::getenv("POCL_CACHE_DIR")) != path("own"))
+                throw pellucid::Error(PEL_ERROR_UNKNOWN, "the environment was left changed");
+        } catch (const pellucid::Error& e) {
+            std::ofstream(path("message")) << e.what();
+            return e.code();
+        }
+        return 0;
     }
     std::vector<fs::path> kernels(const fs::path& below, const std::string& extension) const {
         std::vector<fs::path> found;

@@ -23,15 +23,11 @@ class ProgramKey : public FolderTest {
     void SetUp() override {
         FolderTest::SetUp();
         std::filesystem::permissions(folder_, std::filesystem::perms::owner_all);
-        ::setenv("PELLUCID_CACHE", "on", 1);
-        ::setenv("PELLUCID_CACHE_DIR", path("cache").c_str(), 1);
+        place_.set(path("cache").c_str());
         first = table();
         if (first.stored == 0) GTEST_SKIP() << "this driver gives no binaries";
     }
-    void TearDown() override {
-        for (const char* name : {"PELLUCID_CACHE", "PELLUCID_CACHE_DIR"}) ::unsetenv(name);
-        FolderTest::TearDown();
-    }
+    const Variable cache_{"PELLUCID_CACHE", "on"}, place_{"PELLUCID_CACHE_DIR"};
 };
 
 TEST_F(ProgramKey, HasTheDriversSettings) {

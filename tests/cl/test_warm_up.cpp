@@ -16,14 +16,6 @@ uint64_t buildsSince(uint64_t before) {
     return spy::counts().builds - before;
 }
 
-PelWarmUp workOf(const std::vector<PelShader>& shaders, uint32_t groups = 0) {
-    PelWarmUp work = pelWarmUpDefaults();
-    work.groups = groups;
-    work.shaders = shaders.data();
-    work.numShaders = uint32_t(shaders.size());
-    return work;
-}
-
 struct Scene {
     Frame frame;
     Shader shader;
@@ -64,12 +56,9 @@ TEST(WarmUp, ACommitAndAnExecutionFindEverythingBuilt) {
     // Another variant for some tiles.
     for (Scene* scene : {&small, &large}) scene->shader.setMaterial(2, scene->frame.materials.at(2));
     Telling telling;
-    pellucid::check(pelDeviceSetProgress(own.get(), Telling::tell, &telling));
+    own.setProgress(Telling::tell, &telling);
     uint64_t before = buildsSince(0);
-    const std::vector<PelShader> shaders{small.shader.get()};
-    const PelWarmUp work = workOf(shaders);
-    uint32_t built = 0;
-    pellucid::check(pelWarmUpPrograms(own.get(), &work, &built));
+    const uint32_t built = pellucid::warmUpPrograms(own, 0, {small.shader});
     EXPECT_EQ(built, 5u) << "two variants, classification, blur, wide shadow";
     EXPECT_EQ(built, buildsSince(before));
     ASSERT_GE(telling.fractions.size(), 2u);
@@ -79,7 +68,7 @@ TEST(WarmUp, ACommitAndAnExecutionFindEverythingBuilt) {
     for (float v : small.target.readAll<float>()) ASSERT_EQ(v, -3) << "nothing is shaded";
     EXPECT_THROW(small.shader.execute(), pellucid::Error) << "it is no commit";
 
-    pellucid::check(pelDeviceSetProgress(own.get(), nullptr, nullptr));
+    own.setProgress(nullptr, nullptr);
     before = buildsSince(0);
     large.shader.commit().execute();
     small.shader.commit().execute();
@@ -87,8 +76,7 @@ TEST(WarmUp, ACommitAndAnExecutionFindEverythingBuilt) {
     EXPECT_EQ(large.shader.stats().programsBuilt, 0u);
     const auto shaded = large.target.readAll<float>();
     EXPECT_GT(*std::max_element(shaded.begin(), shaded.end()), 0.01f);
-    pellucid::check(pelWarmUpPrograms(own.get(), &work, &built));
-    EXPECT_EQ(built, 0u) << "all is there";
+    EXPECT_EQ(pellucid::warmUpPrograms(own, 0, {small.shader}), 0u) << "all is there";
 }
 
 // Whose table is not there yet.
@@ -97,11 +85,7 @@ TEST(WarmUp, AnEyeFindsEverythingBuilt) {
     const Tables tables = makeTables(own, 32, 32);
     Scene scene(own, tables, 40, 24);
     scene.shader.setEye(2, pelEyeDefaults());
-    const std::vector<PelShader> shaders{scene.shader.get()};
-    const PelWarmUp work = workOf(shaders);
-    uint32_t built = 0;
-    pellucid::check(pelWarmUpPrograms(own.get(), &work, &built));
-    EXPECT_GT(built, 4u) << "more than without an eye";
+    EXPECT_GT(pellucid::warmUpPrograms(own, 0, {scene.shader}), 4u) << "more than without an eye";
     const uint64_t before = buildsSince(0);
     scene.shader.commit().execute();
     EXPECT_EQ(buildsSince(before), 0u);
@@ -110,12 +94,12 @@ TEST(WarmUp, AnEyeFindsEverythingBuilt) {
 TEST(WarmUp, TablesAndCurvatureFindEverythingBuilt) {
     const Device own("");
     Telling telling;
-    pellucid::check(pelDeviceSetProgress(own.get(), Telling::tell, &telling));
+    own.setProgress(Telling::tell, &telling);
     const uint32_t built = pellucid::warmUpPrograms(
         own, PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABULATED_LUTS | PEL_PROGRAMS_CURVATURE);
     EXPECT_GE(built, 10u);
     EXPECT_TRUE(std::is_sorted(telling.fractions.begin(), telling.fractions.end()));
-    pellucid::check(pelDeviceSetProgress(own.get(), nullptr, nullptr));
+    own.setProgress(nullptr, nullptr);
     const uint64_t before = buildsSince(0);
     for (const PelCurvatureForm form :
          {PEL_FORM_ARC, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_SPHERE, PEL_FORM_PENNER_RING}) {
@@ -143,16 +127,16 @@ TEST(WarmUp, CanBeStoppedAndGoneOnWith) {
     const Device own("");
     Telling telling;
     telling.stopAt = 3;
-    pellucid::check(pelDeviceSetProgress(own.get(), Telling::tell, &telling));
-    PelWarmUp work = workOf({}, PEL_PROGRAMS_LUTS);
-    work.threads = 2;
+    own.setProgress(Telling::tell, &telling);
+    PelWarmUp work = pelWarmUpDefaults();
+    work.groups = PEL_PROGRAMS_LUTS, work.threads = 2;
     uint32_t built = 77;
     EXPECT_EQ(pelWarmUpPrograms(own.get(), &work, &built), PEL_ERROR_CANCELLED);
     EXPECT_EQ(built, 77u) << "no output is written on an error";
-    pellucid::check(pelDeviceSetProgress(own.get(), nullptr, nullptr));
-    pellucid::check(pelWarmUpPrograms(own.get(), &work, &built));
-    EXPECT_LT(built, 7u) << "what was built before the stop is kept: all of it, where builders were faster "
-                            "than the one who tells";
+    own.setProgress(nullptr, nullptr);
+    EXPECT_LT(pellucid::warmUpPrograms(own, PEL_PROGRAMS_LUTS), 7u)
+        << "what was built before the stop is kept: all of it, where builders were faster "
+           "than the one who tells";
 }
 
 TEST(WarmUp, AScattersExecutionFindsEverythingBuilt) {
@@ -199,8 +183,8 @@ TEST(WarmUp, SaysWhatIsWrong) {
     Shader empty(own), foreign(other);
     const PelShader foreignHandle = foreign.get(), emptyHandle = empty.get();
     const auto refused = [&](const char* words, uint32_t groups, const PelShader* shaders, uint32_t count) {
-        PelWarmUp work = workOf({}, groups);
-        work.shaders = shaders, work.numShaders = count;
+        PelWarmUp work = pelWarmUpDefaults();
+        work.groups = groups, work.shaders = shaders, work.numShaders = count;
         expectRefused(words, [&] { return pelWarmUpPrograms(own.get(), &work, nullptr); });
     };
     refused("PelProgramGroup", 64, nullptr, 0);
@@ -210,7 +194,7 @@ TEST(WarmUp, SaysWhatIsWrong) {
     EXPECT_EQ(pelWarmUpPrograms(own.get(), nullptr, nullptr), PEL_ERROR_INVALID_ARGUMENT);
     PelScatterWork scatter = pelScatterWorkDefaults();
     const auto scatterRefused = [&](const char* words) {
-        PelWarmUp work = workOf({});
+        PelWarmUp work = pelWarmUpDefaults();
         work.scatters = scatter.scatter ? &scatter : nullptr;
         work.numScatters = 1;
         expectRefused(words, [&] { return pelWarmUpPrograms(own.get(), &work, nullptr); });
@@ -221,10 +205,7 @@ TEST(WarmUp, SaysWhatIsWrong) {
     scatterRefused("another PelDevice");
     scatter.scatter = mine.get();
     scatterRefused("`irradiance` is needed");
-    const PelWarmUp nothing = workOf({});
-    uint32_t built = 9;
-    EXPECT_EQ(pelWarmUpPrograms(own.get(), &nothing, &built), PEL_SUCCESS);
-    EXPECT_EQ(built, 0u);
+    EXPECT_EQ(pellucid::warmUpPrograms(own, 0), 0u);
 }
 
 }  // namespace

@@ -1,26 +1,10 @@
 // A fork of a process that uses OpenCL has the drivers' locks without their threads: calls fail at once.
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include "core/handle_kinds.h"
+#include "core/in_fork.h"
 
 using handles::kinds;
 
 namespace {
-
-// What `work` returns in a fork of this process; -1 when it does not end within 20 seconds or dies.
-int inFork(const std::function<int()>& work) {
-    const pid_t child = ::fork();
-    if (child == 0) ::_exit(work());
-    int status = 0;
-    for (int i = 0; i < 2000; ++i) {
-        if (::waitpid(child, &status, WNOHANG) == child) return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    ::kill(child, SIGKILL);
-    ::waitpid(child, &status, 0);
-    return -1;
-}
 
 bool saysSo(PelError code) {
     return code == PEL_ERROR_INVALID_STATE && std::strstr(pelGetErrorMessage(), "fork");

@@ -24,7 +24,7 @@ static void expectSaid(uint64_t said, uint64_t held, const std::string& of) {
 
 TEST(HeldMemory, OfAShaderByMethod) {
     constexpr uint32_t side = 160;
-    const LitBall lamp = makeBall(Form::parallel, normalized(Vec3{0.8, 0.3, 0.5}), 128);
+    const LitBall lamp = makeBall(Form::parallel, {0.8, 0.3, 0.5}, 128);
     const Picture p = pictureOf(lamp, side);
     std::vector<float> normals = p.positions;
     for (float& n : normals) n /= float(radius);

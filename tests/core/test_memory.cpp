@@ -2,12 +2,11 @@
 // first to use OpenCL there (and must not, itself, be the parent of others): limits of a process cannot be
 // raised again.
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "cl/cl_spy.h"
 #include "cl/error.h"
 #include "cl/machine.h"
+#include "core/in_fork.h"
 #include "mesh/mesh_calls.h"
 
 using namespace pellucid;
@@ -25,18 +24,13 @@ namespace {
 
 constexpr int notHere = 77;  // exit status of a child: the device has no memory that this test could limit
 
-void inFork(const std::function<void()>& work) {
-    const pid_t child = ::fork();
-    if (child == 0) {
+void expectInFork(const std::function<void()>& work) {
+    const int status = inFork([&] {
         work();
-        ::_exit(0);
-    }
-    int status = 0;
-    for (int i = 0; i < 12000 && ::waitpid(child, &status, WNOHANG) != child; ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    ASSERT_TRUE(WIFEXITED(status)) << "signal " << WTERMSIG(status);
-    if (WEXITSTATUS(status) == notHere) GTEST_SKIP() << "the device is no CPU that shares the host's memory";
-    EXPECT_EQ(WEXITSTATUS(status), 0);
+        return 0;
+    });
+    if (status == notHere) GTEST_SKIP() << "the device is no CPU that shares the host's memory";
+    EXPECT_EQ(status, 0);
 }
 
 struct Used {
@@ -72,7 +66,7 @@ void requireSharedMemory(const Device& device) {
 }  // namespace
 
 TEST(Memory, AddressSpaceRunsOut) {
-    inFork([] {
+    expectInFork([] {
         const Device device("");
         requireSharedMemory(device);
         { Buffer(device, 16).readAll<int>(); }
@@ -102,7 +96,7 @@ TEST(Memory, AddressSpaceRunsOut) {
 
 // All calls that allocate report it, not only buffers.
 TEST(Memory, TablesAndTopologiesRunOutOfIt) {
-    inFork([] {
+    expectInFork([] {
         const Device device("");
         requireSharedMemory(device);
         table(device);
@@ -133,7 +127,7 @@ TEST(Memory, MoreThanThereIsIsNeverPromised) {
         }
     }
     EXPECT_NO_THROW(pel::cl::requireMemory(1, "a test"));
-    inFork([] {
+    expectInFork([] {
         const Device device("");
         PelBuffer buffer = nullptr;
         for (const size_t bytes :
@@ -143,7 +137,7 @@ TEST(Memory, MoreThanThereIsIsNeverPromised) {
 }
 
 TEST(Memory, HoldsWhatWasAsked) {
-    inFork([] {
+    expectInFork([] {
         const Device device("");
         for (const size_t bytes : {1u, 127u, 4095u, 4096u, 4097u, 1u << 20, 33u << 20}) {
             for (int turn = 0; turn < 2; ++turn) {  // the second finds what the first left
@@ -159,7 +153,7 @@ TEST(Memory, HoldsWhatWasAsked) {
 }
 
 TEST(Memory, LargeMeshesGiveBackAllPages) {
-    inFork([] {
+    expectInFork([] {
         const Device device("");
         const fixture::Mesh mesh = fixture::torus(512, 512);
         uint64_t before = 0;
@@ -172,7 +166,7 @@ TEST(Memory, LargeMeshesGiveBackAllPages) {
 }
 
 TEST(Memory, LastsAsLongAsAnybodyHoldsTheMemory) {
-    inFork([] {
+    expectInFork([] {
         const Device device("");
         const uint64_t before = used().addresses;
         for (const size_t bytes : {size_t(1000), size_t(256) << 20}) {
@@ -193,7 +187,7 @@ TEST(Memory, LastsAsLongAsAnybodyHoldsTheMemory) {
 
 // Each clCreateBuffer in turn.
 TEST(Memory, DriversThatRefuse) {
-    inFork([] {
+    expectInFork([] {
         const Device device("");
         const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
         std::vector<float> host(4096, 1), positions{0, 0, 0, 1, 0, 0, 1, 1, 0.5f, 0, 1, 0};
@@ -250,7 +244,7 @@ TEST(Memory, DriversThatRefuse) {
 
 // As with Wine's loader: memory is allocated by the driver, not by the library.
 TEST(Memory, IsTheDriversWhereBuffersEndUnseen) {
-    inFork([] {
+    expectInFork([] {
         const Device device("");
         requireSharedMemory(device);
         const std::vector<float> expected = table(device);

@@ -13,6 +13,7 @@
 #include "io/atomic_file.h"
 #include "io/input_file.h"
 #include "io_files.h"
+#include "variable.h"
 
 using namespace pellucid::io;
 
@@ -193,13 +194,12 @@ TEST_F(AtomicFileTest, InputsHaveALimit) {
     ASSERT_EQ(::truncate(path("e").c_str(), off_t{1} << 40), 0);  // nothing of it is on the disk
     EXPECT_TRUE(contains(messageOf<FileError>([&] { readWholeFile(path("e")); }),
                          "more than the limit of 2048 MiB (PELLUCID_INPUT_LIMIT_MIB raises it)"));
-    ::setenv("PELLUCID_INPUT_LIMIT_MIB", "1", 1);
+    const Variable limit("PELLUCID_INPUT_LIMIT_MIB", "1");
     EXPECT_EQ(inputLimit(), uint64_t{1} << 20);
     ASSERT_EQ(::truncate(path("e").c_str(), (1 << 20) + 1), 0);
     EXPECT_TRUE(contains(messageOf<FileError>([&] { readWholeFile(path("e")); }), "limit of 1 MiB"));
     for (const char* bad : {"0", "-1", "1.5", "x", "99999999999999999999"}) {
-        ::setenv("PELLUCID_INPUT_LIMIT_MIB", bad, 1);
+        limit.set(bad);
         EXPECT_TRUE(contains(messageOf<FileError>([] { inputLimit(); }), "a whole number of MiB"));
     }
-    ::unsetenv("PELLUCID_INPUT_LIMIT_MIB");
 }
