@@ -1,10 +1,9 @@
 // Concatenates texts for messages.
 #pragma once
-#include <charconv>
-#include <iterator>
-#include <string>
 #include <string_view>
 #include <type_traits>
+
+#include "io/shortest.h"
 
 namespace pellucid::io {
 
@@ -12,15 +11,22 @@ namespace pellucid::io {
 template <class... Parts>
 std::string concat(const Parts&... parts) {
     const auto text = [](const auto& part) {
-        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(part)>>) {
-            char digits[32];  // the longest double has 24
-            return std::string(digits, std::to_chars(digits, std::end(digits), part).ptr);
-        } else
+        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(part)>>)
+            return shortest(part);
+        else
             return std::string_view(part);
     };
     std::string all;
     (all.append(text(parts)), ...);
     return all;
+}
+
+// The texts with ", " between them.
+template <class Texts>
+std::string joined(const Texts& texts) {
+    std::string list;
+    for (const auto& text : texts) list.append(list.empty() ? "" : ", ").append(text);
+    return list;
 }
 
 // `text` with control characters, which a terminal would obey, as \xNN. `lines`: but for line breaks.

@@ -6,8 +6,6 @@
 #include <cstring>
 #include <filesystem>
 
-#include "io/shortest.h"
-
 namespace pellucid::io {
 namespace fs = std::filesystem;
 

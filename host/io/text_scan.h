@@ -1,6 +1,5 @@
 // Lines and words of a text file, with line numbers for errors.
 #pragma once
-#include <charconv>
 #include <cmath>
 #include <vector>
 

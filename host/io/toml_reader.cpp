@@ -25,10 +25,7 @@ std::string typeName(const toml::node& node) {
 }
 
 std::string inQuotes(std::string_view text) {
-    std::string out(1, '\'');
-    out += text;
-    out += '\'';
-    return out;
+    return concat("'", text, "'");
 }
 
 const toml::table& nodesOf(const TomlTable& table) {
@@ -48,16 +45,23 @@ struct TomlReader::Nodes {
         return nodesOf(reader.table_).get(key);
     }
 
-    // The value of `key` if it is there; it must be an array of `count` elements of `wanted`.
+    // The value of `key` if it is there; it must be a T, in words `wanted`.
+    template <class T>
+    static auto find(TomlReader& reader, std::string_view key, const std::string& wanted) {
+        const toml::node* node = find(reader, key);
+        if (node && !node->is<T>())
+            reader.fail(key, "is " + typeName(*node) + "; " + wanted + " would be right");
+        return node ? node->as<T>() : nullptr;
+    }
+
+    // The same for an array of `count` elements.
     static const toml::array* array(TomlReader& reader, std::string_view key, size_t count,
                                     const std::string& wanted, const char* elements) {
-        const toml::node* node = find(reader, key);
-        if (!node) return nullptr;
-        if (!node->is_array()) reader.fail(key, "is " + typeName(*node) + "; " + wanted + " would be right");
-        if (node->as_array()->size() != count)
-            reader.fail(key, concat("has ", node->as_array()->size(), " ", elements, "; ", wanted,
-                                    " would be right", (count == 16 ? " (a matrix, row by row)" : "")));
-        return node->as_array();
+        const auto* array = find<toml::array>(reader, key, wanted);
+        if (array && array->size() != count)
+            reader.fail(key, concat("has ", array->size(), " ", elements, "; ", wanted, " would be right",
+                                    (count == 16 ? " (a matrix, row by row)" : "")));
+        return array;
     }
 
     // Each element of an array that is not empty, or a single value; `use` reads one.
@@ -129,11 +133,10 @@ void TomlReader::fail(std::string_view key, const std::string& message) const {
 }
 
 int64_t TomlReader::version(int64_t known) {
-    const toml::node* node = Nodes::find(*this, "version");
-    if (!node) return 1;
     const std::string versions = known == 1 ? "1" : concat("1 to ", known);
-    if (!node->is_integer()) fail("version", "is " + typeName(*node) + "; " + versions + " would be right");
-    const int64_t given = node->as_integer()->get();
+    const auto* node = Nodes::find<int64_t>(*this, "version", versions);
+    if (!node) return 1;
+    const int64_t given = node->get();
     if (given < 1) fail("version", concat("is ", given, "; ", versions, " would be right"));
     if (given > known)
         fail("version", concat("is ", given, ", of a later pellucid; this one reads version ", versions));
@@ -164,23 +167,21 @@ void TomlReader::rows(std::string_view key, float* values, size_t rows, size_t c
 }
 
 void TomlReader::integer(std::string_view key, uint32_t& value, Range range) {
-    const toml::node* node = Nodes::find(*this, key);
-    if (!node) return;
     const uint32_t low = uint32_t(range.min), high = range.max < 0x1p32f ? uint32_t(range.max) : UINT32_MAX;
     const std::string special = std::isnan(range.special) ? "" : concat(uint32_t(range.special), ", or "),
                       wanted = concat(special, "a whole number from ", low, " to ", high);
-    if (!node->is_integer()) fail(key, "is " + typeName(*node) + "; " + wanted + " would be right");
-    const int64_t given = node->as_integer()->get();
+    const auto* node = Nodes::find<int64_t>(*this, key, wanted);
+    if (!node) return;
+    const int64_t given = node->get();
     if ((given < low || given > high) && (special.empty() || given != int64_t(range.special)))
         fail(key, concat("is ", given, "; it must be ", wanted));
     value = uint32_t(given);
 }
 
 void TomlReader::text(std::string_view key, std::string& value) {
-    const toml::node* node = Nodes::find(*this, key);
+    const auto* node = Nodes::find<std::string>(*this, key, "a string in quotes");
     if (!node) return;
-    if (!node->is_string()) fail(key, "is " + typeName(*node) + "; a string in quotes would be right");
-    value = node->as_string()->get();
+    value = node->get();
     if (value.find('\0') != std::string::npos) fail(key, "holds a NUL character");
 }
 
@@ -206,37 +207,25 @@ void TomlReader::texts(std::string_view key, std::vector<std::string>& values, s
 }
 
 void TomlReader::choiceIndex(std::string_view key, uint32_t& index, std::span<const std::string_view> names) {
-    if (!has(key)) {
-        Nodes::find(*this, key);
-        return;
-    }
-    std::string given, list;
+    std::string given;
     text(key, given);
-    for (size_t i = 0; i < names.size(); ++i) {
-        if (names[i] == given) {
-            index = uint32_t(i);
-            return;
-        }
-        list.append(i ? ", " : "").append(inQuotes(names[i]));
-    }
-    fail(key, "is " + inQuotes(given) + "; one of " + list + " would be right");
+    if (!has(key)) return;
+    const auto found = std::ranges::find(names, given);
+    index = uint32_t(found - names.begin());
+    if (found != names.end()) return;
+    std::vector<std::string> quoted;
+    for (std::string_view name : names) quoted.push_back(inQuotes(name));
+    fail(key, "is " + inQuotes(given) + "; one of " + joined(quoted) + " would be right");
 }
 
 const TomlTable* TomlReader::subTable(std::string_view key) {
-    const toml::node* node = Nodes::find(*this, key);
-    if (!node) return nullptr;
-    if (!node->is_table()) fail(key, "is " + typeName(*node) + "; a table would be right");
-    return opaque(node->as_table());
+    return opaque(Nodes::find<toml::table>(*this, key, "a table"));
 }
 
 std::string TomlReader::innerName(std::string_view key) const {
     std::string name = where_;  // "[[light]]" to "[light.shadow_map]"
     std::erase_if(name, [](char c) { return c == '[' || c == ']'; });
-    name = where_.front() == '[' ? name + '.' : std::string();
-    name += key;
-    name.insert(name.begin(), '[');
-    name += ']';
-    return name;
+    return where_.front() == '[' ? concat("[", name, ".", key, "]") : concat("[", key, "]");
 }
 
 void TomlReader::list(std::string_view key, std::vector<std::string>& values) {
@@ -262,12 +251,10 @@ void TomlReader::tables(std::string_view key, const std::function<void(TomlReade
 
 void TomlReader::tablesApart(std::string_view key, const std::function<void(TomlReader&)>& function,
                              const std::function<void(const FileError&)>& failed) {
-    const toml::node* node = Nodes::find(*this, key);
-    if (!node) return;
     const std::string name = "[[" + std::string(key) + "]]";
-    if (!node->is_array())
-        fail(key, "is " + typeName(*node) + "; tables that start with " + name + " would be right");
-    for (const toml::node& entry : *node->as_array()) {
+    const auto* array = Nodes::find<toml::array>(*this, key, "tables that start with " + name);
+    if (!array) return;
+    for (const toml::node& entry : *array) {
         if (!entry.is_table()) fail(key, "holds " + typeName(entry) + "; tables " + name + " would be right");
         TomlReader reader(file_, *opaque(entry.as_table()), name);
         try {
@@ -284,8 +271,7 @@ void TomlReader::finish() const {
         const std::string_view given = key.str();
         if (std::find(known_.begin(), known_.end(), given) != known_.end()) continue;
         const std::string nearest = nearestWord(given, known_);
-        std::string list;
-        for (const std::string& k : known_) list += (list.empty() ? "" : ", ") + k;
+        const std::string list = joined(known_);
         fail(given, nearest.empty() ? "is not known; known: " + list
                                     : "is not known; did you mean " + inQuotes(nearest) + "? Known: " + list);
     }

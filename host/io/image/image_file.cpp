@@ -10,11 +10,11 @@
 namespace pellucid::io {
 namespace {
 
-std::string listOf(const std::vector<std::string>& names) {
-    std::string list;
-    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-    return list;
-}
+#ifdef PELLUCID_PNG_ONLY
+const std::initializer_list<std::string_view> pictureExtensions{"png"};
+#else
+const std::initializer_list<std::string_view> pictureExtensions{"png", "jpg", "jpeg", "bmp", "tga"};
+#endif
 
 }  // namespace
 
@@ -37,9 +37,9 @@ const Channel& Image::channel(const std::string& name) const {
     if (fitting.size() == 1) return *found;
     if (name.empty())
         throw FileError(source,
-                        "has several channels, and none is named; 'channel' names one of: " + listOf(all));
-    if (fitting.empty()) throw FileError(source, "has no channel '" + name + "'; it has: " + listOf(all));
-    throw FileError(source, "has several channels that '" + name + "' could mean: " + listOf(fitting) +
+                        "has several channels, and none is named; 'channel' names one of: " + joined(all));
+    if (fitting.empty()) throw FileError(source, "has no channel '" + name + "'; it has: " + joined(all));
+    throw FileError(source, "has several channels that '" + name + "' could mean: " + joined(fitting) +
                                 "; give one of these full names");
 }
 
@@ -84,14 +84,6 @@ const Attribute* Image::attribute(const std::string& name) const {
         if (key == name) return &value;
     return nullptr;
 }
-
-namespace {
-#ifdef PELLUCID_PNG_ONLY
-const std::initializer_list<std::string_view> pictureExtensions{"png"};
-#else
-const std::initializer_list<std::string_view> pictureExtensions{"png", "jpg", "jpeg", "bmp", "tga"};
-#endif
-}  // namespace
 
 bool isPicture(const std::string& path) {
     return std::ranges::find(pictureExtensions, extensionOf(path)) != pictureExtensions.end();

@@ -1,7 +1,6 @@
 #include "io/image/image_format.h"
 
 #include "io/input_file.h"
-#include "io/shortest.h"
 
 namespace pellucid::io {
 namespace {

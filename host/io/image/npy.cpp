@@ -1,7 +1,6 @@
 // The .npy format, versions 1.0 and 2.0 (NumPy Enhancement Proposal 1).
 #include <Imath/half.h>
 #include <bit>
-#include <charconv>
 #include <cstring>
 #include <numeric>
 
@@ -84,12 +83,10 @@ NpyArray readNpy(const std::string& path) {
     return array;
 }
 
-namespace {
-
 static_assert(std::endian::native == std::endian::little, "arrays are written as the memory lies");
 
-void write(const std::string& path, const char* descr, std::span<const size_t> shape, size_t count,
-           const void* bytes, size_t elementBytes) {
+static void write(const std::string& path, const char* descr, std::span<const size_t> shape, size_t count,
+                  const void* bytes, size_t elementBytes) {
     if (std::accumulate(shape.begin(), shape.end(), size_t{1}, std::multiplies<>()) != count)
         throw std::invalid_argument(concat("writeNpy: the shape does not hold ", count, " values"));
     std::string header = std::string("{'descr': '") + descr + "', 'fortran_order': False, 'shape': (";
@@ -105,8 +102,6 @@ void write(const std::string& path, const char* descr, std::span<const size_t> s
     out.append(static_cast<const char*>(bytes), count * elementBytes);
     writeWholeFile(path, out);
 }
-
-}  // namespace
 
 void writeNpy(const std::string& path, std::span<const size_t> shape, std::span<const float> values,
               ChannelType type) {

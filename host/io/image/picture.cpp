@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "io/image/picture_library.h"
-#include "io/shortest.h"
 
 namespace pellucid::io {
 

@@ -1,5 +1,7 @@
 #include "io/lut/lut_file.h"
 
+#include <algorithm>
+
 #include "io/atomic_file.h"
 #include "io/image/texture_file.h"
 #include "io/lut/lut_describe.h"
@@ -9,16 +11,68 @@ namespace {
 
 const std::vector<std::string> rgb{"R", "G", "B"};
 
-template <size_t N>
-int indexOf(const std::string& path, const char* attribute, const std::string& value,
-            const std::string_view (&names)[N]) {
-    std::string known;
-    for (size_t i = 0; i < N; ++i) {
-        if (names[i] == value) return int(i);
-        known.append(i ? ", " : "").append(names[i]);
+template <class T>
+const T& need(const Image& image, const char* name) {
+    const Attribute* attribute = image.attribute(name);
+    if (!attribute || !std::holds_alternative<T>(*attribute))
+        throw FileError(image.source,
+                        concat("no attribute \"", name,
+                               "\": a look-up table written by `pellucid lut ... -o FILE.exr` is needed"));
+    return std::get<T>(*attribute);
+}
+
+template <class Enum, size_t N>
+Enum needChoice(const Image& image, const char* name, const std::string_view (&names)[N]) {
+    const auto& value = need<std::string>(image, name);
+    const auto* const found = std::ranges::find(names, value);
+    if (found == std::end(names))
+        throw FileError(image.source, concat("attribute \"", name, "\" is \"", value, "\"; one of ",
+                                             joined(names), " is needed"));
+    return Enum(found - names);
+}
+
+// The description in an image's attributes. Throws FileError if they do not describe a table.
+PelLutInfo lutInfoOf(const Image& image) {
+    const std::string& path = image.source;
+    PelLutInfo info = pelLutInfoDefaults();
+    const int format = need<int>(image, "pellucid:format");
+    if (format != lutFormatVersion)
+        throw FileError(
+            path, concat("is written in format ", format, "; this program reads format ", lutFormatVersion));
+    info.kind = needChoice<PelLutKind>(image, "pellucid:kind", lutKinds);
+    if (info.kind != PEL_LUT_SPECULAR) {
+        const auto& profile = need<std::string>(image, "pellucid:profile");
+        if (profile.empty() || profile.size() >= sizeof info.profile)
+            throw FileError(path, "attribute \"pellucid:profile\" has no name of 1 to 63 bytes");
+        info.profile[profile.copy(info.profile, sizeof info.profile - 1)] = '\0';
     }
-    throw FileError(path, std::string("attribute \"") + attribute + "\" is \"" + value + "\"; one of " +
-                              known + " is needed");
+    if (info.kind == PEL_LUT_CURVATURE) {
+        info.curvature.form = needChoice<PelCurvatureForm>(image, "pellucid:form", curvatureForms);
+        info.curvature.axis = needChoice<PelLutAxis>(image, "pellucid:axis", lutAxes);
+    }
+    if (info.kind == PEL_LUT_SHADOW) {
+        // Older files lack these attributes.
+        info.shadow.axis = PEL_AXIS_LINEAR;
+        info.shadow.closedEnds = 0;
+        if (image.attribute("pellucid:axis"))
+            info.shadow.axis = needChoice<PelLutAxis>(image, "pellucid:axis", lutAxes);
+        if (image.attribute("pellucid:closedEnds"))
+            info.shadow.closedEnds = uint32_t(need<int>(image, "pellucid:closedEnds"));
+    }
+    if (info.kind == PEL_LUT_EYE) {
+        const int depth = need<int>(image, "pellucid:depth");
+        if (depth < 1 || image.height % depth)
+            throw FileError(path, concat("attribute \"pellucid:depth\" is ", depth,
+                                         ", which does not divide the height, ", image.height));
+        info.eye.width = uint32_t(image.width);
+        info.eye.height = uint32_t(image.height / depth);
+        info.eye.depth = uint32_t(depth);
+    }
+    info.curvature.width = info.shadow.width = info.specular.width = uint32_t(image.width);
+    info.curvature.height = info.shadow.height = info.specular.height = uint32_t(image.height);
+    visitLutNumbers(info, [&](const char* name, float& value) { value = need<float>(image, name); });
+    for (const std::string& channel : rgb) image.channel(channel);
+    return info;
 }
 
 // The contents of an EXR: channels in the storage type of the encoding, and the description of the table.
@@ -139,65 +193,6 @@ void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLut
         same("sharpening", s.sharpening, askedS.sharpening);
     }
 }
-
-namespace {
-
-// The description in an image's attributes. Throws FileError if they do not describe a table.
-PelLutInfo lutInfoOf(const Image& image) {
-    const std::string& path = image.source;
-    const auto need = [&]<class T>(const char* name, T*) -> const T& {
-        const Attribute* attribute = image.attribute(name);
-        if (!attribute || !std::holds_alternative<T>(*attribute))
-            throw FileError(path,
-                            std::string("no attribute \"") + name +
-                                "\": a look-up table written by `pellucid lut ... -o FILE.exr` is needed");
-        return std::get<T>(*attribute);
-    };
-    PelLutInfo info = pelLutInfoDefaults();
-    const auto needText = [&](const char* name) { return need(name, static_cast<std::string*>(nullptr)); };
-    const int format = need("pellucid:format", static_cast<int*>(nullptr));
-    if (format != lutFormatVersion)
-        throw FileError(
-            path, concat("is written in format ", format, "; this program reads format ", lutFormatVersion));
-    info.kind = PelLutKind(indexOf(path, "pellucid:kind", needText("pellucid:kind"), lutKinds));
-    if (info.kind != PEL_LUT_SPECULAR) {
-        const std::string profile = needText("pellucid:profile");
-        if (profile.empty() || profile.size() >= sizeof info.profile)
-            throw FileError(path, "attribute \"pellucid:profile\" has no name of 1 to 63 bytes");
-        info.profile[profile.copy(info.profile, sizeof info.profile - 1)] = '\0';
-    }
-    if (info.kind == PEL_LUT_CURVATURE) {
-        info.curvature.form =
-            PelCurvatureForm(indexOf(path, "pellucid:form", needText("pellucid:form"), curvatureForms));
-        info.curvature.axis = PelLutAxis(indexOf(path, "pellucid:axis", needText("pellucid:axis"), lutAxes));
-    }
-    if (info.kind == PEL_LUT_SHADOW) {
-        // Older files lack these attributes.
-        info.shadow.axis = PEL_AXIS_LINEAR;
-        info.shadow.closedEnds = 0;
-        if (image.attribute("pellucid:axis"))
-            info.shadow.axis = PelLutAxis(indexOf(path, "pellucid:axis", needText("pellucid:axis"), lutAxes));
-        if (image.attribute("pellucid:closedEnds"))
-            info.shadow.closedEnds = uint32_t(need("pellucid:closedEnds", static_cast<int*>(nullptr)));
-    }
-    if (info.kind == PEL_LUT_EYE) {
-        const int depth = need("pellucid:depth", static_cast<int*>(nullptr));
-        if (depth < 1 || image.height % depth)
-            throw FileError(path, concat("attribute \"pellucid:depth\" is ", depth,
-                                         ", which does not divide the height, ", image.height));
-        info.eye.width = uint32_t(image.width);
-        info.eye.height = uint32_t(image.height / depth);
-        info.eye.depth = uint32_t(depth);
-    }
-    info.curvature.width = info.shadow.width = info.specular.width = uint32_t(image.width);
-    info.curvature.height = info.shadow.height = info.specular.height = uint32_t(image.height);
-    visitLutNumbers(
-        info, [&](const char* name, float& value) { value = need(name, static_cast<float*>(nullptr)); });
-    for (const std::string& channel : rgb) image.channel(channel);
-    return info;
-}
-
-}  // namespace
 
 LutTexels decodeLut(const std::string& path, std::string bytes) {
     LutTexels table;

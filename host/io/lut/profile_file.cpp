@@ -190,16 +190,13 @@ std::string profileText(const pel::ProfileRecipe& recipe) {
 ProfileFile findProfile(const std::string& nameOrPath) {
     if (extensionOf(nameOrPath) == "toml")
         return parseProfile(nameOrPath, readWholeFile(nameOrPath, textLimit));
-    std::string known;
-    for (const std::string& name : Profile::libraryNames()) {
-        if (name == nameOrPath) {
-            const Profile profile = Profile::named(name);
-            const PelProfileInfo info = profile.info();
-            return {name, std::string(profileKinds[info.kind]), info.source, profile, {}};
-        }
-        known.append(known.empty() ? "" : ", ").append(name);
-    }
-    throw FileError(nameOrPath, "is neither a material of the library (" + known + ") nor a .toml file");
+    const std::vector<std::string> known = Profile::libraryNames();
+    if (std::ranges::find(known, nameOrPath) == known.end())
+        throw FileError(nameOrPath,
+                        "is neither a material of the library (" + joined(known) + ") nor a .toml file");
+    const Profile profile = Profile::named(nameOrPath);
+    const PelProfileInfo info = profile.info();
+    return {nameOrPath, std::string(profileKinds[info.kind]), info.source, profile, {}};
 }
 
 }  // namespace pellucid::io

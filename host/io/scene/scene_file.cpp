@@ -1,6 +1,5 @@
 #include "io/scene/scene_file.h"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -88,19 +87,16 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
         channels.fail("normal_shading", "is missing; nothing can be shaded without normals");
     std::set<uint32_t> ids;
     for (const SceneMaterial& m : scene.materials) {
-        if (!ids.insert(m.id).second)
-            throw FileError(scene.source, concat("material id ", m.id, " is used twice"), m.line);
+        const auto refuse = [&](const auto&... why) {
+            throw FileError(scene.source, concat(why...), m.line);
+        };
+        if (!ids.insert(m.id).second) refuse("material id ", m.id, " is used twice");
         if (m.material.thicknessTaps != 0 && m.material.thicknessTaps != 8 &&
             m.material.thicknessTaps != 16 && m.material.thicknessTaps != 32)
-            throw FileError(
-                scene.source,
-                concat("'thickness_taps' is ", m.material.thicknessTaps, "; 0, 8, 16 or 32 would be right"),
-                m.line);
-        if (!scene.scatter && m.scale >= 0)
-            throw FileError(scene.source, "'scale' is for scenes with a [scatter] table", m.line);
+            refuse("'thickness_taps' is ", m.material.thicknessTaps, "; 0, 8, 16 or 32 would be right");
+        if (!scene.scatter && m.scale >= 0) refuse("'scale' is for scenes with a [scatter] table");
         if (!m.normalMap.empty() && !m.normalMapLevels.empty())
-            throw FileError(scene.source,
-                            "'normal_map_levels' cannot stand beside 'normal_map'; leave one out", m.line);
+            refuse("'normal_map_levels' cannot stand beside 'normal_map'; leave one out");
         // What is not read needs no coordinates.
         const bool unblurred = scene.channels[PEL_SLOT_NORMAL_BLURRED].empty(),
                    scatters = m.material.scattering == PEL_SCATTERING_TEXTURE;
@@ -109,24 +105,18 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
                 if (scene.channels[slot].empty())
                     channels.fail(key, concat("is missing; the normal map of material ", m.id, " needs it"));
         if (m.material.scatterTaps > 0 && m.material.scatterTaps < 8)
-            throw FileError(
-                scene.source,
-                concat("'scatter_taps' is ", m.material.scatterTaps, "; 0, or 8 to 256 would be right"),
-                m.line);
+            refuse("'scatter_taps' is ", m.material.scatterTaps, "; 0, or 8 to 256 would be right");
         if (scatters && !m.scatteredTexture.empty() && scene.channels[PEL_SLOT_UV].empty())
             channels.fail("uv", concat("is missing; the scattered texture of material ", m.id, " needs it"));
         for (PelLutKind kind : {PEL_LUT_CURVATURE, PEL_LUT_SHADOW}) {
             const std::string& name = kind == PEL_LUT_CURVATURE ? m.curvatureLut : m.shadowLut;
             if (name.empty() || scene.lut(name, kind)) continue;
-            std::string list;
-            for (const SceneLut& l : scene.luts) {
-                if (l.info.kind == kind) list += (list.empty() ? "" : ", ") + l.name;
-            }
+            std::vector<std::string> names;
+            for (const SceneLut& l : scene.luts)
+                if (l.info.kind == kind) names.push_back(l.name);
             const std::string table = kind == PEL_LUT_CURVATURE ? "curvature_lut" : "shadow_lut";
-            throw FileError(scene.source,
-                            concat("material ", m.id, " refers to the ", table, " '", name, "'; there is ",
-                                   (list.empty() ? "no [[" + table + "]] table" : "only: " + list)),
-                            m.line);
+            refuse("material ", m.id, " refers to the ", table, " '", name, "'; there is ",
+                   names.empty() ? "no [[" + table + "]] table" : "only: " + joined(names));
         }
     }
 }
@@ -146,9 +136,8 @@ void checkEyes(const SceneFile& scene, const TomlReader& channels) {
     }
 }
 
-}  // namespace
-
-std::vector<std::string*> filesOf(SceneFile& scene) {
+// The files that a scene reads, but for profiles.
+std::vector<std::string*> imagesOf(SceneFile& scene) {
     std::vector<std::string*> files{&scene.gbuffer, &scene.ambientCube, &scene.reflectionCube,
                                     &scene.environment};
     for (SceneLight& l : scene.lights) {
@@ -156,11 +145,27 @@ std::vector<std::string*> filesOf(SceneFile& scene) {
         for (SceneCascade& c : l.cascades) files.push_back(&c.file);
     }
     for (SceneMaterial& m : scene.materials) {
-        files.insert(files.end(), {&m.profile, &m.scatteredTexture, &m.normalMap});
+        files.insert(files.end(), {&m.scatteredTexture, &m.normalMap});
         for (std::string& level : m.normalMapLevels) files.push_back(&level);
     }
-    for (SceneLut& l : scene.luts) files.insert(files.end(), {&l.file, &l.profile});
-    for (SceneEye& e : scene.eyes) files.insert(files.end(), {&e.irisProfile, &e.irisTexture, &e.caustics});
+    for (SceneLut& l : scene.luts) files.push_back(&l.file);
+    for (SceneEye& e : scene.eyes) files.insert(files.end(), {&e.irisTexture, &e.caustics});
+    return files;
+}
+
+std::vector<std::string*> profilesOf(SceneFile& scene) {
+    std::vector<std::string*> profiles;
+    for (SceneMaterial& m : scene.materials) profiles.push_back(&m.profile);
+    for (SceneLut& l : scene.luts) profiles.push_back(&l.profile);
+    for (SceneEye& e : scene.eyes) profiles.push_back(&e.irisProfile);
+    return profiles;
+}
+
+}  // namespace
+
+std::vector<std::string*> filesOf(SceneFile& scene) {
+    std::vector<std::string*> files = imagesOf(scene);
+    std::ranges::copy(profilesOf(scene), std::back_inserter(files));
     return files;
 }
 
@@ -211,22 +216,9 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
     const auto besideScene = [&](std::string& file) {
         if (!file.empty()) file = (folder / file).string();
     };
-    const auto profileBesideScene = [&](std::string& profile) {
-        if (profile.ends_with(".toml")) besideScene(profile);
-    };
-    for (SceneLut& l : scene.luts) besideScene(l.file), profileBesideScene(l.profile);
-    for (SceneMaterial& m : scene.materials) {
-        profileBesideScene(m.profile), besideScene(m.scatteredTexture), besideScene(m.normalMap);
-        for (std::string& level : m.normalMapLevels) besideScene(level);
-    }
-    for (SceneEye& e : scene.eyes)
-        besideScene(e.irisTexture), besideScene(e.caustics), profileBesideScene(e.irisProfile);
-    for (SceneLight& l : scene.lights) {
-        besideScene(l.shadowMapFile);
-        for (SceneCascade& c : l.cascades) besideScene(c.file);
-    }
-    besideScene(scene.gbuffer), besideScene(scene.reflectionCube), besideScene(scene.ambientCube);
-    besideScene(scene.environment);
+    for (std::string* file : imagesOf(scene)) besideScene(*file);
+    for (std::string* profile : profilesOf(scene))
+        if (profile->ends_with(".toml")) besideScene(*profile);
     for (std::string& output : scene.outputs) besideScene(output);
     return scene;
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <span>
 
 #include "io/image/image_file.h"
 #include "io/lut/lut_preset.h"

@@ -1,4 +1,3 @@
-
 #include "io/atomic_file.h"
 #include "io/scene/scene_keys.h"
 #include "io/toml_writer.h"
