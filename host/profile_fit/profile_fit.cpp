@@ -1,9 +1,6 @@
 #include "profile_fit/profile_fit.h"
 
-#include <algorithm>
 #include <numbers>
-#include <span>
-#include <sstream>
 
 #include "io/toml_writer.h"
 
@@ -164,9 +161,7 @@ Samples sampled(const Profile& profile) {
     const std::vector<double> P = profile.lineSpread(s.at);
     for (int c = 0; c < 3; ++c) {
         for (size_t i = 0; i < sampleCount; ++i) s.value[c].push_back(s.root[i] * P[3 * i + size_t(c)]);
-        double squares = 0;
-        for (double v : s.value[c]) squares += v * v;
-        s.norm[c] = std::sqrt(squares);
+        s.norm[c] = std::sqrt(dot(s.value[c].data(), s.value[c].data(), sampleCount));
         for (double& v : s.value[c]) v /= s.norm[c];
     }
     return s;
@@ -235,10 +230,8 @@ std::vector<double> stepOf(const Samples& s, const Mixture& m, double damping) {
         }
     }
     for (size_t g = 0; g < n; ++g) {
-        double squares = 0;
-        for (size_t i = 0; i < 3 * sampleCount; ++i)
-            squares += jacobian.column(firstVariance + g)[i] * jacobian.column(firstVariance + g)[i];
-        jacobian.column(firstVariance + g)[3 * sampleCount + g] = std::sqrt(damping * (squares + 1e-12));
+        double* column = jacobian.column(firstVariance + g);
+        column[3 * sampleCount + g] = std::sqrt(damping * (dot(column, column, 3 * sampleCount) + 1e-12));
     }
     const std::vector<double> x = leastSquares(jacobian, target);
     std::vector<double> moved = m.logVariance;

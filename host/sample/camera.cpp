@@ -1,7 +1,6 @@
 #include "sample/camera.h"
 
 #include <algorithm>
-#include <numbers>
 
 namespace pellucid::sample {
 

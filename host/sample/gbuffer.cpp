@@ -1,7 +1,6 @@
 #include "sample/gbuffer.h"
 
 #include <algorithm>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -88,13 +87,8 @@ class Renderer {
                 interpolate(values, hit, 3, 2)};
     }
     Vec3 faceNormal(const Hit& hit) const {
-        Vec3 p[3];
-        for (int i = 0; i < 3; ++i) {
-            Hit corner = hit;
-            for (int k = 0; k < 3; ++k) corner.weights[k] = k == i;
-            p[i] = interpolate3(mesh_.positions, corner);
-        }
-        return normalize(cross(p[1] - p[0], p[2] - p[0]));
+        const auto [a, b, c] = mesh_.corners(hit.triangle);
+        return normalize(cross(b - a, c - a));
     }
     // Thickness of the sheet that loses as much light as the body, measured along the inward normal of the
     // triangle. A body with a curvature (1/mm) of 2 over its thickness is a ball, which the gain of curved

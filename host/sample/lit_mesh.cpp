@@ -9,26 +9,19 @@ namespace {
 
 constexpr double liftPart = 3e-6;  // of the scene's extent: more than float leaves of a place
 
-Vec3 vectorAt(const std::vector<float>& values, uint32_t vertex) {
-    return {values[3 * size_t(vertex)], values[3 * size_t(vertex) + 1], values[3 * size_t(vertex) + 2]};
-}
-
 struct Place {
     Vec3 origin, normal;
 };
 
 Place placeOf(const Mesh& mesh, const SurfacePoint& point, double lift) {
-    const uint32_t* v = &mesh.triangles[3 * size_t(point.triangle)];
-    Vec3 corners[3], p, normal;
-    for (int k = 0; k < 3; ++k) {
-        corners[k] = vectorAt(mesh.positions, v[k]);
-        p = p + corners[k] * point.weights[k];
-    }
+    const auto corners = mesh.corners(point.triangle);
+    Vec3 p, normal, lifted;
+    for (int k = 0; k < 3; ++k) p = p + corners[k] * point.weights[k];
     const Vec3 flat = normalize(cross(corners[1] - corners[0], corners[2] - corners[0]));
     if (mesh.normals.empty()) return {p + flat * lift, flat};
-    Vec3 lifted;
+    const auto normals = mesh.atCorners(mesh.normals, point.triangle);
     for (int k = 0; k < 3; ++k) {
-        const Vec3 n = vectorAt(mesh.normals, v[k]);
+        const Vec3 n = normals[k];
         normal = normal + n * point.weights[k];
         // Onto the plane across the corner's normal, where p lies below it.
         lifted = lifted + (p - n * std::min(0.0, dot(p - corners[k], n))) * point.weights[k];
@@ -96,11 +89,8 @@ class Refiner {
         double least = 0;
         for (uint32_t t = 0; t < scene_.mesh().triangles.size() / 3; ++t) {
             if (!takes(t)) continue;
-            Vec3 corners[3];
-            for (int k = 0; k < 3; ++k)
-                corners[k] = vectorAt(scene_.mesh().positions, scene_.mesh().triangles[3 * size_t(t) + k]);
-            least +=
-                std::max(1.0, length(cross(corners[1] - corners[0], corners[2] - corners[0])) / 2 / mostArea);
+            const auto [a, b, c] = scene_.mesh().corners(t);
+            least += std::max(1.0, length(cross(b - a, c - a)) / 2 / mostArea);
         }
         if (least > double(options_.mostTriangles)) tooMany(options_, least);
     }
@@ -158,18 +148,13 @@ class Refiner {
     static const Piece& pieceOf(const Piece& p) { return p; }
     static const Piece& pieceOf(const Halves& h) { return h.piece; }
 
-    Vec3 positionOf(uint32_t triangle, const std::array<double, 3>& weights) const {
-        Vec3 p;
-        for (int k = 0; k < 3; ++k)
-            p = p + vectorAt(scene_.mesh().positions, scene_.mesh().triangles[3 * size_t(triangle) + k]) *
-                        weights[k];
-        return p;
-    }
     void split(const Halves& h, std::vector<Piece>& pieces) {
         const Piece& p = h.piece;
         double longest = 0, deviation = 0;
+        const auto whole = scene_.mesh().corners(p.triangle);
         Vec3 corners[3];
-        for (int k = 0; k < 3; ++k) corners[k] = positionOf(p.triangle, p.weights[k]);
+        for (int k = 0; k < 3; ++k)
+            for (int i = 0; i < 3; ++i) corners[k] = corners[k] + whole[i] * p.weights[k][i];
         for (int k = 0; k < 3; ++k) {
             const int next = (k + 1) % 3;
             longest = std::max(longest, length(corners[next] - corners[k]));
@@ -204,9 +189,7 @@ class Refiner {
 }  // namespace
 
 Surface surfaceAt(const Mesh& mesh, const SurfacePoint& point) {
-    const uint32_t* v = &mesh.triangles[3 * size_t(point.triangle)];
-    const Vec3 a = vectorAt(mesh.positions, v[0]), b = vectorAt(mesh.positions, v[1]),
-               c = vectorAt(mesh.positions, v[2]);
+    const auto [a, b, c] = mesh.corners(point.triangle);
     return {a * point.weights[0] + b * point.weights[1] + c * point.weights[2],
             normalize(cross(b - a, c - a))};
 }

@@ -25,6 +25,15 @@ struct Mesh {
 
     MeshView view() const { return {positions, normals, uvs, curvature, triangles, materials}; }
     void append(const Mesh& other);  // both have the same optional arrays
+    std::array<Vec3, 3> corners(uint32_t triangle) const { return atCorners(positions, triangle); }
+    // Normals or positions.
+    std::array<Vec3, 3> atCorners(const std::vector<float>& values, uint32_t triangle) const {
+        const auto at = [&](int k) {
+            const float* v = &values[3 * size_t(triangles[3 * size_t(triangle) + k])];
+            return Vec3{v[0], v[1], v[2]};
+        };
+        return {at(0), at(1), at(2)};
+    }
 };
 
 struct Bounds {

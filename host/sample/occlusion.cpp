@@ -1,8 +1,5 @@
 #include "sample/occlusion.h"
 
-#include <numbers>
-#include <stdexcept>
-
 namespace pellucid::sample {
 
 constexpr int pattern = 4;             // pixels along a side

@@ -262,6 +262,21 @@ void check(const WalkBody& body, std::span<const SurfacePoint> points, const Lay
             throw std::invalid_argument("walkLight: a point is not on the surface of the medium");
 }
 
+// With s = sqrt(1 - albedo): reflectance = F (1 - s)(1 - c s) / (1 + b s), and mean free path over Burley's
+// length is a polynomial of s.
+struct Fit {
+    double F, c, b;
+    std::array<double, 5> polynomial;
+};
+// F, c and b of the first: van de Hulst, Multiple Light Scattering, 1980, for isotropic scattering. All
+// others are least squares over walks of half-spaces with 12 and 11 albedos from 0.3 to 0.9995.
+constexpr Fit indexMatchedFit{1, 0.139, 1.17, {0.6663, 4.7276, -4.9721, 7.2062, -3.3091}};
+constexpr Fit fresnelFit{0.92964, 0.43956, 3.74894, {0.3441, 3.6519, -1.9133, 5.3307, 0}};
+
+const Fit& fitOf(Boundary boundary) {
+    return boundary == Boundary::Fresnel ? fresnelFit : indexMatchedFit;
+}
+
 }  // namespace
 
 LayeredMedium::LayeredMedium(const Medium& medium) : refractiveIndex(medium.refractiveIndex) {
@@ -310,25 +325,6 @@ WalkedLight walkLight(const WalkBody& body, const Lighting& lighting, std::span<
     }
     return walkPoints(walker, points, samples, options.seed, options.progress);
 }
-
-namespace {
-
-// With s = sqrt(1 - albedo): reflectance = F (1 - s)(1 - c s) / (1 + b s), and mean free path over Burley's
-// length is a polynomial of s.
-struct Fit {
-    double F, c, b;
-    std::array<double, 5> polynomial;
-};
-// F, c and b of the first: van de Hulst, Multiple Light Scattering, 1980, for isotropic scattering. All
-// others are least squares over walks of half-spaces with 12 and 11 albedos from 0.3 to 0.9995.
-constexpr Fit indexMatchedFit{1, 0.139, 1.17, {0.6663, 4.7276, -4.9721, 7.2062, -3.3091}};
-constexpr Fit fresnelFit{0.92964, 0.43956, 3.74894, {0.3441, 3.6519, -1.9133, 5.3307, 0}};
-
-const Fit& fitOf(Boundary boundary) {
-    return boundary == Boundary::Fresnel ? fresnelFit : indexMatchedFit;
-}
-
-}  // namespace
 
 double mostReflectance(Boundary boundary) {
     return 0.999 * fitOf(boundary).F;

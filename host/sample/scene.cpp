@@ -34,6 +34,60 @@ Mesh copyOf(const MeshView& view) {
             copy(view.curvature), copy(view.triangles), copy(view.materials)};
 }
 
+RTCRay rayOf(const Ray& ray, double within) {
+    RTCRay r{};
+    r.org_x = float(ray.origin.x), r.org_y = float(ray.origin.y), r.org_z = float(ray.origin.z);
+    r.dir_x = float(ray.direction.x), r.dir_y = float(ray.direction.y), r.dir_z = float(ray.direction.z);
+    r.tfar = float(within);
+    r.mask = ~0u;
+    return r;
+}
+
+// Barycentric weights of the point of a triangle next to p.
+void nearestOfTriangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c, std::array<double, 3>& weights) {
+    const Vec3 edges[3] = {b - a, c - b, a - c}, corners[3] = {a, b, c}, normal = cross(b - a, c - a);
+    const double area2 = dot(normal, normal);
+    double best = INFINITY;
+    if (area2 > 0) {
+        const double u = dot(cross(c - b, p - b), normal) / area2,
+                     v = dot(cross(a - c, p - c), normal) / area2, w = 1 - u - v;
+        if (u >= 0 && v >= 0 && w >= 0) {
+            weights[0] = u, weights[1] = v, weights[2] = w;
+            return;
+        }
+    }
+    for (int k = 0; k < 3; ++k) {
+        const double along2 = dot(edges[k], edges[k]);
+        const double t = along2 > 0 ? std::clamp(dot(p - corners[k], edges[k]) / along2, 0.0, 1.0) : 0;
+        const Vec3 d = corners[k] + edges[k] * t - p;
+        if (dot(d, d) >= best) continue;
+        best = dot(d, d);
+        weights[k] = 1 - t, weights[(k + 1) % 3] = t, weights[(k + 2) % 3] = 0;
+    }
+}
+
+struct NearestQuery {
+    const Mesh* mesh;
+    Vec3 p;
+    Hit* best;
+};
+
+bool visitTriangle(RTCPointQueryFunctionArguments* arguments) {
+    auto& query = *static_cast<NearestQuery*>(arguments->userPtr);
+    const auto [a, b, c] = query.mesh->corners(arguments->primID);
+    Hit hit;
+    nearestOfTriangle(query.p, a, b, c, hit.weights);
+    hit.triangle = arguments->primID;
+    hit.distance = length(a * hit.weights[0] + b * hit.weights[1] + c * hit.weights[2] - query.p);
+    // Of equally near points, takes that of the first triangle, whatever the order of the walk.
+    if (hit.distance > query.best->distance ||
+        (hit.distance == query.best->distance && hit.triangle > query.best->triangle))
+        return false;
+    *query.best = hit;
+    arguments->query->radius = std::nextafter(float(hit.distance), INFINITY);
+    return true;
+}
+
 }  // namespace
 
 void Scene::Device::build(RTCGeometryType type, RTCFormat point, std::span<const float> points,
@@ -79,19 +133,6 @@ Scene::Scene(const Curves& curves) : device_(std::make_unique<Device>()) {
 
 Scene::~Scene() = default;
 
-namespace {
-
-RTCRay rayOf(const Ray& ray, double within) {
-    RTCRay r{};
-    r.org_x = float(ray.origin.x), r.org_y = float(ray.origin.y), r.org_z = float(ray.origin.z);
-    r.dir_x = float(ray.direction.x), r.dir_y = float(ray.direction.y), r.dir_z = float(ray.direction.z);
-    r.tfar = float(within);
-    r.mask = ~0u;
-    return r;
-}
-
-}  // namespace
-
 Hit Scene::firstHit(const Ray& ray, double within, Vec3& normal) const {
     RTCRayHit query{rayOf(ray, within), {}};
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -129,60 +170,6 @@ bool Scene::occluded(const Ray& ray, double within) const {
     return query.tfar < 0;
 }
 
-namespace {
-
-// Barycentric weights of the point of a triangle next to p.
-void nearestOfTriangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c, std::array<double, 3>& weights) {
-    const Vec3 edges[3] = {b - a, c - b, a - c}, corners[3] = {a, b, c}, normal = cross(b - a, c - a);
-    const double area2 = dot(normal, normal);
-    double best = INFINITY;
-    if (area2 > 0) {
-        const double u = dot(cross(c - b, p - b), normal) / area2,
-                     v = dot(cross(a - c, p - c), normal) / area2, w = 1 - u - v;
-        if (u >= 0 && v >= 0 && w >= 0) {
-            weights[0] = u, weights[1] = v, weights[2] = w;
-            return;
-        }
-    }
-    for (int k = 0; k < 3; ++k) {
-        const double along2 = dot(edges[k], edges[k]);
-        const double t = along2 > 0 ? std::clamp(dot(p - corners[k], edges[k]) / along2, 0.0, 1.0) : 0;
-        const Vec3 d = corners[k] + edges[k] * t - p;
-        if (dot(d, d) >= best) continue;
-        best = dot(d, d);
-        weights[k] = 1 - t, weights[(k + 1) % 3] = t, weights[(k + 2) % 3] = 0;
-    }
-}
-
-struct NearestQuery {
-    const Mesh* mesh;
-    Vec3 p;
-    Hit* best;
-};
-
-bool visitTriangle(RTCPointQueryFunctionArguments* arguments) {
-    auto& query = *static_cast<NearestQuery*>(arguments->userPtr);
-    const auto corner = [&](int k) {
-        const float* v =
-            &query.mesh->positions[3 * size_t(query.mesh->triangles[3 * size_t(arguments->primID) + k])];
-        return Vec3{v[0], v[1], v[2]};
-    };
-    const Vec3 a = corner(0), b = corner(1), c = corner(2);
-    Hit hit;
-    nearestOfTriangle(query.p, a, b, c, hit.weights);
-    hit.triangle = arguments->primID;
-    hit.distance = length(a * hit.weights[0] + b * hit.weights[1] + c * hit.weights[2] - query.p);
-    // Of equally near points, takes that of the first triangle, whatever the order of the walk.
-    if (hit.distance > query.best->distance ||
-        (hit.distance == query.best->distance && hit.triangle > query.best->triangle))
-        return false;
-    *query.best = hit;
-    arguments->query->radius = std::nextafter(float(hit.distance), INFINITY);
-    return true;
-}
-
-}  // namespace
-
 Hit Scene::nearest(Vec3 p, double within) const {
     Hit hit;
     hit.distance = within;
@@ -197,11 +184,8 @@ Hit Scene::nearest(Vec3 p, double within) const {
 }
 
 void Scene::refine(const Ray& ray, Hit& hit) const {
-    const auto vertex = [&](int corner) {
-        const float* p = &mesh_.positions[3 * size_t(mesh_.triangles[3 * size_t(hit.triangle) + corner])];
-        return Vec3{p[0], p[1], p[2]};
-    };
-    const Vec3 a = vertex(0), ab = vertex(1) - a, ac = vertex(2) - a, across = cross(ray.direction, ac);
+    const auto [a, b, c] = mesh_.corners(hit.triangle);
+    const Vec3 ab = b - a, ac = c - a, across = cross(ray.direction, ac);
     const double determinant = dot(ab, across);
     // A triangle seen edge-on keeps Embree's result.
     if (std::abs(determinant) > 1e-9 * length(ab) * length(ac)) {

@@ -1,6 +1,5 @@
 // A mesh made ready for ray tracing. The sample renderer's only contact with Embree.
 #pragma once
-#include <array>
 #include <functional>
 #include <memory>
 

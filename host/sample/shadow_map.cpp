@@ -1,7 +1,6 @@
 #include "sample/shadow_map.h"
 
 #include <algorithm>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 

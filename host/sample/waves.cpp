@@ -1,7 +1,5 @@
 #include "sample/waves.h"
 
-#include <numbers>
-
 namespace pellucid::sample {
 namespace {
 

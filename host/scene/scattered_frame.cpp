@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "io/lut/profile_file.h"
 #include "scene/scene_frame.h"
 

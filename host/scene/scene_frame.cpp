@@ -1,6 +1,5 @@
 #include "scene/scene_frame.h"
 
-#include <algorithm>
 #include <cstring>
 
 #include "io/choice_keys.h"
@@ -464,10 +463,8 @@ PelImageDesc SceneFrame::upload(const Image& image, const std::vector<std::strin
                      uint32_t(image.height));
 }
 
-namespace {
-
-void writeChannels(const std::string& path, int width, int height, const ChannelGroup& names,
-                   const std::vector<float>& values) {
+static void writeChannels(const std::string& path, int width, int height, const ChannelGroup& names,
+                          const std::vector<float>& values) {
     Image image;
     image.width = width;
     image.height = height;
@@ -476,7 +473,7 @@ void writeChannels(const std::string& path, int width, int height, const Channel
 }
 
 // A black image with these channels, of the smallest size that the kernels treat like a frame.
-Image blank(const std::set<std::string>& channels, int height = 2) {
+static Image blank(const std::set<std::string>& channels, int height = 2) {
     Image image;
     image.width = 16;
     image.height = height;
@@ -485,7 +482,7 @@ Image blank(const std::set<std::string>& channels, int height = 2) {
     return image;
 }
 
-Image blankGBuffer(const SceneFile& scene) {
+static Image blankGBuffer(const SceneFile& scene) {
     std::set<std::string> channels;
     for (size_t slot = 0; slot < scene.channels.size(); ++slot)
         if (slot != PEL_SLOT_CURVATURE || scene.channels[slot] != std::vector<std::string>{"screen"})
@@ -494,7 +491,7 @@ Image blankGBuffer(const SceneFile& scene) {
     return blank(channels);
 }
 
-ShadowMaps blankMaps(const SceneFile& scene) {
+static ShadowMaps blankMaps(const SceneFile& scene) {
     ShadowMaps maps;
     for (const auto& [file, map] : shadowMapsOf(scene)) {
         std::set<std::string> names = namesOf(map.groups);
@@ -504,8 +501,6 @@ ShadowMaps blankMaps(const SceneFile& scene) {
     }
     return maps;
 }
-
-}  // namespace
 
 void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance) {
     writeChannels(path, width, height, {"R", "G", "B"}, radiance);

@@ -1,9 +1,6 @@
 #include <Imath/ImathBox.h>
 
-#include <algorithm>
-
 #include "io/lut/profile_file.h"
-#include "io/shortest.h"
 #include "scene/scene_frame.h"
 
 namespace pellucid::io {
