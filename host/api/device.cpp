@@ -53,7 +53,7 @@ PelError pelDeviceEnumerate(uint32_t index, PelDeviceInfo* info) {
         const auto devices = cl::allDevices();
         if (index >= devices.size())
             invalidArgument("there is no device ", index, "; this machine has ", devices.size());
-        writeStruct(info, cl::describe(devices[index], index), "PelDeviceInfo");
+        writeStruct(info, cl::describe(devices[index], index));
     });
 }
 
@@ -65,7 +65,7 @@ PelError pelDeviceCreate(const char* selector, PelDevice* device) {
 
 PelError pelDeviceCreateWith(const PelDeviceDesc* desc, PelDevice* device) {
     return create(device, "device",
-                  [&] { return Device::create(readStruct(desc, pelDeviceDescDefaults(), "PelDeviceDesc")); });
+                  [&] { return Device::create(readStruct(desc, pelDeviceDescDefaults())); });
 }
 
 PelError pelDeviceCreateFromCl(void* clContext, void* clDeviceId, void* clCommandQueue, PelDevice* device) {
@@ -78,7 +78,7 @@ PelError pelDeviceCreateFromCl(void* clContext, void* clDeviceId, void* clComman
 PEL_COUNTED(Device)
 
 PelError pelDeviceGetInfo(PelDevice device, PelDeviceInfo* info) {
-    return entry([&] { writeStruct(info, fromHandle<Device>(device)->info(), "PelDeviceInfo"); });
+    return entry([&] { writeStruct(info, fromHandle<Device>(device)->info()); });
 }
 
 PelError pelDeviceGetCl(PelDevice device, void** clContext, void** clDeviceId, void** clCommandQueue) {
@@ -95,7 +95,7 @@ PelError pelDeviceFinish(PelDevice device) {
 }
 
 PelError pelDeviceGetStats(PelDevice device, PelDeviceStats* stats) {
-    return entry([&] { writeStruct(stats, fromHandle<Device>(device)->stats(), "PelDeviceStats"); });
+    return entry([&] { writeStruct(stats, fromHandle<Device>(device)->stats()); });
 }
 
 PelError pelDeviceSetProgress(PelDevice device, PelProgressCallback callback, void* user) {

@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "api/entry.h"
 #include "core/submission.h"
 #include "eye/eye.h"
@@ -10,14 +8,22 @@ using namespace pel;
 
 namespace {
 
+void checkDistances(const double* distances, uint32_t count, bool zero) {
+    if (count > 0 && !distances) invalidArgument("distances are needed, not NULL");
+    for (uint32_t i = 0; i < count; ++i)
+        if (!std::isfinite(distances[i]) || distances[i] < 0 || (distances[i] == 0 && !zero))
+            invalidArgument("distance ", i, " is ", distances[i], "; a finite length ",
+                            zero ? "of 0 or more" : "above 0", " is needed");
+}
+
 // Makes a table from a description by `integrate`. `olderHeaders`: defaults for fields that older headers
 // lack; the first headers had the fields of FaceWorks.
 template <class Desc, class Integrate>
-PelError createLut(PelDevice device, const Desc* desc, const Desc& olderHeaders, const char* name,
-                   PelLut* lut, const PelSubmit* submit, Integrate&& integrate) {
+PelError createLut(PelDevice device, const Desc* desc, const Desc& olderHeaders, PelLut* lut,
+                   const PelSubmit* submit, Integrate&& integrate) {
     return entry([&] {
         const Ref<Device> d = fromHandle<Device>(device);
-        const Desc request = readStruct(desc, olderHeaders, name);
+        const Desc request = readStruct(desc, olderHeaders);
         PelLut& result = output(lut, "lut");
         Ref<Lut> made;
         submitted(*d, submit, [&](bool) { made = integrate(d, request); });
@@ -45,24 +51,21 @@ void checkInfo(const PelLutInfo& info) {
 
 PelError pelCurvatureLutCreate(PelDevice device, const PelCurvatureLutDesc* desc, PelLut* lut,
                                const PelSubmit* submit) {
-    return createLut(device, desc, pelCurvatureLutDescFaceWorks(), "PelCurvatureLutDesc", lut, submit,
-                     integrateCurvatureLut);
+    return createLut(device, desc, pelCurvatureLutDescFaceWorks(), lut, submit, integrateCurvatureLut);
 }
 
 PelError pelShadowLutCreate(PelDevice device, const PelShadowLutDesc* desc, PelLut* lut,
                             const PelSubmit* submit) {
-    return createLut(device, desc, pelShadowLutDescFaceWorks(), "PelShadowLutDesc", lut, submit,
-                     integrateShadowLut);
+    return createLut(device, desc, pelShadowLutDescFaceWorks(), lut, submit, integrateShadowLut);
 }
 
 PelError pelSpecularLutCreate(PelDevice device, const PelSpecularLutDesc* desc, PelLut* lut,
                               const PelSubmit* submit) {
-    return createLut(device, desc, pelSpecularLutDescDefaults(), "PelSpecularLutDesc", lut, submit,
-                     tabulateSpecularLut);
+    return createLut(device, desc, pelSpecularLutDescDefaults(), lut, submit, tabulateSpecularLut);
 }
 
 PelError pelEyeLutCreate(PelDevice device, const PelEyeLutDesc* desc, PelLut* lut, const PelSubmit* submit) {
-    return createLut(device, desc, pelEyeLutDescDefaults(), "PelEyeLutDesc", lut, submit,
+    return createLut(device, desc, pelEyeLutDescDefaults(), lut, submit,
                      [&](const Ref<Device>& d, const PelEyeLutDesc& request) {
                          return integrateEyeLut(d, request, submit == nullptr);
                      });
@@ -72,7 +75,7 @@ PelError pelLutCreateFromTexels(PelDevice device, const PelLutInfo* info, const 
                                 PelLut* lut) {
     return create(lut, "lut", [&] {
         const Ref<Device> d = fromHandle<Device>(device);
-        const auto known = readStruct(info, pelLutInfoDefaults(), "PelLutInfo");
+        const auto known = readStruct(info, pelLutInfoDefaults());
         checkInfo(known);
         return uploadLut(d, known, texels, bytes);
     });
@@ -81,7 +84,7 @@ PelError pelLutCreateFromTexels(PelDevice device, const PelLutInfo* info, const 
 PEL_COUNTED(Lut)
 
 PelError pelLutGetInfo(PelLut lut, PelLutInfo* info) {
-    return entry([&] { writeStruct(info, fromHandle<Lut>(lut)->info(), "PelLutInfo"); });
+    return entry([&] { writeStruct(info, fromHandle<Lut>(lut)->info()); });
 }
 
 PelError pelLutGetSize(PelLut lut, PelLutEncoding encoding, size_t* bytes) {
@@ -97,13 +100,10 @@ PelError pelLutReadStack(PelDevice device, const PelLutInfo* tables, uint32_t co
         const Ref<Device> d = fromHandle<Device>(device);
         output(static_cast<char*>(destination), "destination");
         std::vector<PelLutInfo> all;
-        const auto* next = reinterpret_cast<const char*>(tables);
-        for (uint32_t i = 0; i < count; ++i) {
-            const auto* given = reinterpret_cast<const PelLutInfo*>(next);
-            all.push_back(readStruct(given, pelLutInfoDefaults(), "PelLutInfo"));
+        eachStruct(tables, count, [&](const PelLutInfo* given, uint32_t) {
+            all.push_back(readStruct(given, pelLutInfoDefaults()));
             checkInfo(all.back());
-            next += given->structSize;
-        }
+        });
         submitted(*d, nullptr, [&](bool) { readLutStack(d, all, encoding, destination, bytes); });
     });
 }
@@ -149,7 +149,7 @@ PelError pelProfileCreateSkinLayers(const PelSkin* skin, PelProfile* profile) {
 }
 
 PelError pelSkinGetInfo(const PelSkin* skin, PelSkinInfo* info) {
-    return entry([&] { writeStruct(info, skinInfo(readSkin(skin)), "PelSkinInfo"); });
+    return entry([&] { writeStruct(info, skinInfo(readSkin(skin))); });
 }
 
 PelError pelSkinReflectance(const PelSkin* skin, const float* nanometres, uint32_t count,
@@ -193,17 +193,10 @@ PelError pelProfileTransmission(PelProfile profile, const double* distances, uin
                                 double* transmission) {
     return entry([&] {
         const Ref<Profile> held = fromHandle<Profile>(profile);
-        const ProfileShape& shape = held->shape();
-        if (count > 0 && !distances) invalidArgument("distances are needed, not NULL");
+        checkDistances(distances, count, true);
         if (count > 0 && !transmission) invalidArgument("a transmission to fill is needed, not NULL");
         for (uint32_t i = 0; i < count; ++i)
-            if (!std::isfinite(distances[i]) || distances[i] < 0)
-                invalidArgument("distance ", i, " is ", distances[i],
-                                "; a finite length of 0 or more is needed");
-        for (uint32_t i = 0; i < count; ++i) {
-            const Rgb t = shape.transmission(distances[i]);
-            std::copy(t.begin(), t.end(), transmission + 3 * i);
-        }
+            std::ranges::copy(held->shape().transmission(distances[i]), transmission + 3 * i);
     });
 }
 
@@ -220,7 +213,7 @@ PelError pelProfileCreateTable(const float* distances, const float* values, uint
 PEL_COUNTED(Profile)
 
 PelError pelProfileGetInfo(PelProfile profile, PelProfileInfo* info) {
-    return entry([&] { writeStruct(info, fromHandle<Profile>(profile)->info(), "PelProfileInfo"); });
+    return entry([&] { writeStruct(info, fromHandle<Profile>(profile)->info()); });
 }
 
 PelError pelProfileSetName(PelProfile profile, const char* name) {
@@ -231,15 +224,10 @@ PelError pelProfileEvaluate(PelProfile profile, const double* distances, uint32_
                             double* lineSpread) {
     return entry([&] {
         const Ref<Profile> held = fromHandle<Profile>(profile);
-        const ProfileShape& shape = held->shape();
-        if (count > 0 && !distances) invalidArgument("distances are needed, not NULL");
-        for (uint32_t i = 0; i < count; ++i)
-            if (!std::isfinite(distances[i]) || distances[i] <= 0)
-                invalidArgument("distance ", i, " is ", distances[i], "; a finite length above 0 is needed");
-        for (uint32_t i = 0; i < count; ++i)
-            for (int c = 0; c < 3; ++c) {
-                if (radial) radial[3 * i + c] = shape.radial(distances[i])[c];
-                if (lineSpread) lineSpread[3 * i + c] = shape.lineSpread(distances[i])[c];
-            }
+        checkDistances(distances, count, false);
+        for (uint32_t i = 0; i < count; ++i) {
+            if (radial) std::ranges::copy(held->shape().radial(distances[i]), radial + 3 * i);
+            if (lineSpread) std::ranges::copy(held->shape().lineSpread(distances[i]), lineSpread + 3 * i);
+        }
     });
 }

@@ -9,11 +9,11 @@ PelError pelMeshTopologyCreate(PelDevice device, const PelMeshTopologyDesc* desc
     return entry([&] {
         output(topology, "topology");
         PelMeshReport found = pelMeshReportDefaults();
-        const auto full = readStruct(desc, pelMeshTopologyDescDefaults(), "PelMeshTopologyDesc");
+        const auto full = readStruct(desc, pelMeshTopologyDescDefaults());
         const Ref<Device> d = fromHandle<Device>(device);
         Ref<MeshTopology> made = MeshTopology::create(
             d, full, found, [&](double fraction) { d->progress(fraction, "analysing the mesh"); });
-        if (report) writeStruct(report, found, "PelMeshReport");
+        if (report) writeStruct(report, found);
         *topology = toHandle<PelMeshTopology>(std::move(made));
     });
 }
@@ -34,7 +34,7 @@ PelError pelMeshTopologyLoad(PelDevice device, const void* bytes, size_t size, P
     return entry([&] {
         output(topology, "topology");
         Ref<MeshTopology> made = MeshTopology::load(fromHandle<Device>(device), bytes, size);
-        if (report) writeStruct(report, made->report(), "PelMeshReport");
+        if (report) writeStruct(report, made->report());
         *topology = toHandle<PelMeshTopology>(std::move(made));
     });
 }
@@ -52,13 +52,12 @@ PelError pelMeshNormals(PelMeshTopology topology, const PelVertexView* positions
 PelError pelMeshOrient(const PelMeshTopologyDesc* desc, const float* normals, uint32_t normalStride,
                        uint32_t* indices, PelMeshOrientation* found) {
     return entry([&] {
-        const auto full = readStruct(desc, pelMeshTopologyDescDefaults(), "PelMeshTopologyDesc");
+        const auto full = readStruct(desc, pelMeshTopologyDescDefaults());
         PelMeshOrientation counts = pelMeshOrientationDefaults();
-        if (found)
-            writeStruct(found, counts, "PelMeshOrientation");  // an error comes before anything is written
+        if (found) writeStruct(found, counts);  // an error comes before anything is written
         const std::vector<uint32_t> turned = orientTriangles(full, normals, normalStride, counts);
         if (!turned.empty()) std::copy(turned.begin(), turned.end(), &output(indices, "indices"));
-        if (found) writeStruct(found, counts, "PelMeshOrientation");
+        if (found) writeStruct(found, counts);
     });
 }
 
@@ -69,7 +68,7 @@ PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* pa
                           const PelVertexView* curvature, PelMeshReport* report, const PelSubmit* submit) {
     return entry([&] {
         const Ref<MeshTopology> mesh = fromHandle<MeshTopology>(topology);
-        const auto full = readStruct(params, pelCurvatureParamsDefaults(), "PelCurvatureParams");
+        const auto full = readStruct(params, pelCurvatureParamsDefaults());
         checkCurvatureParams(full);
         const auto view = [&](const PelVertexView* v, const char* name, uint32_t components) {
             return checkedView(v, name, mesh->device(), mesh->vertices(), components);
@@ -78,7 +77,7 @@ PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* pa
         const VertexView n = normals ? view(normals, "normals", 3) : VertexView{};
         const VertexView out = view(curvature, "curvature", quantityFloats(full.quantity));
         PelMeshReport found = mesh->report();
-        if (report) writeStruct(report, found, "PelMeshReport");  // an error comes before any work
+        if (report) writeStruct(report, found);  // an error comes before any work
         MeshCounts counts{};
         submitted(mesh->device(), submit, [&](bool blocks) {
             meshCurvature(*mesh, full, p, n, out, report ? &counts : nullptr, blocks || report);
@@ -88,7 +87,7 @@ PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* pa
         found.nonFinitePositions = counts.nonFinitePositions;
         found.nonFiniteNormals = counts.nonFiniteNormals;
         found.lowDegreeFits = counts.lowDegreeFits;
-        writeStruct(report, found, "PelMeshReport");
+        writeStruct(report, found);
     });
 }
 
@@ -105,7 +104,7 @@ PelError pelMeshUvScale(PelMeshTopology topology, const PelVertexView* positions
 PelError pelLiveMeshCreate(PelMeshTopology topology, const PelCurvatureParams* params, PelLiveMesh* live) {
     return entry([&] {
         output(live, "live");
-        const auto full = readStruct(params, pelCurvatureParamsDefaults(), "PelCurvatureParams");
+        const auto full = readStruct(params, pelCurvatureParamsDefaults());
         checkCurvatureParams(full);
         *live = toHandle<PelLiveMesh>(make<LiveMesh>(fromHandle<MeshTopology>(topology), full));
     });
@@ -132,5 +131,5 @@ PelError pelLiveMeshUpdate(PelLiveMesh live, const PelVertexView* positions, con
 }
 
 PelError pelLiveMeshGetStats(PelLiveMesh live, PelLiveMeshStats* stats) {
-    return entry([&] { writeStruct(stats, fromHandle<LiveMesh>(live)->stats(), "PelLiveMeshStats"); });
+    return entry([&] { writeStruct(stats, fromHandle<LiveMesh>(live)->stats()); });
 }

@@ -24,7 +24,7 @@ PelError pelScatterSetMaterial(PelScatter scatter, uint32_t id, PelProfile profi
 PelError pelScatterSetControls(PelScatter scatter, uint32_t id, const PelScatterControls* controls) {
     return entry([&] {
         const Ref<Scatter> object = fromHandle<Scatter>(scatter);
-        object->setControls(id, readStructOr(controls, pelScatterControlsDefaults(), "PelScatterControls"));
+        object->setControls(id, readStructOr(controls, pelScatterControlsDefaults()));
     });
 }
 
@@ -44,22 +44,21 @@ PelError pelScatterExecute(PelScatter scatter, const PelScatterParams* params, c
                            const PelImageDesc* out, const PelSubmit* submit) {
     return entry([&] {
         const Ref<Scatter> object = fromHandle<Scatter>(scatter);
-        const auto full = readStructOr(params, pelScatterParamsDefaults(), "PelScatterParams");
+        const auto full = readStructOr(params, pelScatterParamsDefaults());
         const ScatterImages images = scatterImages(object->device(), irradiance, positions, depth, ids, out);
         submitted(object->device(), submit, [&](bool) { object->execute(full, images); });
     });
 }
 
 PelError pelScatterGetStats(PelScatter scatter, PelScatterStats* stats) {
-    return entry([&] { writeStruct(stats, fromHandle<Scatter>(scatter)->stats(), "PelScatterStats"); });
+    return entry([&] { writeStruct(stats, fromHandle<Scatter>(scatter)->stats()); });
 }
 
 PelError pelTextureScatterCreate(PelDevice device, const PelTextureScatterDesc* desc,
                                  PelTextureScatter* scatter) {
     return create(scatter, "scatter", [&] {
-        return TextureScatter::create(
-            fromHandle<Device>(device),
-            readStruct(desc, pelTextureScatterDescDefaults(), "PelTextureScatterDesc"));
+        return TextureScatter::create(fromHandle<Device>(device),
+                                      readStruct(desc, pelTextureScatterDescDefaults()));
     });
 }
 
@@ -91,7 +90,7 @@ PelError pelTextureScatterExecute(PelTextureScatter scatter, const PelTextureSca
                                   const PelImageDesc* out, const PelSubmit* submit) {
     return entry([&] {
         const Ref<TextureScatter> object = fromHandle<TextureScatter>(scatter);
-        const auto full = readStructOr(params, pelTextureScatterParamsDefaults(), "PelTextureScatterParams");
+        const auto full = readStructOr(params, pelTextureScatterParamsDefaults());
         const Ref<Profile> profile = full.profile ? fromHandle<Profile>(full.profile) : Profile::skin();
         const ImageView from = viewOf(irradiance, object->device(), "irradiance"),
                         colors = viewOf(albedo, object->device(), "albedo", false),
@@ -101,14 +100,13 @@ PelError pelTextureScatterExecute(PelTextureScatter scatter, const PelTextureSca
 }
 
 PelError pelTextureScatterGetStats(PelTextureScatter scatter, PelTextureScatterStats* stats) {
-    return entry(
-        [&] { writeStruct(stats, fromHandle<TextureScatter>(scatter)->stats(), "PelTextureScatterStats"); });
+    return entry([&] { writeStruct(stats, fromHandle<TextureScatter>(scatter)->stats()); });
 }
 
 PelError pelSurfaceIntegral(PelDevice device, const PelSurfaceIntegralDesc* desc, const PelSubmit* submit) {
     return entry([&] {
         const Ref<Device> on = fromHandle<Device>(device);
-        const auto full = readStruct(desc, pelSurfaceIntegralDescDefaults(), "PelSurfaceIntegralDesc");
+        const auto full = readStruct(desc, pelSurfaceIntegralDescDefaults());
         checkSurfaceIntegral(full);
         const uint32_t count = full.points.count;
         const VertexView points = checkedView(&full.points, "points", *on, count, 3, "the call");
@@ -123,8 +121,7 @@ PelError pelScreenCurvature(PelDevice device, const PelScreenCurvatureParams* pa
                             const PelSubmit* submit) {
     return entry([&] {
         const Ref<Device> on = fromHandle<Device>(device);
-        const auto full =
-            readStructOr(params, pelScreenCurvatureParamsDefaults(), "PelScreenCurvatureParams");
+        const auto full = readStructOr(params, pelScreenCurvatureParamsDefaults());
         const auto view = [&](const PelImageDesc* desc, const char* name, bool needed) {
             return viewOf(desc, *on, name, needed);
         };

@@ -20,10 +20,8 @@ PelError pelShaderCreate(PelDevice device, PelShader* shader) {
 PEL_COUNTED(Shader)
 
 PelError pelShaderSetOptions(PelShader shader, const PelShaderOptions* options) {
-    return entry([&] {
-        fromHandle<Shader>(shader)->setOptions(
-            readStruct(options, pelShaderOptionsDefaults(), "PelShaderOptions"));
-    });
+    return entry(
+        [&] { fromHandle<Shader>(shader)->setOptions(readStruct(options, pelShaderOptionsDefaults())); });
 }
 
 PelError pelShaderSetImage(PelShader shader, PelImageSlot slot, const PelImageDesc* image) {
@@ -37,7 +35,7 @@ PelError pelShaderSetMaterial(PelShader shader, uint32_t id, const PelMaterial* 
         if (!material) return s->setMaterial(id, nullptr, nullptr, nullptr);
         const Ref<Lut> curvature = curvatureLut ? fromHandle<Lut>(curvatureLut) : Ref<Lut>();
         const Ref<Lut> shadow = shadowLut ? fromHandle<Lut>(shadowLut) : Ref<Lut>();
-        const PelMaterial m = readStruct(material, pelMaterialDefaults(), "PelMaterial");
+        const PelMaterial m = readStruct(material, pelMaterialDefaults());
         s->setMaterial(id, &m, curvature.get(), shadow.get());
     });
 }
@@ -55,7 +53,7 @@ PelError pelShaderSetEye(PelShader shader, uint32_t id, const PelEye* eye, PelLu
         const Ref<Shader> s = fromHandle<Shader>(shader);
         if (!eye) return s->setEye(id, nullptr, nullptr);
         const Ref<Lut> table = caustics ? fromHandle<Lut>(caustics) : Ref<Lut>();
-        const PelEye given = readStruct(eye, pelEyeDefaults(), "PelEye");
+        const PelEye given = readStruct(eye, pelEyeDefaults());
         s->setEye(id, &given, table.get());
     });
 }
@@ -82,9 +80,7 @@ PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot s
 }
 
 PelError pelShaderSetAmbient(PelShader shader, const PelAmbient* ambient) {
-    return entry([&] {
-        fromHandle<Shader>(shader)->setAmbient(readStruct(ambient, pelAmbientDefaults(), "PelAmbient"));
-    });
+    return entry([&] { fromHandle<Shader>(shader)->setAmbient(readStruct(ambient, pelAmbientDefaults())); });
 }
 
 PelError pelShaderSetAmbientCube(PelShader shader, const PelImageDesc* faces) {
@@ -92,8 +88,7 @@ PelError pelShaderSetAmbientCube(PelShader shader, const PelImageDesc* faces) {
 }
 
 PelError pelShaderSetCamera(PelShader shader, const PelCamera* camera) {
-    return entry(
-        [&] { fromHandle<Shader>(shader)->setCamera(readStruct(camera, pelCameraDefaults(), "PelCamera")); });
+    return entry([&] { fromHandle<Shader>(shader)->setCamera(readStruct(camera, pelCameraDefaults())); });
 }
 
 PelError pelShaderCommit(PelShader shader) {
@@ -115,7 +110,7 @@ PelError pelShaderGetMaterial(PelShader shader, uint32_t id, PelMaterial* materi
     return entry([&] {
         PelMaterial resolved = fromHandle<Shader>(shader)->material(id);
         resolved.profile = nullptr;  // the caller's handle may be gone
-        writeStruct(material, resolved, "PelMaterial");
+        writeStruct(material, resolved);
     });
 }
 
@@ -124,20 +119,20 @@ PelError pelShaderGetWarnings(PelShader shader, const char** warnings) {
 }
 
 PelError pelShaderGetStats(PelShader shader, PelShaderStats* stats) {
-    return entry([&] { writeStruct(stats, fromHandle<Shader>(shader)->stats(), "PelShaderStats"); });
+    return entry([&] { writeStruct(stats, fromHandle<Shader>(shader)->stats()); });
 }
 
 template <class T>
-static void writeArray(T* to, uint32_t* count, const std::vector<T>& values, const char* name) {
+static void writeArray(T* to, uint32_t* count, const std::vector<T>& values) {
     uint32_t& room = output(count, "count");
-    writeStructs(to, room, values, name);
+    writeStructs(to, room, values);
     room = uint32_t(values.size());
 }
 
 PelError pelShaderGetPasses(PelShader shader, PelPassStats* passes, uint32_t* count) {
-    return entry([&] { writeArray(passes, count, fromHandle<Shader>(shader)->passStats(), "PelPassStats"); });
+    return entry([&] { writeArray(passes, count, fromHandle<Shader>(shader)->passStats()); });
 }
 
 PelError pelShaderGetMemory(PelShader shader, PelPassMemory* passes, uint32_t* count) {
-    return entry([&] { writeArray(passes, count, fromHandle<Shader>(shader)->memory(), "PelPassMemory"); });
+    return entry([&] { writeArray(passes, count, fromHandle<Shader>(shader)->memory()); });
 }

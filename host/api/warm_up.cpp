@@ -9,11 +9,10 @@ using namespace pel;
 
 namespace {
 
-constexpr uint32_t texels = 16;  // a side of the smallest table
-
+// The smallest table.
 template <class Desc>
 Desc small(Desc desc) {
-    desc.width = desc.height = texels;
+    desc.width = desc.height = 16;
     return desc;
 }
 
@@ -36,8 +35,7 @@ void profileLutJobs(const Ref<Device>& device, const Ref<Profile>& profile, Buil
         [](const auto& on, const auto& desc) { integrateShadowLut(on, desc); });
 }
 
-void lutJobs(const Ref<Device>& device, BuildJobs& jobs) {
-    profileLutJobs(device, {}, jobs);
+void specularLutJob(const Ref<Device>& device, BuildJobs& jobs) {
     jobs.push_back([device] {
         const Ref<Lut> lut = tabulateSpecularLut(device, small(pelSpecularLutDescDefaults()));
         std::vector<char> packed(packedBytes(*lut, PEL_LUT_FLOAT));
@@ -95,20 +93,12 @@ void curvatureJobs(const Ref<Device>& device, BuildJobs& jobs) {
     });
 }
 
-BuildJobs jobsOfGroups(const Ref<Device>& device, uint32_t groups) {
-    BuildJobs jobs;
-    if (groups & PEL_PROGRAMS_LUTS) lutJobs(device, jobs);
-    if (groups & PEL_PROGRAMS_TABULATED_LUTS) tableLutJobs(device, jobs);
-    if (groups & PEL_PROGRAMS_CURVATURE) curvatureJobs(device, jobs);
-    return jobs;
-}
-
 }  // namespace
 
 PelError pelWarmUpPrograms(PelDevice device, const PelWarmUp* work, uint32_t* built) {
     return entry([&] {
         const Ref<Device> d = fromHandle<Device>(device);
-        const PelWarmUp w = readStruct(work, pelWarmUpDefaults(), "PelWarmUp");
+        const PelWarmUp w = readStruct(work, pelWarmUpDefaults());
         constexpr uint32_t known = PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABULATED_LUTS | PEL_PROGRAMS_CURVATURE;
         if (w.groups & ~known)
             invalidArgument("PelWarmUp.groups is ", w.groups,
@@ -120,7 +110,10 @@ PelError pelWarmUpPrograms(PelDevice device, const PelWarmUp* work, uint32_t* bu
         const uint32_t before = d->programs().counts().built;
         const unsigned builders = buildersFor(*d, w.threads);
         cl::BuildHelpers helpers(d->id(), builders);
-        BuildJobs jobs = jobsOfGroups(d, w.groups);
+        BuildJobs jobs;
+        if (w.groups & PEL_PROGRAMS_LUTS) profileLutJobs(d, {}, jobs), specularLutJob(d, jobs);
+        if (w.groups & PEL_PROGRAMS_TABULATED_LUTS) tableLutJobs(d, jobs);
+        if (w.groups & PEL_PROGRAMS_CURVATURE) curvatureJobs(d, jobs);
         {
             const cl::HelpScope scope(helpers);
             for (uint32_t i = 0; i < w.numShaders; ++i) {
@@ -129,18 +122,15 @@ PelError pelWarmUpPrograms(PelDevice device, const PelWarmUp* work, uint32_t* bu
                     invalidArgument("PelWarmUp.shaders[", i, "] belongs to another PelDevice");
                 shader->addBuildJobs(jobs);
             }
-            const char* next = reinterpret_cast<const char*>(w.scatters);
-            for (uint32_t i = 0; i < w.numScatters; ++i) {
-                const auto* given = reinterpret_cast<const PelScatterWork*>(next);
-                const PelScatterWork s = readStruct(given, pelScatterWorkDefaults(), "PelScatterWork");
-                next += given->structSize;
+            eachStruct(w.scatters, w.numScatters, [&](const PelScatterWork* given, uint32_t i) {
+                const PelScatterWork s = readStruct(given, pelScatterWorkDefaults());
                 const Ref<Scatter> scatter = fromHandle<Scatter>(s.scatter);
                 if (&scatter->device() != d.get())
                     invalidArgument("PelWarmUp.scatters[", i, "] belongs to another PelDevice");
-                scatter->addBuildJobs(readStructOr(s.params, pelScatterParamsDefaults(), "PelScatterParams"),
+                scatter->addBuildJobs(readStructOr(s.params, pelScatterParamsDefaults()),
                                       scatterImages(*d, s.irradiance, s.positions, s.depth, s.ids, s.out),
                                       jobs);
-            }
+            });
         }
         runJobs(*d, jobs, builders, helpers, [&](size_t done) {
             const std::string what = text("building kernels ", done, "/", jobs.size());

@@ -36,6 +36,10 @@ class Launch {
     template <class T>
     requires requires(const T& owner) { owner.memory(); }
     Launch& arg(const T& owner) { return arg(owner.memory()); }
+    // The memory and the layout of a view.
+    template <class T>
+    requires requires(const T& view) { view.layout; }
+    Launch& arg(const T& view) { return arg(view.memory).arg(view.layout); }
     // Numbers and structures of kernels/shared, passed by value.
     template <class T>
     requires std::is_trivially_copyable_v<T> &&(!std::is_pointer_v<T>)Launch& arg(const T& value) {

@@ -213,15 +213,13 @@ bool BinaryCache::store(const Program& program, const std::string& source, const
     return got(CL_PROGRAM_BINARIES, places.data(), count) && files_->store(name(source, options), binary);
 }
 
-namespace {
-
-std::string_view find(std::string_view name) {
+static std::string_view find(std::string_view name) {
     for (const KernelFile& file : kernelFiles())
         if (file.name == name) return file.text;
     fail(PEL_ERROR_UNKNOWN, "no kernel file named ", name, " is embedded in this library");
 }
 
-void expand(std::string_view name, std::set<std::string_view>& seen, std::string& out) {
+static void expand(std::string_view name, std::set<std::string_view>& seen, std::string& out) {
     static constexpr std::string_view directive = "#include \"";
     std::string_view rest = find(name);
     // With #line, compiler messages name the file that a reader can open.
@@ -242,8 +240,6 @@ void expand(std::string_view name, std::set<std::string_view>& seen, std::string
         out += text("#line ", line + 1, " \"", name, "\"\n");
     }
 }
-
-}  // namespace
 
 std::string kernelSource(std::span<const std::string> names) {
     // Clang warns of vectors wider than the registers in calls, but every function here is inlined. NVIDIA's

@@ -194,9 +194,9 @@ void Device::exchange(cl_mem memory, size_t bytes, const void* source, void* des
     cl::check(clFinish(queue), "clFinish");
 }
 
-void Device::copy(cl_mem from, cl_mem to, size_t offset, size_t bytes) {
+void Device::copy(cl_mem from, size_t fromOffset, cl_mem to, size_t offset, size_t bytes) {
     if (CountedRun::on()) return;
-    cl::check(clEnqueueCopyBuffer(queue(), from, to, 0, offset, bytes, 0, nullptr, nullptr),
+    cl::check(clEnqueueCopyBuffer(queue(), from, to, fromOffset, offset, bytes, 0, nullptr, nullptr),
               "clEnqueueCopyBuffer");
 }
 

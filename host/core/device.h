@@ -48,6 +48,11 @@ class Device final : public Object {
     // Device memory: a copy of `initial`, else zeros if asked for.
     cl::Memory allocate(size_t bytes, const void* initial = nullptr, bool zeros = false);
     cl::Memory allocateZeros(size_t bytes) { return allocate(bytes, nullptr, true); }
+    // A copy of all values; no memory for none.
+    template <class T>
+    cl::Memory upload(const std::vector<T>& values) {
+        return values.empty() ? cl::Memory() : allocate(values.size() * sizeof(T), values.data());
+    }
     // Constants that depend on `key` alone. The first call makes them; a few are kept if they are small.
     template <class Make>
     cl::Memory constants(const std::string& key, const Make& make) {
@@ -56,9 +61,8 @@ class Device final : public Object {
             if (const auto found = constants_.find(key); found != constants_.end()) return found->second;
         }
         const auto values = make();
-        const size_t bytes = values.size() * sizeof values[0];
-        const cl::Memory memory = allocate(bytes, values.data());
-        if (bytes > 1 << 16) return memory;
+        const cl::Memory memory = upload(values);
+        if (values.size() * sizeof values[0] > 1 << 16) return memory;
         const std::lock_guard lock(mutex_);
         if (constants_.size() == 32) constants_.clear();
         return constants_.insert_or_assign(key, memory).first->second;
@@ -90,8 +94,8 @@ class Device final : public Object {
         exchange(memory, bytes, source, nullptr);
     }
 
-    // Enqueues a copy from the first byte of `from` on.
-    void copy(cl_mem from, cl_mem to, size_t offset, size_t bytes);
+    // Enqueues a copy.
+    void copy(cl_mem from, size_t fromOffset, cl_mem to, size_t offset, size_t bytes);
     // Enqueues: fills `bytes`, a multiple of 4, from `offset` on with copies of `word`.
     void fill(cl_mem memory, size_t offset, size_t bytes, uint32_t word);
 

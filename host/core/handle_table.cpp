@@ -118,10 +118,8 @@ uint64_t liveHandles() {
 }
 
 // With PELLUCID_CHECK_LEFT set, a process that leaves handles unreleased reports them and ends with 1.
-namespace {
-
 // Runs after the static objects of the program. A forked child inherits the parent's objects.
-[[gnu::destructor]] void tellWhatIsLeft() {
+[[gnu::destructor]] static void tellWhatIsLeft() {
     const uint64_t handles = liveHandles(), objects = Object::alive();
     if ((handles == 0 && objects == 0) || !std::getenv("PELLUCID_CHECK_LEFT") || cl::isFork()) return;
     std::fprintf(stderr, "\npellucid: %llu handles were never released; %llu objects are left\n",
@@ -129,8 +127,6 @@ namespace {
     std::fflush(nullptr);
     std::_Exit(1);
 }
-
-}  // namespace
 
 const char* kindName(Kind kind) {
     static constexpr const char* names[] = {"PelDevice",   "PelEvent",         "PelBuffer", "PelMeshTopology",

@@ -1,7 +1,6 @@
 #include "core/image_substitutes.h"
 
 #include <algorithm>
-#include <map>
 
 namespace pel {
 namespace {

@@ -35,8 +35,8 @@ uint64_t ImageView::byteEnd() const {
 }
 
 ImageView makeImageView(const PelImageDesc* given, Device& device, const char* what) {
-    const PelImageDesc desc = about([&] { return readStruct(given, pelImageDescDefaults(), "PelImageDesc"); },
-                                    "the ", what, " image");
+    const PelImageDesc desc =
+        about([&] { return readStruct(given, pelImageDescDefaults()); }, "the ", what, " image");
     const FormatInfo* format = formatInfo(desc.format);
     if (!format)
         invalidArgument("the ", what, " image has format ", int(desc.format),
@@ -86,17 +86,15 @@ ImageView makeImageView(const PelImageDesc* given, Device& device, const char* w
     return view;
 }
 
-namespace {
-
 // Whether the byte ranges of the two images overlap, from first to last pixel.
-bool overlaps(const ImageView& a, const ImageView& b) {
+static bool overlaps(const ImageView& a, const ImageView& b) {
     const Buffer::Place &inA = a.buffer->place(), &inB = b.buffer->place();
     return inA.whole == inB.whole && inA.offset + a.byteEnd() > inB.offset + b.byteOffset &&
            inB.offset + b.byteEnd() > inA.offset + a.byteOffset;
 }
 
 // Whether pixels of both have the same addresses: interleaved components, or the same image.
-bool pixelOnPixel(const ImageView& a, const ImageView& b) {
+static bool pixelOnPixel(const ImageView& a, const ImageView& b) {
     // Writes through one cl_mem need not be visible through another one over the same memory.
     if (a.buffer->memory().get() != b.buffer->memory().get()) return false;
     if (a.pixelStride != b.pixelStride || a.rowStride != b.rowStride || a.info().planar != b.info().planar)
@@ -106,8 +104,6 @@ bool pixelOnPixel(const ImageView& a, const ImageView& b) {
                std::min(a.byteOffset, b.byteOffset) <=
            a.pixelStride;
 }
-
-}  // namespace
 
 void copyTextures(const std::vector<ImageView>& images, bool back) {
     std::vector<const Buffer*> copied;

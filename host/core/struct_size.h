@@ -14,9 +14,14 @@ namespace pel {
 // field of this one ends, or where the next begins. A newer one's is longer, by a multiple of 4 bytes.
 template <class T>
 bool isWholeStruct(uint32_t size);
+// The name of T in messages.
+template <class T>
+constexpr const char* structName = nullptr;
 
 #define PEL_FIELD(T, name) {offsetof(T, name), offsetof(T, name) + sizeof(T::name)},
 #define PEL_STRUCT(T, fields)                                                 \
+    template <>                                                               \
+    inline constexpr const char* structName<T> = #T;                          \
     template <>                                                               \
     inline bool isWholeStruct<T>(uint32_t size) {                             \
         static constexpr struct { size_t begin, end; } all[] = {fields};      \
@@ -30,7 +35,8 @@ bool isWholeStruct(uint32_t size);
 #undef PEL_FIELD
 
 template <class T>
-void checkStructSize(uint32_t size, const char* name) {
+void checkStructSize(uint32_t size) {
+    constexpr const char* name = structName<T>;
     if (size > 1u << 16 || !isWholeStruct<T>(size))
         invalidArgument(name, ".structSize is ", size, ", which is not its size in any version; it is ",
                         sizeof(T), " in this version: start from the pel...Defaults() function of ", name);
@@ -38,9 +44,9 @@ void checkStructSize(uint32_t size, const char* name) {
 
 // Copies the caller's structure over `defaults`. Fields that its header did not have keep their defaults.
 template <class T>
-T readStruct(const T* from, T defaults, const char* name) {
-    if (!from) invalidArgument("a ", name, " is needed, not NULL");
-    checkStructSize<T>(from->structSize, name);
+T readStruct(const T* from, T defaults) {
+    if (!from) invalidArgument("a ", structName<T>, " is needed, not NULL");
+    checkStructSize<T>(from->structSize);
     std::memcpy(&defaults, from, std::min<size_t>(from->structSize, sizeof(T)));
     defaults.structSize = sizeof(T);
     return defaults;
@@ -48,30 +54,39 @@ T readStruct(const T* from, T defaults, const char* name) {
 
 // The same, where NULL stands for the defaults.
 template <class T>
-T readStructOr(const T* from, const T& defaults, const char* name) {
-    return from ? readStruct(from, defaults, name) : defaults;
+T readStructOr(const T* from, const T& defaults) {
+    return from ? readStruct(from, defaults) : defaults;
+}
+
+// Calls use(structure, i) for each of an array, where each is as long as it says itself.
+template <class T, class Use>
+void eachStruct(const T* first, uint32_t count, const Use& use) {
+    const T* next = first;
+    for (uint32_t i = 0; i < count; ++i) {
+        use(next, i);
+        next = reinterpret_cast<const T*>(reinterpret_cast<const char*>(next) + next->structSize);
+    }
 }
 
 template <class T>
-void writeStruct(T* to, const T& value, const char* name) {
-    if (!to) invalidArgument("a ", name, " to fill is needed, not NULL");
+void writeStruct(T* to, const T& value) {
+    if (!to) invalidArgument("a ", structName<T>, " to fill is needed, not NULL");
     const uint32_t size = to->structSize;
-    checkStructSize<T>(size, name);
+    checkStructSize<T>(size);
     std::memcpy(to, &value, std::min<size_t>(size, sizeof(T)));
     to->structSize = size;
 }
 
 // An array of `room` structures, each as long as the first says. Nothing is written if there are more.
 template <class T>
-void writeStructs(T* to, uint32_t room, const std::vector<T>& values, const char* name) {
+void writeStructs(T* to, uint32_t room, const std::vector<T>& values) {
     if (values.size() > room)
-        invalidArgument("there are ", values.size(), " structures ", name, " and room for ", room);
-    if (values.empty()) return;
-    const uint32_t size = to ? to->structSize : 0;
+        invalidArgument("there are ", values.size(), " structures ", structName<T>, " and room for ", room);
+    const uint32_t size = to && !values.empty() ? to->structSize : 0;
     for (size_t i = 0; i < values.size(); ++i) {
         T* const one = reinterpret_cast<T*>(reinterpret_cast<char*>(to) + i * size);
         if (i > 0) one->structSize = size;
-        writeStruct(one, values[i], name);
+        writeStruct(one, values[i]);
     }
 }
 

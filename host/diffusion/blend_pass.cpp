@@ -16,7 +16,7 @@ bool weighsLater(const ShaderMaterial& material) {
 
 bool weighsLater(const ShaderPlan& plan) {
     return plan.state.images[PEL_SLOT_SCATTER_WEIGHT] &&
-           std::ranges::any_of(plan.state.materials, [](const auto& m) { return weighsLater(m.second); });
+           anyMaterial(plan.state, [](const ShaderMaterial& m) { return weighsLater(m); });
 }
 
 bool changes(const ShaderPlan& plan, const ShaderMaterial& material) {
@@ -26,7 +26,7 @@ bool changes(const ShaderPlan& plan, const ShaderMaterial& material) {
 }
 
 bool changes(const ShaderPlan& plan) {
-    return std::ranges::any_of(plan.state.materials, [&](const auto& m) { return changes(plan, m.second); });
+    return anyMaterial(plan.state, [&](const ShaderMaterial& m) { return changes(plan, m); });
 }
 
 std::map<uint32_t, PelBlendMaterial> blendMaterials(const ShaderPlan& plan) {

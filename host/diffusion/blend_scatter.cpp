@@ -24,8 +24,8 @@ void BlendScatter::prepare(const std::map<uint32_t, PelBlendMaterial>& materials
         frame.materialOf[id] = uint32_t(all.size());
         all.push_back(material);
     }
-    frame_.update(*device_, &frame, sizeof frame);
-    materials_.update(*device_, all.data(), all.size() * sizeof all[0]);
+    frame_.update(*device_, frame);
+    materials_.update(*device_, all);
 }
 
 std::vector<cl::ProgramKey> BlendScatter::programs(const BlendImages& images) const {

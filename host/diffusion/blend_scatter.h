@@ -1,7 +1,5 @@
 // The steps before and after the scattering methods (kernels/diffusion/blend_scatter.cl).
 #pragma once
-#include "core/image_view.h"
-#include "lut/profile.h"
 #include "shading/scratch_image.h"
 #include "shared/blend.h"
 

@@ -19,7 +19,7 @@ class CurvaturePass final : public Pass {
     static bool needed(const ShaderPlan& plan) {
         const auto& images = plan.state.images;
         return !images[PEL_SLOT_MEAN_CURVATURE] && (images[PEL_SLOT_POSITION] || images[PEL_SLOT_DEPTH]) &&
-               std::ranges::any_of(plan.state.materials, [](const auto& m) { return hasGain(m.second); });
+               anyMaterial(plan.state, hasGain);
     }
 
     PassScratch scratch(const ShaderPlan&) const override { return {sizeof(float), 0, 0, false}; }

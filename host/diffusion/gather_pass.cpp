@@ -13,9 +13,7 @@ using Form = GatherScatter::Form;
 template <Form form>
 class GatherPass final : public Pass {
   public:
-    static bool needed(const ShaderPlan& plan) {
-        return std::ranges::any_of(plan.state.materials, [](const auto& m) { return takes(m.second); });
-    }
+    static bool needed(const ShaderPlan& plan) { return anyMaterial(plan.state, takes); }
 
     // Neighbours may be as far away as the profile reaches.
     PassScratch scratch(const ShaderPlan& plan) const override {
@@ -76,8 +74,8 @@ class GatherPass final : public Pass {
         const ScatterCounts counts = scatter_->counts();
         addScatterCounts(counts, form == Form::disk ? PEL_SCATTERING_SCREEN : PEL_SCATTERING_SEPARABLE,
                          stats);
-        if (std::ranges::all_of(plan.state.materials, [](const auto& m) {
-                return !takes(m.second) || m.second.given.scattering == PEL_SCATTERING_AUTO;
+        if (!anyMaterial(plan.state, [](const ShaderMaterial& m) {
+                return takes(m) && m.given.scattering != PEL_SCATTERING_AUTO;
             }))
             addKeptChoices(counts, stats);
     }

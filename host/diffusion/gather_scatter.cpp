@@ -1,7 +1,6 @@
 #include "diffusion/gather_scatter.h"
 
 #include <bit>
-#include <cmath>
 
 #include "core/launch_policy.h"
 #include "diffusion/gather_taps.h"
@@ -68,12 +67,11 @@ void GatherScatter::sendMaterials(const std::map<uint32_t, Material>& materials)
         described.push_back(m);
     }
     if (described.empty()) described.emplace_back(), taps.emplace_back(), values.resize(8);
-    const size_t bytes[] = {described.size() * sizeof described[0], taps.size() * sizeof taps[0],
-                            values.size() * sizeof(float)};
-    described_ = device_->allocate(bytes[0], described.data());
-    taps_ = device_->allocate(bytes[1], taps.data());
-    nodes_ = device_->allocate(bytes[2], values.data());
-    tableBytes_ = bytes[0] + bytes[1] + bytes[2];
+    described_ = device_->upload(described);
+    taps_ = device_->upload(taps);
+    nodes_ = device_->upload(values);
+    tableBytes_ =
+        described.size() * sizeof described[0] + taps.size() * sizeof taps[0] + values.size() * sizeof(float);
     materials_ = materials;
 }
 
@@ -119,7 +117,7 @@ void GatherScatter::prepare(const std::map<uint32_t, Material>& materials, const
     if (!(history.weight > 0)) sequence_.reset();
     tiles_.resize(*device_, size_t(frame_.tilesX) * frame_.tilesY * sizeof(cl_uint));
     if (!counters_) counters_ = device_->allocate(PEL_DIFFUSION_COUNTERS * sizeof(cl_uint));
-    constants_.send(*device_, frame_);
+    constants_.update(*device_, frame_);
 }
 
 std::vector<cl::ProgramKey> GatherScatter::programs(const GatherImages& images) const {

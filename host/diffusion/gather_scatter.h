@@ -68,7 +68,7 @@ class GatherScatter {
     const Form form_;
     std::map<uint32_t, Material> materials_;
     PelGatherFrame frame_{};
-    SentConstants<PelGatherFrame> constants_;
+    CachedUpload constants_;
     cl::Memory described_, taps_, nodes_, counters_;
     SizedMemory points_, rows_, samples_, tiles_;
     SizedMemory history_[2];  // up to the last frame, and up to this one

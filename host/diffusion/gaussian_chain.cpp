@@ -1,7 +1,5 @@
 #include "diffusion/gaussian_chain.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace pel {
@@ -45,8 +43,7 @@ double within(const std::vector<GaussianTerm>& terms, int channel, double r) {
 
 std::vector<double> distancesOf(const Profile& profile) {
     const Rgb width = profile.shape().width();
-    const double low = 0.02 * std::min({width[0], width[1], width[2]}),
-                 high = 8 * std::max({width[0], width[1], width[2]});
+    const double low = 0.02 * smallest(width), high = 8 * largest(width);
     std::vector<double> distances;
     for (int i = 0; i < samples; ++i)
         distances.push_back(low * std::pow(high / low, double(i) / (samples - 1)));
@@ -67,10 +64,7 @@ double errorOf(const std::vector<GaussianTerm>& terms, const std::vector<double>
 GaussianChain gaussianChain(const Profile& profile, uint32_t most) {
     const std::vector<double> distances = distancesOf(profile);
     std::vector<Rgb> shares;
-    for (double r : distances) {
-        const Rgb beyond = profile.shape().transmission(r);
-        shares.push_back({1 - beyond[0], 1 - beyond[1], 1 - beyond[2]});
-    }
+    for (double r : distances) shares.push_back(Rgb{1, 1, 1} - profile.shape().transmission(r));
     GaussianChain best{profile.terms(), 0};
     if (!best.terms.empty() && best.terms.size() <= most) {
         std::ranges::sort(best.terms, {}, &GaussianTerm::variance);
@@ -78,8 +72,7 @@ GaussianChain gaussianChain(const Profile& profile, uint32_t most) {
         return best;
     }
     const Rgb width = profile.shape().width();
-    const double narrowest = std::min({width[0], width[1], width[2]}),
-                 widest = std::max({width[0], width[1], width[2]});
+    const double narrowest = smallest(width), widest = largest(width);
     best.error = INFINITY;
     for (double low : {0.015, 0.03, 0.06, 0.12, 0.25, 0.5})
         for (double high : {1.0, 1.4, 2.0}) {

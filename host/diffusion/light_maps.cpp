@@ -1,9 +1,5 @@
 #include "diffusion/light_maps.h"
 
-#include <algorithm>
-#include <cfloat>
-#include <cmath>
-
 #include "shading/features.h"
 #include "shading/shading_constants.h"
 
@@ -37,21 +33,15 @@ bool invert(const Matrix& m, Matrix& inverse) {
     return std::all_of(inverse.begin(), inverse.end(), [](double v) { return std::isfinite(v); });
 }
 
-struct Vec {
-    double x, y, z;
-    double dot(Vec b) const { return x * b.x + y * b.y + z * b.z; }
-    double length() const { return std::sqrt(dot(*this)); }
-};
-
-Vec rowOf(const Matrix& m, int r) {
-    return {m[4 * r], m[4 * r + 1], m[4 * r + 2]};
+Three rowOf(const Matrix& m, int r) {
+    return threeAt(&m[4 * r]);
 }
 
 // Change of u or v, times the homogeneous coordinate, per length of a step across the light.
 double perLength(const Matrix& m, int r) {
-    const Vec row = rowOf(m, r), forward = rowOf(m, 3);
-    const double along = forward.dot(forward) > 0 ? row.dot(forward) / forward.dot(forward) : 0;
-    return Vec{row.x - along * forward.x, row.y - along * forward.y, row.z - along * forward.z}.length();
+    const Three row = rowOf(m, r), forward = rowOf(m, 3);
+    const double along = dot(forward, forward) > 0 ? dot(row, forward) / dot(forward, forward) : 0;
+    return length(row - along * forward);
 }
 
 // A face of a cube as a perspective map: rows of components along u, v and the axis
@@ -85,7 +75,7 @@ PelLightMap describe(const ShaderLight& light, uint32_t number, Matrix m, const 
     PelLightMap to{};
     for (int r = 0; r < 4; ++r)
         for (int k = 0; k < 3; ++k) m[4 * r + 3] += m[4 * r + k] * origin[k];
-    if (rowOf(m, 3).length() == 0 && m[15] != 0)
+    if (length(rowOf(m, 3)) == 0 && m[15] != 0)
         for (const double w = m[15]; double& v : m) v /= w;
     Matrix inverse{};
     if (!invert(m, inverse))
@@ -95,22 +85,12 @@ PelLightMap describe(const ShaderLight& light, uint32_t number, Matrix m, const 
             "its shadow map");
     std::copy(m.begin(), m.end(), to.toMap);
     std::copy(inverse.begin(), inverse.end(), to.toWorld);
-    to.type = l.type;
-    std::copy_n(l.toLight, 3, to.toLight);
+    describeLamp(l, to);
     for (int k = 0; k < 3; ++k) to.position[k] = float(double(l.position[k]) - origin[k]);
-    std::copy_n(l.spotDirection, 3, to.spotDirection);
-    to.spotCosOuter = l.spotCosOuter;
-    to.spotScale = 1 / std::max(l.spotCosInner - l.spotCosOuter, 1e-6f);
-    to.range2 = l.range > 0 ? std::min(l.range * l.range, FLT_MAX) : FLT_MAX;
-    std::copy_n(l.color, 3, to.color);
-    to.radius = l.radius;
-    std::copy_n(l.halfWidth, 3, to.halfWidth);
-    std::copy_n(l.halfHeight, 3, to.halfHeight);
     if (l.shadowProjection == PEL_SHADOW_CUBE_RADIAL) to.radialRange = l.shadowDepthRange;
-    if (l.shadowExponent != 0) to.perExponent = float(std::log(2.0) / l.shadowExponent);
     const double texel = std::max(1 / (perLength(m, 0) * width), 1 / (perLength(m, 1) * height));
     to.step = 1;  // the width of a texel of a perspective map depends on the distance of the surface
-    if (rowOf(m, 3).length() == 0)
+    if (length(rowOf(m, 3)) == 0)
         while (to.step < mostTexels && 2 * to.step * texel <= coarsest) to.step *= 2;
     to.texel = float(texel * to.step);
     to.size[0] = float(double(width) / to.step), to.size[1] = float(double(height) / to.step);

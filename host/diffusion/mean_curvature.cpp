@@ -26,7 +26,7 @@ size_t MeanCurvature::send(Device& device, uint32_t height, const float (&invers
     frame.ids = describeImage(images_.ids);
     frame.out = describeImage(images_.out);
     for (const auto& [id, window] : windows) frame.window[id] = window;
-    constants_.send(device, frame);
+    constants_.update(device, frame);
     return sizeof frame;
 }
 

@@ -1,8 +1,7 @@
 // Mean curvature of the surface under each pixel (kernels/diffusion/mean_curvature.cl), for the gain of
 // curved bodies.
 #pragma once
-#include "core/image_view.h"
-#include "diffusion/sent_constants.h"
+#include "shading/scratch_image.h"
 #include "shared/mean_curvature.h"
 
 namespace pel {
@@ -23,7 +22,7 @@ class MeanCurvature {
 
   private:
     Images images_;
-    SentConstants<PelMeanCurvature> constants_;
+    CachedUpload constants_;
 };
 
 }  // namespace pel

@@ -1,8 +1,6 @@
 #include "diffusion/profile_table.h"
 
-#include <algorithm>
 #include <bit>
-#include <cmath>
 #include <numbers>
 
 #include "shading/material.h"
@@ -26,8 +24,7 @@ Rgb lightBetween(const ProfileShape& shape, double begin, double end) {
     Rgb sum{};
     for (int k = 0; k < 4; ++k) {
         const double r = std::exp(middle + half * points[k]);
-        const Rgb density = shape.radial(r);
-        for (int c = 0; c < 3; ++c) sum[c] += weights[k] * half * 2 * std::numbers::pi * r * r * density[c];
+        sum += weights[k] * half * 2 * std::numbers::pi * r * r * shape.radial(r);
     }
     return sum;
 }
@@ -41,10 +38,8 @@ Rgb meanOfBlock(const Density& density, double distance) {
     const double half = PEL_BLOCK_WIDTH / 2 * distance;
     Rgb sum{};
     for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-            const Rgb there = density(std::hypot(distance + at[i] * half, at[j] * half));
-            for (int c = 0; c < 3; ++c) sum[c] += weights[i] * weights[j] * there[c];
-        }
+        for (int j = 0; j < 3; ++j)
+            sum += weights[i] * weights[j] * density(std::hypot(distance + at[i] * half, at[j] * half));
     return sum;
 }
 
@@ -62,19 +57,15 @@ template <class Density>
 Rgb aboveCurve(const Density& density, uint32_t bits, uint32_t step) {
     const Rgb a = density(radiusOfNode(bits)), b = density(radiusOfNode(bits + step)),
               middle = density(radiusOfNode(bits + step / 2));
-    Rgb above;
-    for (int c = 0; c < 3; ++c) above[c] = 2 / 3. * ((a[c] + b[c]) / 2 - middle[c]);
-    return above;
+    return 2 / 3. * ((a + b) / 2 - middle);
 }
 
 // The value of a node from which look-ups on both sides of it are right in the mean.
 template <class Density>
 Rgb valueOfNode(const Density& density, uint32_t bits, uint32_t step, bool isFirst) {
-    Rgb value = density(radiusOfNode(bits));
     const Rgb after = aboveCurve(density, bits, step),
               before = isFirst ? after : aboveCurve(density, bits - step, step);
-    for (int c = 0; c < 3; ++c) value[c] -= (before[c] + after[c]) / 2;
-    return value;
+    return density(radiusOfNode(bits)) - (before + after) / 2;
 }
 
 // Solves A x = b for a symmetric positive definite A (Cholesky), three right sides at a time.
@@ -86,16 +77,14 @@ void solve(std::vector<double>& a, std::vector<Rgb>& b) {
             for (size_t k = 0; k < j; ++k) sum -= a[i * n + k] * a[j * n + k];
             a[i * n + j] = i == j ? std::sqrt(sum) : sum / a[j * n + j];
         }
-    for (size_t i = 0; i < n; ++i)
-        for (int c = 0; c < 3; ++c) {
-            for (size_t k = 0; k < i; ++k) b[i][c] -= a[i * n + k] * b[k][c];
-            b[i][c] /= a[i * n + i];
-        }
-    for (size_t i = n; i-- > 0;)
-        for (int c = 0; c < 3; ++c) {
-            for (size_t k = i + 1; k < n; ++k) b[i][c] -= a[k * n + i] * b[k][c];
-            b[i][c] /= a[i * n + i];
-        }
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t k = 0; k < i; ++k) b[i] = b[i] - a[i * n + k] * b[k];
+        b[i] = b[i] / a[i * n + i];
+    }
+    for (size_t i = n; i-- > 0;) {
+        for (size_t k = i + 1; k < n; ++k) b[i] = b[i] - a[k * n + i] * b[k];
+        b[i] = b[i] / a[i * n + i];
+    }
 }
 
 // Least squares of the light in each part of an octave, from the reach down to a 2^8th of it. The terms are
@@ -107,18 +96,17 @@ std::vector<Rgb> gaussiansOf(const Density& density, double widest, double reach
     std::vector<Rgb> b(n), light;
     for (int s = 0; s <= perTerm * n; ++s) {
         const double r = reach * std::exp2(-0.5 * s / perTerm), lightPerLog = 2 * std::numbers::pi * r * r;
-        const Rgb value = density(r);
-        light.push_back({value[0] * lightPerLog, value[1] * lightPerLog, value[2] * lightPerLog});
+        light.push_back(lightPerLog * density(r));
         for (int i = 0; i < n; ++i)
             columns[i].push_back(lightPerLog * std::exp2(-widest * std::exp2(i) * r * r));
     }
     // A compromise between absolute and relative error: tails have little light, but all of the light through
     // an ear.
     double most = 0;
-    for (const Rgb& l : light) most = std::max({most, l[0], l[1], l[2]});
+    for (const Rgb& l : light) most = std::max(most, largest(l));
     for (size_t s = 0; s < light.size(); ++s) {
-        const double weight = 1 / std::sqrt(std::max({light[s][0], light[s][1], light[s][2]}) + 3e-3 * most);
-        for (int c = 0; c < 3; ++c) light[s][c] *= weight;
+        const double weight = 1 / std::sqrt(largest(light[s]) + 3e-3 * most);
+        light[s] = weight * light[s];
         for (int i = 0; i < n; ++i) columns[i][s] *= weight;
     }
     double lengths[n];
@@ -134,14 +122,12 @@ std::vector<Rgb> gaussiansOf(const Density& density, double widest, double reach
             a[size_t(i * n + j)] = a[size_t(j * n + i)] =
                 sum / (lengths[i] * lengths[j]) + (i == j ? 1e-6 : 0);
         }
-    for (int i = 0; i < n; ++i)
-        for (int c = 0; c < 3; ++c) {
-            for (size_t s = 0; s < light.size(); ++s) b[i][c] += columns[i][s] * light[s][c];
-            b[i][c] /= lengths[i];
-        }
+    for (int i = 0; i < n; ++i) {
+        for (size_t s = 0; s < light.size(); ++s) b[i] += columns[i][s] * light[s];
+        b[i] = b[i] / lengths[i];
+    }
     solve(a, b);
-    for (int i = 0; i < n; ++i)
-        for (int c = 0; c < 3; ++c) b[i][c] /= lengths[i];
+    for (int i = 0; i < n; ++i) b[i] = b[i] / lengths[i];
     return b;
 }
 
@@ -175,8 +161,7 @@ Rgb densityThrough(const Density& density, const Rgb& path, const Rgb& meanDista
         const double r = first * std::exp((i + 0.5) * step),
                      far = std::max(s / r - PEL_SLAB_FROM, 0.0) / (PEL_SLAB_COSINE - PEL_SLAB_FROM),
                      weight = 2 * std::numbers::pi * r * r * (1 - far) * (1 + directed * s / r) * step;
-        const Rgb R = density(r);
-        for (int c = 0; c < 3; ++c) along[c] += weight * R[c];
+        along += weight * density(r);
     }
     Rgb through{};
     for (int c = 0; c < 3; ++c) {
@@ -195,8 +180,7 @@ Rgb densityThrough(const Density& density, const Rgb& path, const Rgb& meanDista
 
 ProfileNodes profileNodes(const ProfileShape& shape, double scale, const Rgb& meanFreePath, double strength) {
     const Rgb width = shape.width();
-    const double narrowest = std::min({width[0], width[1], width[2]}),
-                 widest = std::max({width[0], width[1], width[2]});
+    const double narrowest = smallest(width), widest = largest(width);
     // A thousandth of the narrowest width: light within belongs to the pixel itself.
     const double first = 1e-3 * narrowest * scale, farthest = 64 * widest * scale;
     if (!(first * first > 1e-30) || !(farthest * farthest < 1e30))
@@ -209,19 +193,15 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale, const Rgb& me
     const uint32_t firstBits = nodeOf(first), lastBits = nodeOf(farthest) + step;
     Rgb within{};
     // 12 octaves of r below the first node
-    for (uint32_t octave = 24 * PEL_PROFILE_NODES; octave > 0; --octave) {
-        const Rgb light = lightBetween(shape, radiusOfNode(firstBits - octave * step) / scale,
-                                       radiusOfNode(firstBits - (octave - 1) * step) / scale);
-        for (int c = 0; c < 3; ++c) within[c] += light[c];
-    }
+    for (uint32_t octave = 24 * PEL_PROFILE_NODES; octave > 0; --octave)
+        within += lightBetween(shape, radiusOfNode(firstBits - octave * step) / scale,
+                               radiusOfNode(firstBits - (octave - 1) * step) / scale);
     std::vector<Rgb> shares{within};
     Rgb distance{};
     for (uint32_t bits = firstBits; bits < lastBits; bits += step) {
         const Rgb light = lightBetween(shape, radiusOfNode(bits) / scale, radiusOfNode(bits + step) / scale);
-        for (int c = 0; c < 3; ++c) {
-            within[c] += light[c];
-            distance[c] += light[c] * radiusOfNode(bits + step / 2);
-        }
+        within += light;
+        distance += radiusOfNode(bits + step / 2) * light;
         shares.push_back(within);
     }
     size_t nodes = 1;
@@ -260,9 +240,7 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale, const Rgb& me
             for (int c = 0; c < 4; ++c) result.values.push_back(c < 3 ? float(term[c]) : 0.0f);
     };
     const auto perArea = [&](const Rgb& density) {
-        Rgb scaled;
-        for (int c = 0; c < 3; ++c) scaled[c] = density[c] / (all[c] * scale * scale);
-        return scaled;
+        return threeOf([&](int c) { return density[c] / (all[c] * scale * scale); });
     };
     append([&](double r) { return perArea(shape.radial(r / scale)); });
     append([&](double r) { return perArea(densityOfBlock(shape, r / scale)); });

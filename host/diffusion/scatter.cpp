@@ -1,7 +1,5 @@
 #include "diffusion/scatter.h"
 
-#include <cmath>
-
 #include "core/image_substitutes.h"
 #include "diffusion/scatter_material.h"
 #include "shading/capture.h"
@@ -37,9 +35,7 @@ void checkImages(const ScatterImages& images) {
         if (!*view) continue;
         checkImage(slot, *view);
         const char* name = slot == PEL_SLOT_ALBEDO ? "irradiance" : slotName(slot);
-        if (view->width != images.out.width || view->height != images.out.height)
-            invalidArgument("the ", name, " image is ", view->width, " x ", view->height, ", the output ",
-                            images.out.width, " x ", images.out.height, "; all must have one size");
+        checkSize(name, *view, "output", images.out);
         // The irradiance may be overwritten pixel on pixel.
         const bool same = view->format == images.out.format && view->byteOffset == images.out.byteOffset &&
                           !overlapsElsewhere(images.out, *view);
@@ -148,10 +144,7 @@ Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImage
     for (PelImageSlot slot : keptSlots) {
         const ImageView view = image(slot);
         if (!view) continue;
-        if (view.width != images.out.width || view.height != images.out.height)
-            invalidArgument("the ", slotName(slot), " image is ", view.width, " x ", view.height,
-                            ", the output ", images.out.width, " x ", images.out.height,
-                            "; all must have one size");
+        checkSize(slotName(slot), view, "output", images.out);
         if (sharesBytes(images.out, view))
             invalidArgument("the output overlaps the ", slotName(slot), " image, which is read");
     }

@@ -26,8 +26,8 @@ template <bool alone>
 class ScatterPass final : public Pass {
   public:
     static bool needed(const ShaderPlan& plan) {
-        return std::ranges::any_of(plan.state.materials,
-                                   [&](const auto& m) { return scatters(plan.state, m.second, alone); });
+        return anyMaterial(plan.state,
+                           [&](const ShaderMaterial& m) { return scatters(plan.state, m, alone); });
     }
 
     // Neighbours may be as far away as the profile reaches.
@@ -79,12 +79,10 @@ class ScatterPass final : public Pass {
         if constexpr (!alone) {
             stats.tilesByScattering[PEL_SCATTERING_LIGHT] += light.tiles;
             // Pixels kept by auto can be told from others only if all materials of this pass are auto.
-            if (std::ranges::any_of(plan.state.materials, [&](const auto& m) {
-                    return scatters(plan.state, m.second, alone) &&
-                           m.second.given.scattering != PEL_SCATTERING_AUTO;
+            if (!anyMaterial(plan.state, [&](const ShaderMaterial& m) {
+                    return scatters(plan.state, m, alone) && m.given.scattering != PEL_SCATTERING_AUTO;
                 }))
-                return;
-            addKeptChoices(counts, stats);
+                addKeptChoices(counts, stats);
         }
     }
 

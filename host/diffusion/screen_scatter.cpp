@@ -1,6 +1,5 @@
 #include "diffusion/screen_scatter.h"
 
-#include <cmath>
 #include <cstring>
 
 #include "core/launch_policy.h"
@@ -9,8 +8,12 @@
 #include "shading/shading_constants.h"
 
 namespace pel {
-
 namespace {
+
+// Samples of sums by levels are nearer than the light that they represent, so their gain is smaller.
+constexpr double nearerByLevels = 0.925;
+
+enum ScreenProgram { PYRAMIDS, SUMS, CLASSIFY };
 
 // The point that a perspective matrix maps to infinite depth.
 bool eyeOf(const float inverse[16], float eye[3]) {
@@ -73,13 +76,6 @@ bool samePixels(const ImageView& a, const ImageView& b) {
            a.planeStride == b.planeStride;
 }
 
-namespace {
-// Samples of sums by levels are nearer than the light that they represent, so their gain is smaller.
-constexpr double nearerByLevels = 0.925;
-
-enum ScreenProgram { PYRAMIDS, SUMS, CLASSIFY };
-}  // namespace
-
 void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
     const std::vector<Material> distinct = distinctOf(materials, frame_.tableOf);
     frame_.tables = uint32_t(distinct.size());
@@ -104,8 +100,8 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
         values.insert(values.end(), nodes.values.begin(), nodes.values.end());
     }
     if (tables.empty()) tables.emplace_back(), values.resize(12);
-    tables_ = device_->allocate(tables.size() * sizeof tables[0], tables.data());
-    nodes_ = device_->allocate(values.size() * sizeof(float), values.data());
+    tables_ = device_->upload(tables);
+    nodes_ = device_->upload(values);
     nodeBytes_ = tables.size() * sizeof tables[0] + values.size() * sizeof(float);
     materials_ = materials;
     hasSides_ = hasSides, byTexels_ = lights_.alone;
@@ -146,9 +142,9 @@ uint64_t ScreenScatter::bytesFor(uint32_t width, uint32_t height, bool radii) {
 }
 
 void ScreenScatter::describeLevels(uint32_t width, uint32_t height, bool radii) {
+    const std::vector<PelPyramidLevel> before(std::begin(frame_.level), std::end(frame_.level));
     const uint64_t floats = layOutLevels(width, height, radii, frame_.level);
-    if (pyramid_.bytes() && sums_.bytes() &&
-        !std::memcmp(frame_.level, constants_.sent().level, sizeof frame_.level))
+    if (pyramid_.bytes() && sums_.bytes() && !std::memcmp(frame_.level, before.data(), sizeof frame_.level))
         return;
     pyramid_.forget(), sums_.forget();
     pyramid_.resize(*device_, floats * sizeof(float), true);  // no area outside of the picture
@@ -199,9 +195,9 @@ void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const
     std::copy_n(view.inverseViewProjection, 16, frame_.inverseViewProjection);
     frame_.irradiance = describeImage(images.irradiance);
     frame_.position = describeImage(images.positions ? images.positions : images.depth);
-    frame_.ids = images.ids ? describeImage(images.ids) : PelShadeImage{};
+    frame_.ids = describeImage(images.ids);
     frame_.out = describeImage(images.out);
-    frame_.curvature = images.curvature ? describeImage(images.curvature) : PelShadeImage{};
+    frame_.curvature = describeImage(images.curvature);
     frame_.radii = describeImage(images.radii);
     sendTables(materials);
     describeLevels(frame_.width, frame_.height, bool(images.radii));
@@ -211,7 +207,7 @@ void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const
                        2 * PEL_PYRAMID_GUARD);
     tiles_.resize(*device_, size_t(frame_.tilesX) * frame_.tilesY * sizeof(cl_uint));
     if (!counters_) counters_ = device_->allocate(PEL_LIGHT_WORDS * sizeof(cl_uint));
-    constants_.send(*device_, frame_);
+    constants_.update(*device_, frame_);
 }
 
 std::vector<cl::ProgramKey> ScreenScatter::programs(const ScatterImages& images) const {

@@ -3,7 +3,6 @@
 #pragma once
 #include "diffusion/light_space.h"
 #include "diffusion/profile_table.h"
-#include "diffusion/sent_constants.h"
 
 namespace pel {
 
@@ -39,6 +38,20 @@ struct LightCounts {
     uint32_t pixels, texels, tiles;
     uint64_t reached;  // texels of maps
 };
+
+// The distinct materials of all ids. `numberOf`: number of each id's material, from 1 on; 0: none.
+template <class Material>
+std::vector<Material> distinctOf(const std::map<uint32_t, Material>& materials,
+                                 uint32_t (&numberOf)[PEL_DIFFUSION_IDS]) {
+    std::vector<Material> distinct;
+    std::ranges::fill(numberOf, 0);
+    for (const auto& [id, material] : materials) {
+        const auto found = std::ranges::find(distinct, material);
+        numberOf[id] = uint32_t(found - distinct.begin()) + 1;
+        if (found == distinct.end()) distinct.push_back(material);
+    }
+    return distinct;
+}
 
 class ScreenScatter {
   public:
@@ -80,7 +93,7 @@ class ScreenScatter {
     ScatterLights lights_;
     std::map<uint32_t, Material> materials_;
     PelDiffusionFrame frame_{};
-    SentConstants<PelDiffusionFrame> constants_;
+    CachedUpload constants_;
     cl::Memory tables_, nodes_, counters_;
     SizedMemory pyramid_, sums_, tiles_;
     bool hasSides_ = false, byTexels_ = false;  // whether tables_ have directions; for sums over texels only

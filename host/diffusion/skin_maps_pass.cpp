@@ -1,12 +1,10 @@
 // The shader's pass of maps of skin (PEL_SLOT_SKIN): albedo for the slot of the plan, and the radius of each
 // pixel.
-#include <algorithm>
 #include <cstring>
 
 #include "core/launch_policy.h"
 #include "diffusion/passes.h"
 #include "diffusion/scatter_material.h"
-#include "diffusion/sent_constants.h"
 #include "fields/field_ranges.h"
 #include "lut/skin.h"
 #include "shading/launch_ranges.h"
@@ -75,7 +73,7 @@ class SkinMapsPass final : public Pass {
             if (at == skins.end()) skins.push_back(skin);
             to.own[0] = skin.melanin, to.own[1] = skin.blood, to.own[2] = skin.oxygenation;
         }
-        constants_.send(device, maps);
+        constants_.update(device, maps);
         const bool same = skins.size() == skins_.size() && oxygenations() == tabulated_ &&
                           !std::memcmp(skins.data(), skins_.data(), skins.size() * sizeof(PelSkin));
         if (same) return sizeof maps;
@@ -85,7 +83,7 @@ class SkinMapsPass final : public Pass {
             values.insert(values.end(), table.begin(), table.end());
         }
         skins_ = std::move(skins), tabulated_ = oxygenations();
-        return sizeof maps + tables_.update(device, values.data(), values.size() * sizeof(float));
+        return sizeof maps + tables_.update(device, values);
     }
 
     void enqueueFrame(PassWork& work) override {
@@ -103,10 +101,9 @@ class SkinMapsPass final : public Pass {
     Ref<Buffer> albedo_, radii_;
     ImageView skin_, ids_, given_;  // given_: the caller's albedo
     ScatterImages weight_;
-    SentConstants<PelSkinMaps> constants_;
     std::vector<PelSkin> skins_;
     int tabulated_ = 0;
-    CachedUpload tables_;
+    CachedUpload constants_, tables_;
 };
 
 }  // namespace

@@ -1,7 +1,6 @@
 // Host side of kernels/diffusion/surface_integral.cl.
 #include "diffusion/surface_integral.h"
 
-#include <cmath>
 #include <numbers>
 
 #include "core/handle_table.h"
@@ -49,17 +48,10 @@ std::vector<SurfaceTriangle> litTriangles(const PelSurfaceIntegralDesc& desc) {
             }
         }
         if (most == 0) continue;
-        double ab[3], ac[3];
-        for (int c = 0; c < 3; ++c) {
-            ab[c] = double(t.corner[3 + c]) - t.corner[c];
-            ac[c] = double(t.corner[6 + c]) - t.corner[c];
-        }
-        const double n[3] = {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2],
-                             ab[0] * ac[1] - ab[1] * ac[0]};
-        const double longest = std::max(std::hypot(ab[0], ab[1], ab[2]), std::hypot(ac[0], ac[1], ac[2]));
+        const Three a = threeAt(t.corner), ab = threeAt(t.corner + 3) - a, ac = threeAt(t.corner + 6) - a;
+        const double longest = std::max(length(ab), length(ac));
         // Skips triangles that are degenerate in float.
-        if (!(std::hypot(n[0], n[1], n[2]) > 1e-7 * longest * longest)) continue;
-        lit.push_back(t);
+        if (length(cross(ab, ac)) > 1e-7 * longest * longest) lit.push_back(t);
     }
     return lit;
 }
@@ -110,14 +102,12 @@ void surfaceIntegral(Device& device, const PelSurfaceIntegralDesc& desc, const V
     // Lengths of the profile are in millimetres if a unit is given, and in units of positions by default.
     const double scale =
         (desc.diffusionRadius > 0 ? desc.diffusionRadius / profile->radius() : 1) / desc.millimetresPerUnit;
-    std::array<double, 3> cut;
-    for (int c = 0; c < 3; ++c) cut[c] = desc.cut[c] / desc.millimetresPerUnit;
+    const auto cut = threeOf([&](int c) { return desc.cut[c] / desc.millimetresPerUnit; });
     const char* const preparing = "sorting triangles";
     device.progress(0, preparing);
     const SurfaceProfile table = tabulateProfile(profile->shape(), scale, cut);
-    std::vector<SurfaceTriangle> lit = litTriangles(desc);
     const SurfaceTree tree =
-        buildSurfaceTree(std::move(lit), table, double(desc.tolerance),
+        buildSurfaceTree(litTriangles(desc), table, double(desc.tolerance),
                          [&](double fraction) { device.progress(0.2 * fraction, preparing); });
     SurfaceSum sum{};
     sum.nodes = PelUint32(tree.nodes.size());
@@ -127,12 +117,8 @@ void surfaceIntegral(Device& device, const PelSurfaceIntegralDesc& desc, const V
     for (int c = 0; c < 3; ++c) sum.cut[c] = float(table.cut[c]);
     sum.whole = float(0.5 / std::numbers::pi);
     sum.piecesPerU = float(1 / table.piece);
-    const auto upload = [&](const auto& values) {
-        return values.empty() ? cl::Memory()
-                              : device.allocate(values.size() * sizeof values[0], values.data());
-    };
-    const cl::Memory nodes = upload(tree.nodes), triangles = upload(tree.triangles),
-                     rows = upload(table.rows);
+    const cl::Memory nodes = device.upload(tree.nodes), triangles = device.upload(tree.triangles),
+                     rows = device.upload(table.rows);
     const uint32_t lanes = device.info().mathWidth;
     const size_t group = launchPolicy(device).group;
     const cl::Program program =
@@ -140,9 +126,8 @@ void surfaceIntegral(Device& device, const PelSurfaceIntegralDesc& desc, const V
     const uint32_t count = points.layout.count;
     for (uint32_t first = 0; first < count; first += pointsPerLaunch) {
         const uint32_t end = uint32_t(std::min<size_t>(count, size_t(first) + pointsPerLaunch));
-        cl::Launch launch(program, "surface_integral");
-        launch.arg(sum).arg(nodes).arg(triangles).arg(rows).arg(points.memory).arg(points.layout);
-        launch.arg(result.memory).arg(result.layout).arg(first).arg(end);
+        cl::Launch launch(program, "surface_integral", sum, nodes, triangles, rows, points, result, first,
+                          end);
         device.launch(launch, {{(end - first + lanes - 1) / lanes, 1, 1}, {group, 1, 1}});
         if (!blocking) continue;
         if (device.hasProgress()) device.finish();

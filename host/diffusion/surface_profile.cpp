@@ -1,7 +1,5 @@
 #include "diffusion/surface_profile.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 namespace pel {
@@ -35,8 +33,7 @@ Rgb energyBetween(const ProfileShape& shape, const std::vector<double>& knots, d
         const double from = borders[i], length = borders[i + 1] - from;
         for (int q = 0; q < 5; ++q) {
             const double s = from + gaussAt[q] * length;
-            const Rgb R = radial(shape, knots, s);
-            for (int c = 0; c < 3; ++c) sum[c] += gaussPart[q] * length * s * R[c];
+            sum += gaussPart[q] * length * s * radial(shape, knots, s);
         }
     }
     return sum;
@@ -48,27 +45,21 @@ double SurfaceProfile::distance(size_t row) const {
     return std::exp2(firstLog2 + double(row) / PEL_SURFACE_ROWS);
 }
 
-SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale,
-                               const std::array<double, 3>& cutInPositions) {
+SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale, const Three& cutInPositions) {
     const std::vector<double> knots = shape.knots();
-    std::array<double, 3> cut;
+    Three cut = cutInPositions / scale;
     for (int c = 0; c < 3; ++c) {
-        cut[c] = cutInPositions[c] / scale;
         // A tabulated profile may end above 0.
         if (!knots.empty() && shape.radial(knots.back())[c] > 0 && !(cut[c] > 0 && cut[c] < knots.back()))
             cut[c] = knots.back();
     }
-    const Rgb width = shape.width();
-    const double middle = std::log2(std::max({width[0], width[1], width[2]}));
-    const double first = middle - octavesIn;
+    const double first = std::log2(largest(shape.width())) - octavesIn;
     const int cells = (octavesIn + octavesOut) * PEL_SURFACE_ROWS;
     const auto at = [&](int i) { return std::exp2(first + double(i) / PEL_SURFACE_ROWS); };
     // Within the first distance R is taken as constant times 1/s.
     std::vector<Rgb> enclosed(size_t(cells) + 1);
-    for (int i = 0; i < cells; ++i) {
-        const Rgb more = energyBetween(shape, knots, at(i), at(i + 1));
-        for (int c = 0; c < 3; ++c) enclosed[i + 1][c] = enclosed[i][c] + more[c];
-    }
+    for (int i = 0; i < cells; ++i)
+        enclosed[i + 1] = enclosed[i] + energyBetween(shape, knots, at(i), at(i + 1));
     Rgb all = enclosed[cells];
     for (int c = 0; c < 3; ++c) {
         if (!(cut[c] > 0)) continue;
@@ -91,7 +82,7 @@ SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale,
     SurfaceProfile table;
     table.firstLog2 = first + double(low) / PEL_SURFACE_ROWS + std::log2(scale);
     table.reach = at(high) * scale;
-    for (int c = 0; c < 3; ++c) table.cut[c] = cut[c] * scale;
+    table.cut = scale * cut;
     // Where R steps or has kinks, the rule along edges has an error proportional to the step of s^2 R and
     // to the square of the interval.
     constexpr double atOnce = 1.25, wanted = 1e-5, errorOfStep = 2.5e-3, kinks = 0.2;

@@ -1,65 +1,43 @@
 #include "diffusion/surface_tree.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <numeric>
 
 namespace pel {
 namespace {
 
-using Vec = std::array<double, 3>;
-
-Vec operator+(const Vec& a, const Vec& b) {
-    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-Vec operator-(const Vec& a, const Vec& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Vec operator*(double k, const Vec& a) {
-    return {k * a[0], k * a[1], k * a[2]};
-}
-double dot(const Vec& a, const Vec& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-double length(const Vec& a) {
-    return std::sqrt(dot(a, a));
-}
-
 // Light of a set of triangles: per channel its weight and its centre.
 struct Moments {
-    Vec weight{};                // integral of E dA
-    std::array<Vec, 3> first{};  // of E y dA
-    Vec second{};                // of E |y|^2 dA
+    Three weight{};                // integral of E dA
+    std::array<Three, 3> first{};  // of E y dA
+    Three second{};                // of E |y|^2 dA
 
     void add(const Moments& other) {
-        weight = weight + other.weight;
-        for (int c = 0; c < 3; ++c) first[c] = first[c] + other.first[c];
-        second = second + other.second;
+        weight += other.weight;
+        for (int c = 0; c < 3; ++c) first[c] += other.first[c];
+        second += other.second;
     }
 };
 
-Vec corner(const SurfaceTriangle& t, int k) {
-    return {t.corner[3 * k], t.corner[3 * k + 1], t.corner[3 * k + 2]};
+Three corner(const SurfaceTriangle& t, int k) {
+    return threeAt(t.corner + 3 * k);
 }
 
 // Exact for cubic integrands; E |y|^2 is cubic [Strang & Fix 1973, degree 3]. Relative to `origin`, to avoid
 // cancellation.
-Moments momentsOf(const SurfaceTriangle& t, const Vec& origin) {
-    const Vec a = corner(t, 0) - origin, ab = corner(t, 1) - corner(t, 0), ac = corner(t, 2) - corner(t, 0);
-    const Vec normal{ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2],
-                     ab[0] * ac[1] - ab[1] * ac[0]};
-    const double area = length(normal) / 2;
+Moments momentsOf(const SurfaceTriangle& t, const Three& origin) {
+    const Three a = corner(t, 0) - origin, ab = corner(t, 1) - corner(t, 0), ac = corner(t, 2) - corner(t, 0);
+    const double area = length(cross(ab, ac)) / 2;
     Moments sum;
     const double at[4][3] = {{1 / 3., 1 / 3., 1 / 3.}, {.6, .2, .2}, {.2, .6, .2}, {.2, .2, .6}};
     for (int q = 0; q < 4; ++q) {
         const double part = area * (q == 0 ? -27 / 48. : 25 / 48.);
-        const Vec y = a + at[q][1] * ab + at[q][2] * ac;
+        const Three y = a + at[q][1] * ab + at[q][2] * ac;
         for (int c = 0; c < 3; ++c) {
             double E = 0;
             for (int k = 0; k < 3; ++k) E += at[q][k] * t.irradiance[3 * k + c];
             sum.weight[c] += part * E;
-            sum.first[c] = sum.first[c] + part * E * y;
+            sum.first[c] += part * E * y;
             sum.second[c] += part * E * dot(y, y);
         }
     }
@@ -98,7 +76,7 @@ class Builder {
   private:
     struct Set {
         Moments moments;
-        Vec low, high;
+        Three low, high;
     };
 
     Set split(size_t begin, size_t end) {
@@ -112,13 +90,13 @@ class Builder {
             for (int k = 1; k < 3; ++k) grow(set, corner(t, k), corner(t, k));
             if (++done_ % 16384 == 0) progress_(double(done_) / double(order_.size()));
         } else {
-            Vec low = middles_[order_[begin]], high = low;
+            Three low = middles_[order_[begin]], high = low;
             for (size_t i = begin; i < end; ++i)
                 for (int a = 0; a < 3; ++a) {
                     low[a] = std::min(low[a], middles_[order_[i]][a]);
                     high[a] = std::max(high[a], middles_[order_[i]][a]);
                 }
-            const Vec extent = high - low;
+            const Three extent = high - low;
             const int axis = int(std::max_element(extent.begin(), extent.end()) - extent.begin());
             const size_t middle = (begin + end) / 2;
             // Equal places are ordered by their numbers, so that the tree is the same everywhere.
@@ -135,7 +113,7 @@ class Builder {
         finish(tree_.nodes[index], set, end - begin == 1 ? order_[begin] : PEL_SURFACE_NONE);
         return set;
     }
-    static void grow(Set& set, const Vec& low, const Vec& high) {
+    static void grow(Set& set, const Three& low, const Three& high) {
         for (int a = 0; a < 3; ++a) {
             set.low[a] = std::min(set.low[a], low[a]);
             set.high[a] = std::max(set.high[a], high[a]);
@@ -144,19 +122,19 @@ class Builder {
     void finish(SurfaceNode& node, const Set& set, uint32_t triangle) const {
         const Moments& m = set.moments;
         const double light = m.weight[0] + m.weight[1] + m.weight[2];
-        const Vec centre = (1 / light) * (m.first[0] + m.first[1] + m.first[2]);
+        const Three centre = (1 / light) * (m.first[0] + m.first[1] + m.first[2]);
         // Per channel: the distance of its light from the centre, and its mean squared distance.
         double offset = 0, spread = 0;
         for (int c = 0; c < 3; ++c) {
             if (!(m.weight[c] > 0)) continue;
-            const Vec own = (1 / m.weight[c]) * m.first[c] - centre;
+            const Three own = (1 / m.weight[c]) * m.first[c] - centre;
             offset = std::max(offset, length(own));
             spread = std::max(
                 spread, (m.second[c] - 2 * dot(centre, m.first[c])) / m.weight[c] + dot(centre, centre));
         }
         if (offset * offset < 1e-12 * spread) offset = 0;  // white light: only rounding
-        Vec far{};
-        const Vec at = centre + origin_;
+        Three far{};
+        const Three at = centre + origin_;
         for (int a = 0; a < 3; ++a) far[a] = std::max(at[a] - set.low[a], set.high[a] - at[a]);
         const double radius = length(far);
         for (int c = 0; c < 3; ++c) {
@@ -189,8 +167,8 @@ class Builder {
     const std::function<void(double)>& progress_;
     double nearest_, share_;
     std::vector<uint32_t> order_;
-    std::vector<Vec> middles_;
-    Vec origin_;
+    std::vector<Three> middles_;
+    Three origin_;
     size_t done_ = 0;
 };
 

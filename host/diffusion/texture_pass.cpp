@@ -12,9 +12,7 @@ namespace {
 
 class TexturePass final : public Pass {
   public:
-    static bool needed(const ShaderPlan& plan) {
-        return std::ranges::any_of(plan.state.materials, [](const auto& m) { return takes(m.second); });
-    }
+    static bool needed(const ShaderPlan& plan) { return anyMaterial(plan.state, takes); }
 
     PassScratch scratch(const ShaderPlan&) const override { return {3 * sizeof(float), 0, 0, true}; }
 
@@ -61,7 +59,7 @@ class TexturePass final : public Pass {
             s.ids = describeImage(ids_);
             s.irradiance = describeImage(irradiance_);
             s.out = describeImage(target_);
-            bytes += constants_[i].update(device, &s, sizeof s);
+            bytes += constants_[i].update(device, s);
         }
         return bytes;
     }

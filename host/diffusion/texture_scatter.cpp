@@ -1,6 +1,5 @@
 #include "diffusion/texture_scatter.h"
 
-#include <cmath>
 #include <cstring>
 #include <numeric>
 
@@ -87,12 +86,9 @@ Ref<TextureScatter> TextureScatter::create(const Ref<Device>& device, const PelT
 
 void TextureScatter::drawMesh(const std::vector<uint32_t>& indices, const std::vector<float>& uvs) {
     triangles_ = uint32_t(indices.size() / 3);
-    indices_ =
-        indices.empty() ? device_->allocate(16) : device_->allocate(indices.size() * 4, indices.data());
-    uvs_ = uvs.empty() ? device_->allocate(16) : device_->allocate(uvs.size() * 4, uvs.data());
-    const std::vector<uint32_t> islands = islandsOf(indices, vertices_);
-    islands_ =
-        islands.empty() ? device_->allocate(16) : device_->allocate(islands.size() * 4, islands.data());
+    indices_ = device_->upload(indices);
+    uvs_ = device_->upload(uvs);
+    islands_ = device_->upload(islandsOf(indices, vertices_));
     owners_ = device_->allocate(texels() * sizeof(cl_uint));
     tileFlags_ = device_->allocate(tiles() * sizeof(cl_uint));
     counters_ = device_->allocate(PEL_TEXTURE_COUNTERS * sizeof(cl_uint));
@@ -144,8 +140,7 @@ void TextureScatter::setPositions(const VertexView& positions) {
         device_->fill(stretch_.get(), 0, texels() * texelBytes, 0);
         launch(map, "texture_edges", width_ + height_, frameMemory_, islands_, owners_, stretch_);
     }
-    launch(map, "texture_stretch", texels(), frameMemory_, indices_, uvs_, positions.memory, positions.layout,
-           owners_, stretch_);
+    launch(map, "texture_stretch", texels(), frameMemory_, indices_, uvs_, positions, owners_, stretch_);
     placed_ = true;
 }
 
@@ -155,7 +150,7 @@ void TextureScatter::draw(const VertexView& values, bool unit, const ImageView& 
     describe({}, {}, out, 0, 0);
     events_.clear();
     launch(program("diffusion/texture_map.cl", {}, {}, out), "texture_draw", texels(), frameMemory_, indices_,
-           uvs_, values.memory, values.layout, owners_, cl_uint(unit), out);
+           uvs_, values, owners_, cl_uint(unit), out);
 }
 
 void TextureScatter::execute(const PelTextureScatterParams& params, const Ref<Profile>& profile,
@@ -191,7 +186,7 @@ void TextureScatter::execute(const PelTextureScatterParams& params, const Ref<Pr
     }
     for (cl::Memory* memory : {&light_, &blurred_, &result_})
         if (!*memory) *memory = device_->allocate(texels() * texelBytes);
-    blurs_ = device_->allocate(blurs.size() * sizeof blurs[0], blurs.data());
+    blurs_ = device_->upload(blurs);
     describe(irradiance, albedo, out, params.albedoBefore, params.albedoAfter ? 1 - params.albedoBefore : 0);
     device_->fill(counters_.get(), PEL_COUNT_TEXELS_INVALID * sizeof(cl_uint), sizeof(cl_uint), 0);
     events_.clear();

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "core/check_range.h"
@@ -176,23 +174,19 @@ PelShadeEye describeEye(const PelEye& eye, const AmbientNodes& ambient, double m
     return to;
 }
 
-namespace {
-
 // Returns false for a vector of length 0.
-bool normalize(double (&v)[3]) {
+static bool normalize(double (&v)[3]) {
     const double length = std::hypot(v[0], v[1], v[2]);
     if (!(length > 0)) return false;
     for (double& c : v) c /= length;
     return true;
 }
 
-void checkFinite(const char* field, const float (&v)[3]) {
+static void checkFinite(const char* field, const float (&v)[3]) {
     for (int i = 0; i < 3; ++i)
         if (!std::isfinite(v[i]))
             invalidArgument("PelEye.", field, "[", i, "] is ", v[i], "; it must be finite");
 }
-
-}  // namespace
 
 PelEye resolvedEye(const PelEye& given) {
     const char* structure = "PelEye";

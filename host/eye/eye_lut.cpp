@@ -1,6 +1,5 @@
 #include "eye/eye.h"
 
-#include <cmath>
 #include <cstring>
 #include <numbers>
 
@@ -152,7 +151,7 @@ Ref<Lut> integrateEyeLut(Ref<Device> device, const PelEyeLutDesc& desc, bool int
     }
     const uint32_t border = uint32_t(weights->reachX), stride = desc.width + 2 * border + uint32_t(lanes);
     const cl::Memory plain = device->allocate(size_t(stride) * lut->height() * sizeof(float)),
-                     shares = upload(*device, weights->values);
+                     shares = device->upload(weights->values);
     cl::Launch spread(program, "plain_eye_lut", unit, grid, stride, border, sums, plain);
     device->launch(spread, {{stride, lut->height(), 1}, {group, 1, 1}});
     const double steps = weights->products / productsPerStep;

@@ -11,6 +11,26 @@ namespace {
 
 static_assert(int(PEL_AXIS_LINEAR) == PEL_LUT_AXIS_LINEAR && int(PEL_AXIS_ROOT) == PEL_LUT_AXIS_ROOT);
 
+// Of NAMEMin and NAMEMax.
+void checkOrder(float min, float max, const char* name) {
+    if (min > max)
+        invalidArgument(name, "Min (", min, ") is greater than ", name, "Max (", max, "); exchange them");
+}
+
+// Bounds the time and the memory that a table takes.
+void checkTexels(const char* structure, uint32_t width, uint32_t height) {
+    constexpr uint64_t max = 1 << 26;
+    if (uint64_t(width) * height > max)
+        invalidArgument(structure, ".width and height are ", width, " and ", height, ": ",
+                        uint64_t(width) * height, " texels, at most ", max);
+}
+
+void checkAxis(const char* structure, PelLutAxis axis) {
+    if (axis != PEL_AXIS_LINEAR && axis != PEL_AXIS_ROOT)
+        invalidArgument(structure, ".axis is ", int(axis),
+                        "; PEL_AXIS_LINEAR (0) or PEL_AXIS_ROOT (1) is needed");
+}
+
 PelProfile profileHandle(const PelLutInfo& info) {
     return info.kind == PEL_LUT_CURVATURE ? info.curvature.profile
            : info.kind == PEL_LUT_SHADOW  ? info.shadow.profile
@@ -28,7 +48,10 @@ PelLutInfo resolved(PelLutInfo info, const Profile& profile) {
     const PelProfileInfo lengths = profile.info();
     info.curvature = pelCurvatureLutDescFilled(info.curvature, &lengths);
     info.shadow = pelShadowLutDescFilled(info.shadow, &lengths);
-    checkOrder(info);
+    if (info.kind == PEL_LUT_CURVATURE)
+        checkOrder(info.curvature.radiusMin, info.curvature.radiusMax, "PelCurvatureLutDesc.radius");
+    if (info.kind == PEL_LUT_SHADOW)
+        checkOrder(info.shadow.widthMin, info.shadow.widthMax, "PelShadowLutDesc.width");
     if (info.eye.irisRadius == 0) info.eye.irisRadius = info.eye.limbusRadius;
     return info;
 }
@@ -36,32 +59,19 @@ PelLutInfo resolved(PelLutInfo info, const Profile& profile) {
 LutLayout layoutOf(const PelLutInfo& info) {
     LutLayout layout{};
     double longest = 1, shortest = 1;
-    switch (info.kind) {
-        case PEL_LUT_CURVATURE:
-            layout.width = info.curvature.width;
-            layout.height = info.curvature.height;
-            layout.axis = uint32_t(info.curvature.axis);
-            layout.radius = info.curvature.diffusionRadius;
-            longest = info.curvature.radiusMax;
-            shortest = info.curvature.radiusMin;
-            break;
-        case PEL_LUT_SHADOW:
-            layout.width = info.shadow.width;
-            layout.height = info.shadow.height;
-            layout.axis = uint32_t(info.shadow.axis);
-            layout.radius = info.shadow.diffusionRadius;
-            longest = info.shadow.widthMax;
-            shortest = info.shadow.widthMin;
-            break;
-        case PEL_LUT_SPECULAR:
-            layout.width = info.specular.width;
-            layout.height = info.specular.height;
-            break;
-        case PEL_LUT_EYE:  // slice below slice
-            layout.width = info.eye.width;
-            layout.height = info.eye.height * info.eye.depth;
-            break;
-    }
+    const auto set = [&](const auto& desc, float least, float most) {
+        layout.width = desc.width, layout.height = desc.height;
+        layout.axis = uint32_t(desc.axis);
+        layout.radius = desc.diffusionRadius;
+        longest = most, shortest = least;
+    };
+    if (info.kind == PEL_LUT_CURVATURE)
+        set(info.curvature, info.curvature.radiusMin, info.curvature.radiusMax);
+    if (info.kind == PEL_LUT_SHADOW) set(info.shadow, info.shadow.widthMin, info.shadow.widthMax);
+    if (info.kind == PEL_LUT_SPECULAR)
+        layout.width = info.specular.width, layout.height = info.specular.height;
+    if (info.kind == PEL_LUT_EYE)  // slice below slice
+        layout.width = info.eye.width, layout.height = info.eye.height * info.eye.depth;
     layout.rowTexels = layout.width + 1;
     const RowAxis rows = rowAxis(PelLutAxis(layout.axis), layout.height, 1 / longest, 1 / shortest);
     layout.rowMin = float(rows.min);
@@ -85,38 +95,6 @@ Lut::Lut(Ref<Device> device, const PelLutInfo& info, bool ofStack)
                                              : info.curvature.diffusionRadius == 0),
       layout_(layoutOf(info_)) {
     if (!ofStack) texels_ = device_->allocate(texelBytes());
-}
-
-namespace {
-
-void checkOrder(float min, float max, const char* minField, const char* maxField) {
-    if (min > max)
-        invalidArgument(minField, " (", min, ") is greater than ", maxField, " (", max, "); exchange them");
-}
-
-// Bounds the time and the memory that a table takes.
-void checkTexels(const char* structure, uint32_t width, uint32_t height) {
-    constexpr uint64_t max = 1 << 26;
-    if (uint64_t(width) * height > max)
-        invalidArgument(structure, ".width and height are ", width, " and ", height, ": ",
-                        uint64_t(width) * height, " texels, at most ", max);
-}
-
-void checkAxis(const char* structure, PelLutAxis axis) {
-    if (axis != PEL_AXIS_LINEAR && axis != PEL_AXIS_ROOT)
-        invalidArgument(structure, ".axis is ", int(axis),
-                        "; PEL_AXIS_LINEAR (0) or PEL_AXIS_ROOT (1) is needed");
-}
-
-}  // namespace
-
-void checkOrder(const PelLutInfo& info) {
-    if (info.kind == PEL_LUT_CURVATURE)
-        checkOrder(info.curvature.radiusMin, info.curvature.radiusMax, "PelCurvatureLutDesc.radiusMin",
-                   "PelCurvatureLutDesc.radiusMax");
-    if (info.kind == PEL_LUT_SHADOW)
-        checkOrder(info.shadow.widthMin, info.shadow.widthMax, "PelShadowLutDesc.widthMin",
-                   "PelShadowLutDesc.widthMax");
 }
 
 void checkCurvatureDesc(const PelCurvatureLutDesc& fields) {

@@ -45,7 +45,5 @@ class Lut final : public Object {
 void checkCurvatureDesc(const PelCurvatureLutDesc& desc);
 void checkShadowDesc(const PelShadowLutDesc& desc);
 void checkSpecularDesc(const PelSpecularLutDesc& desc);
-// Checks that min <= max after defaults have been filled in.
-void checkOrder(const PelLutInfo& info);
 
 }  // namespace pel

@@ -1,7 +1,5 @@
 #include "lut/lut_terms.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 namespace pel {
@@ -12,7 +10,7 @@ namespace pel {
 std::vector<LutGaussian> deviceTerms(const Profile& profile, double steepestRow) {
     std::vector<LutGaussian> terms;
     for (const GaussianTerm& term : profile.terms()) {
-        if (std::max({term.weight[0], term.weight[1], term.weight[2]}) < 1e-9) continue;
+        if (largest(term.weight) < 1e-9) continue;
         const double sigma =
             std::max(std::sqrt(term.variance) / profile.radius(), 1e-8 / std::max(1.0, steepestRow));
         terms.push_back({float(sigma), float(term.weight[0]), float(term.weight[1]), float(term.weight[2])});

@@ -39,11 +39,6 @@ RowRange rowRange(const Lut& lut);
 // The rows in that range.
 RowAxis rowsOf(const Lut& lut);
 
-template <class T>
-cl::Memory upload(Device& device, const std::vector<T>& values) {
-    return device.allocate(values.size() * sizeof(T), values.data());
-}
-
 // What the kernels for tabulated profiles (kernels/lut/table_*.cl) read, prepared in double precision.
 // Lengths in diffusion radii.
 

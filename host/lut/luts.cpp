@@ -1,6 +1,5 @@
 #include "lut/luts.h"
 
-#include <cmath>
 #include <cstring>
 
 #include "core/launch_policy.h"
@@ -39,7 +38,7 @@ struct Stack {
         std::vector<unsigned char> bytes(head + tail);
         std::memcpy(bytes.data(), tables.data(), head);
         std::memcpy(bytes.data() + head, gaussians.data(), tail);
-        return pel::upload(device, bytes);
+        return device.upload(bytes);
     }
 };
 
@@ -118,6 +117,14 @@ void integrate(Luts luts, const cl::Memory& texels) {
     (luts[0]->info().kind == PEL_LUT_CURVATURE ? integrateCurvature : integrateShadow)(luts, texels);
 }
 
+template <class Desc>
+PelLutInfo infoOf(PelLutKind kind, Desc PelLutInfo::*member, const Desc& desc) {
+    PelLutInfo info = pelLutInfoDefaults();
+    info.kind = kind;
+    info.*member = desc;
+    return info;
+}
+
 // A curvature or shadow table whose description is valid.
 Ref<Lut> integrated(Ref<Device> device, const PelLutInfo& info) {
     Ref<Lut> lut = make<Lut>(std::move(device), info);
@@ -130,40 +137,7 @@ Ref<Lut> integrated(Ref<Device> device, const PelLutInfo& info) {
     return lut;
 }
 
-}  // namespace
-
-Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& desc) {
-    checkCurvatureDesc(desc);
-    PelLutInfo info = pelLutInfoDefaults();
-    info.kind = PEL_LUT_CURVATURE;
-    info.curvature = desc;
-    return integrated(std::move(device), info);
-}
-
-Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
-    checkShadowDesc(desc);
-    PelLutInfo info = pelLutInfoDefaults();
-    info.kind = PEL_LUT_SHADOW;
-    info.shadow = desc;
-    return integrated(std::move(device), info);
-}
-
-Ref<Lut> tabulateSpecularLut(Ref<Device> device, const PelSpecularLutDesc& desc) {
-    checkSpecularDesc(desc);
-    PelLutInfo info = pelLutInfoDefaults();
-    info.kind = PEL_LUT_SPECULAR;
-    info.specular = desc;
-    Ref<Lut> lut = make<Lut>(device, info);
-    constexpr size_t group = 64;
-    cl::Launch launch(device->programs().get("lut/specular_lut.cl", {{"PEL_GROUP", group}}),
-                      "specular_texels", lut->layout(), lut->texels());
-    device->launch(launch, {{desc.width + size_t(1), desc.height + size_t(1), 1}, {group, 1, 1}});
-    return lut;
-}
-
-// Beside kernels/lut/lut_encode.cl: texels from and to the packed layouts of PelLutEncoding.
-namespace {
-
+// Texels to the packed layouts of PelLutEncoding, by kernels/lut/lut_encode.cl.
 struct Encoding {
     const char* kernel;
     size_t texelBytes;
@@ -203,36 +177,6 @@ void readFloats(const Lut& lut, float* destination) {
             for (size_t c = 0; c < 3; ++c) *destination++ = texels[y * rowTexels + x].s[c];
 }
 
-}  // namespace
-
-Ref<Lut> uploadLut(Ref<Device> device, const PelLutInfo& info, const float* texels, size_t bytes) {
-    if (!texels) invalidArgument("texels are needed, not NULL");
-    Ref<Lut> lut = make<Lut>(device, info);
-    const size_t width = lut->width(), height = lut->height();
-    if (bytes != width * height * 12)
-        invalidArgument("a LUT of ", width, "x", height, " texels takes ", width * height * 12,
-                        " bytes of RGB float32, not ", bytes);
-    for (size_t i = 0; i < width * height * 3; ++i)
-        if (!std::isfinite(texels[i]))
-            invalidArgument("channel ", i % 3, " of texel (", i / 3 % width, ", ", i / 3 / width,
-                            ") is not finite");
-    const size_t rowTexels = lut->layout().rowTexels;
-    std::vector<cl_float4> padded(rowTexels * (height + 1));
-    for (size_t y = 0; y <= height; ++y)
-        for (size_t x = 0; x <= width; ++x) {
-            const float* from = texels + (std::min(y, height - 1) * width + std::min(x, width - 1)) * 3;
-            padded[y * rowTexels + x] = {{from[0], from[1], from[2], 0}};
-        }
-    device->writeAside(lut->texels().get(), padded.size() * sizeof(cl_float4), padded.data());
-    return lut;
-}
-
-size_t packedBytes(const Lut& lut, PelLutEncoding encoding) {
-    return size_t(lut.width()) * lut.height() * encodingOf(lut, encoding).texelBytes;
-}
-
-namespace {
-
 // Encodes and reads `tables` tables like `lut`, stored one after another.
 void encodeAndRead(const Lut& lut, const cl::Memory& texels, size_t tables, PelLutEncoding encoding,
                    void* destination, bool blocking) {
@@ -245,15 +189,6 @@ void encodeAndRead(const Lut& lut, const cl::Memory& texels, size_t tables, PelL
     device.launch(launch, {{lut.width(), lut.height(), tables}, {group, 1, 1}});
     device.read(packed.get(), 0, bytes, destination, blocking);
 }
-
-}  // namespace
-
-void readLut(const Lut& lut, PelLutEncoding encoding, void* destination, bool blocking) {
-    if (encoding == PEL_LUT_FLOAT && blocking) return readFloats(lut, static_cast<float*>(destination));
-    encodeAndRead(lut, lut.texels(), 1, encoding, destination, blocking);
-}
-
-namespace {
 
 void checkAlike(std::span<const PelLutInfo> tables) {
     const auto different = [&](size_t i, const char* field) {
@@ -283,6 +218,57 @@ void checkAlike(std::span<const PelLutInfo> tables) {
 }
 
 }  // namespace
+
+Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& desc) {
+    checkCurvatureDesc(desc);
+    return integrated(std::move(device), infoOf(PEL_LUT_CURVATURE, &PelLutInfo::curvature, desc));
+}
+
+Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
+    checkShadowDesc(desc);
+    return integrated(std::move(device), infoOf(PEL_LUT_SHADOW, &PelLutInfo::shadow, desc));
+}
+
+Ref<Lut> tabulateSpecularLut(Ref<Device> device, const PelSpecularLutDesc& desc) {
+    checkSpecularDesc(desc);
+    Ref<Lut> lut = make<Lut>(device, infoOf(PEL_LUT_SPECULAR, &PelLutInfo::specular, desc));
+    constexpr size_t group = 64;
+    cl::Launch launch(device->programs().get("lut/specular_lut.cl", {{"PEL_GROUP", group}}),
+                      "specular_texels", lut->layout(), lut->texels());
+    device->launch(launch, {{desc.width + size_t(1), desc.height + size_t(1), 1}, {group, 1, 1}});
+    return lut;
+}
+
+Ref<Lut> uploadLut(Ref<Device> device, const PelLutInfo& info, const float* texels, size_t bytes) {
+    if (!texels) invalidArgument("texels are needed, not NULL");
+    Ref<Lut> lut = make<Lut>(device, info);
+    const size_t width = lut->width(), height = lut->height();
+    if (bytes != width * height * 12)
+        invalidArgument("a LUT of ", width, "x", height, " texels takes ", width * height * 12,
+                        " bytes of RGB float32, not ", bytes);
+    for (size_t i = 0; i < width * height * 3; ++i)
+        if (!std::isfinite(texels[i]))
+            invalidArgument("channel ", i % 3, " of texel (", i / 3 % width, ", ", i / 3 / width,
+                            ") is not finite");
+    const size_t rowTexels = lut->layout().rowTexels;
+    std::vector<cl_float4> padded(rowTexels * (height + 1));
+    for (size_t y = 0; y <= height; ++y)
+        for (size_t x = 0; x <= width; ++x) {
+            const float* from = texels + (std::min(y, height - 1) * width + std::min(x, width - 1)) * 3;
+            padded[y * rowTexels + x] = {{from[0], from[1], from[2], 0}};
+        }
+    device->writeAside(lut->texels().get(), padded.size() * sizeof(cl_float4), padded.data());
+    return lut;
+}
+
+size_t packedBytes(const Lut& lut, PelLutEncoding encoding) {
+    return size_t(lut.width()) * lut.height() * encodingOf(lut, encoding).texelBytes;
+}
+
+void readLut(const Lut& lut, PelLutEncoding encoding, void* destination, bool blocking) {
+    if (encoding == PEL_LUT_FLOAT && blocking) return readFloats(lut, static_cast<float*>(destination));
+    encodeAndRead(lut, lut.texels(), 1, encoding, destination, blocking);
+}
 
 void readLutStack(const Ref<Device>& device, std::span<const PelLutInfo> tables, PelLutEncoding encoding,
                   void* destination, size_t bytes) {

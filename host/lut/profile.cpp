@@ -1,19 +1,14 @@
 #include "lut/profile.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "shared/choices.h"
 
 namespace pel {
-namespace {
 
 #define KEY(name, number, key) key,
-constexpr const char* kindNames[] = {PEL_EACH_PROFILE_KIND(KEY)};
+static constexpr const char* kindNames[] = {PEL_EACH_PROFILE_KIND(KEY)};
 #undef KEY
-
-}  // namespace
 
 GaussianShape::GaussianShape(std::vector<GaussianTerm> terms) : terms_(std::move(terms)) {
     std::stable_sort(terms_.begin(), terms_.end(),
@@ -32,10 +27,7 @@ GaussianShape::GaussianShape(std::vector<GaussianTerm> terms) : terms_(std::move
 template <class F>
 Rgb GaussianShape::sum(F&& f) const {
     Rgb sum{};
-    for (const GaussianTerm& term : terms_) {
-        const double value = f(term.variance);
-        for (int c = 0; c < 3; ++c) sum[c] += term.weight[c] * value;
-    }
+    for (const GaussianTerm& term : terms_) sum += f(term.variance) * term.weight;
     return sum;
 }
 
@@ -57,10 +49,11 @@ Rgb GaussianShape::transmission(double d) const {
     return sum([=](double v) { return std::exp(-d * d / (2 * v)); });
 }
 
-Profile::Profile(PelProfileKind profileKind, double radius, std::unique_ptr<ProfileShape> shape)
+Profile::Profile(PelProfileKind profileKind, std::unique_ptr<ProfileShape> shape,
+                 std::optional<double> radius)
     : Object(kind),
       profileKind_(profileKind),
-      radius_(radius),
+      radius_(radius ? *radius : largest(shape->width())),
       shape_(std::move(shape)),
       terms_(shape_->gaussians()),
       name_(kindNames[profileKind]) {}
@@ -73,7 +66,7 @@ Ref<Profile> Profile::skin() {
         {0.080 * 0.080, {0.233, 0.455, 0.649}}, {0.220 * 0.220, {0.100, 0.336, 0.344}},
         {0.432 * 0.432, {0.118, 0.198, 0.0}},   {0.753 * 0.753, {0.113, 0.007, 0.007}},
         {1.411 * 1.411, {0.358, 0.004, 0.0}},   {2.722 * 2.722, {0.078, 0.0, 0.0}}};
-    return make<Profile>(PEL_PROFILE_SKIN, 2.7, std::make_unique<GaussianShape>(std::move(terms)));
+    return make<Profile>(PEL_PROFILE_SKIN, std::make_unique<GaussianShape>(std::move(terms)), 2.7);
 }
 
 Ref<Profile> Profile::gaussians(const PelGaussian* gaussians, uint32_t count) {
@@ -97,8 +90,8 @@ Ref<Profile> Profile::gaussians(const PelGaussian* gaussians, uint32_t count) {
         if (used) widest = std::max<double>(widest, g.variance);
         terms.push_back({g.variance, {g.weight[0], g.weight[1], g.weight[2]}});
     }
-    auto shape = std::make_unique<GaussianShape>(std::move(terms));
-    Ref<Profile> profile = make<Profile>(PEL_PROFILE_GAUSSIANS, std::sqrt(widest), std::move(shape));
+    Ref<Profile> profile = make<Profile>(
+        PEL_PROFILE_GAUSSIANS, std::make_unique<GaussianShape>(std::move(terms)), std::sqrt(widest));
     for (uint32_t i = 0; i < count; ++i) {
         const auto& [variance, weight] = gaussians[i];
         profile->recipe_.rows.push_back({variance, weight[0], weight[1], weight[2]});
@@ -111,7 +104,7 @@ PelProfileInfo Profile::info() const {
     info.kind = profileKind_;
     info.radius = float(radius_);
     const Rgb width = shape_->width();
-    const double widest = std::max({width[0], width[1], width[2]});
+    const double widest = largest(width);
     for (int c = 0; c < 3; ++c) {
         info.width[c] = float(width[c]);
         info.normalBlend[c] = float(std::max(0.0, 1 - std::log2(widest / width[c]) / 3));
@@ -135,10 +128,7 @@ ProfileRecipe Profile::recipe() const {
 }
 
 double Profile::reach() const {
-    const auto most = [&](double distance) {
-        const Rgb t = shape_->transmission(distance);
-        return std::max({t[0], t[1], t[2]});
-    };
+    const auto most = [&](double distance) { return largest(shape_->transmission(distance)); };
     if (const double known = reach_; known > 0) return known;
     constexpr double left = 1e-3;
     double inside = 0, outside = radius_;

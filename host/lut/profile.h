@@ -4,13 +4,14 @@
 #include <span>
 
 #include "core/object.h"
+#include "core/three.h"
 #include "fields/captured_frame.h"
 
 namespace pel {
 
 constexpr double pi = std::numbers::pi;
 
-using Rgb = std::array<double, 3>;
+using Rgb = Three;
 inline constexpr const char* channelNames[] = {"red", "green", "blue"};
 
 // weight * exp(-d^2 / 2 variance) / (2 pi variance) as energy per area, and with the same weight
@@ -72,7 +73,9 @@ class Profile final : public Object {
     // Distance within which 99.9 % of the light of each channel leaves.
     double reach() const;
 
-    Profile(PelProfileKind profileKind, double radius, std::unique_ptr<ProfileShape> shape);
+    // Without a radius, that of the channel that scatters widest.
+    Profile(PelProfileKind profileKind, std::unique_ptr<ProfileShape> shape,
+            std::optional<double> radius = {});
 
   private:
     ~Profile() override = default;

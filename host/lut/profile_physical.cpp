@@ -1,8 +1,6 @@
 // Profiles from a medium's optical properties: Christensen-Burley and the classical dipole. Both are exact
 // mixtures of Gaussians, exp(-b d)/d = 2/sqrt(pi) int_0^inf exp(-d^2 t^2 - b^2/4t^2) dt. The trapezoid rule
 // in log t turns that into sums that converge faster than any power of the step; the device uses these sums.
-#include <algorithm>
-#include <cmath>
 
 #include "lut/profile.h"
 
@@ -54,38 +52,30 @@ class BurleyShape final : public ProfileShape {
           mediumPath_(mediumPath),
           terms_(GaussianShape(mixtureOf(decay)).gaussians()) {}
     Rgb radial(double d) const override {
-        Rgb value;
-        for (int c = 0; c < 3; ++c)
-            value[c] = (std::exp(-d / decay_[c]) + std::exp(-d / (3 * decay_[c]))) / (8 * pi * decay_[c] * d);
-        return value;
+        return threeOf([&](int c) {
+            return (std::exp(-d / decay_[c]) + std::exp(-d / (3 * decay_[c]))) / (8 * pi * decay_[c] * d);
+        });
     }
     Rgb lineSpread(double s) const override {  // the line integral of exp(-b d)/d is 2 K0(b s)
-        Rgb value;
-        for (int c = 0; c < 3; ++c)
-            value[c] = (besselK0(s / decay_[c]) + besselK0(s / (3 * decay_[c]))) / (4 * pi * decay_[c]);
-        return value;
+        return threeOf([&](int c) {
+            return (besselK0(s / decay_[c]) + besselK0(s / (3 * decay_[c]))) / (4 * pi * decay_[c]);
+        });
     }
-    Rgb width() const override {
-        return {std::sqrt(7.0) * decay_[0], std::sqrt(7.0) * decay_[1], std::sqrt(7.0) * decay_[2]};
-    }
+    Rgb width() const override { return std::sqrt(7.0) * decay_; }
     std::vector<GaussianTerm> gaussians() const override { return terms_; }
     bool singular() const override { return true; }
     Rgb transmission(double s) const override {
-        Rgb value;
-        for (int c = 0; c < 3; ++c)
-            value[c] = 0.25 * std::exp(-s / decay_[c]) + 0.75 * std::exp(-s / (3 * decay_[c]));
-        return value;
+        return threeOf(
+            [&](int c) { return 0.25 * std::exp(-s / decay_[c]) + 0.75 * std::exp(-s / (3 * decay_[c])); });
     }
     Rgb meanFreePath() const override { return meanFreePath_; }
     Rgb mediumPath() const override { return mediumPath_; }
 
   private:
     static std::vector<GaussianTerm> mixtureOf(const Rgb& decay) {
-        const double widest = std::max({decay[0], decay[1], decay[2]});
-        const double narrowest = std::min({decay[0], decay[1], decay[2]});
         // Below the first t, exp(-b^2/4t^2) vanishes. Above the last one 1e-6 of the energy is left out, and
         // the rest is scaled to make up for it.
-        return mixture(1 / (3 * widest) / 12, 1.5e5 / narrowest, [&](int c, double t) {
+        return mixture(1 / (3 * largest(decay)) / 12, 1.5e5 / smallest(decay), [&](int c, double t) {
             const double b = 1 / decay[c], x = b / (2 * t);
             return (std::exp(-x * x) + std::exp(-x * x / 9)) * b / t;
         });
@@ -159,10 +149,6 @@ double absorptionAt(double reflectance) {
     return (q - std::sqrt(q * q - 4 * p * (1 - reflectance))) / (2 * p);
 }
 
-double largest(const Rgb& width) {
-    return std::max({width[0], width[1], width[2]});
-}
-
 }  // namespace
 
 double mediumPathOver(double s) {
@@ -179,10 +165,9 @@ Ref<Profile> Profile::burley(const float* meanFreePath, const float* albedo, Pel
         decay[c] = meanFreePath[c] / burleyScale(fit, albedo[c]);
         mediumPath[c] = mediumPathOver(absorptionAt(albedo[c])) * decay[c];
     }
-    auto shape = std::make_unique<BurleyShape>(decay, Rgb{meanFreePath[0], meanFreePath[1], meanFreePath[2]},
-                                               mediumPath);
-    const double radius = largest(shape->width());
-    Ref<Profile> profile = make<Profile>(PEL_PROFILE_BURLEY, radius, std::move(shape));
+    const Rgb path{meanFreePath[0], meanFreePath[1], meanFreePath[2]};
+    Ref<Profile> profile =
+        make<Profile>(PEL_PROFILE_BURLEY, std::make_unique<BurleyShape>(decay, path, mediumPath));
     std::copy_n(meanFreePath, 3, profile->recipe_.first);
     std::copy_n(albedo, 3, profile->recipe_.second);
     profile->recipe_.fit = fit;
@@ -191,9 +176,9 @@ Ref<Profile> Profile::burley(const float* meanFreePath, const float* albedo, Pel
 
 Ref<Profile> Profile::burleyDistance(const float* distance) {
     checkPositive(distance, "distance");
-    auto shape = std::make_unique<BurleyShape>(Rgb{distance[0], distance[1], distance[2]}, Rgb{}, Rgb{});
-    const double radius = largest(shape->width());
-    Ref<Profile> profile = make<Profile>(PEL_PROFILE_BURLEY, radius, std::move(shape));
+    const Rgb decay{distance[0], distance[1], distance[2]};
+    Ref<Profile> profile =
+        make<Profile>(PEL_PROFILE_BURLEY, std::make_unique<BurleyShape>(decay, Rgb{}, Rgb{}));
     std::copy_n(distance, 3, profile->recipe_.first);
     profile->recipe_.byDistance = true;
     return profile;
@@ -223,9 +208,8 @@ Ref<Profile> Profile::dipole(const float* absorption, const float* reducedScatte
         p.depth[1] = p.depth[0] + 4 * mismatch / (3 * extinction);
         p.energy = 0.5 * (std::exp(-p.transport * p.depth[0]) + std::exp(-p.transport * p.depth[1]));
     }
-    auto shape = std::make_unique<DipoleShape>(dipoles, meanFreePath);
-    const double radius = largest(shape->width());
-    Ref<Profile> profile = make<Profile>(PEL_PROFILE_DIPOLE, radius, std::move(shape));
+    Ref<Profile> profile =
+        make<Profile>(PEL_PROFILE_DIPOLE, std::make_unique<DipoleShape>(dipoles, meanFreePath));
     std::copy_n(absorption, 3, profile->recipe_.first);
     std::copy_n(reducedScattering, 3, profile->recipe_.second);
     profile->recipe_.eta = eta;

@@ -1,6 +1,4 @@
 // Tabulated profiles: R is linear between distances. Its line integral has a closed form per piece.
-#include <algorithm>
-#include <cmath>
 
 #include "lut/profile.h"
 
@@ -38,9 +36,7 @@ class TableShape final : public ProfileShape {
     Rgb radial(double d) const override {
         const auto piece = std::ranges::lower_bound(pieces_, d, {}, &Piece::end);
         if (piece == pieces_.end()) return {};
-        Rgb value;
-        for (int c = 0; c < 3; ++c) value[c] = std::max(0.0, piece->offset[c] + piece->slope[c] * d);
-        return value;
+        return threeOf([&](int c) { return std::max(0.0, piece->offset[c] + piece->slope[c] * d); });
     }
     Rgb lineSpread(double distance) const override {
         const double s = std::abs(distance);
@@ -53,8 +49,7 @@ class TableShape final : public ProfileShape {
             const double linear = b * qb - a * qa + (s > 0 ? s * s * std::log((b + qb) / (a + qa)) : 0.0);
             for (int c = 0; c < 3; ++c) sum[c] += 2 * p.offset[c] * (qb - qa) + p.slope[c] * linear;
         }
-        for (double& value : sum) value = std::max(0.0, value);
-        return sum;
+        return threeOf([&](int c) { return std::max(0.0, sum[c]); });
     }
     Rgb width() const override { return width_; }
     Rgb transmission(double s) const override {
@@ -66,8 +61,7 @@ class TableShape final : public ProfileShape {
             for (int c = 0; c < 3; ++c)
                 sum[c] += pi * (b - a) * (p.offset[c] * (a + b) + p.slope[c] * linear);
         }
-        for (double& value : sum) value = std::max(0.0, value);
-        return sum;
+        return threeOf([&](int c) { return std::max(0.0, sum[c]); });
     }
     std::vector<double> knots() const override {
         std::vector<double> all;
@@ -107,10 +101,7 @@ Ref<Profile> Profile::table(const float* distances, const float* values, uint32_
         }
         pieces.push_back(p);
     }
-    auto shape = std::make_unique<TableShape>(std::move(pieces));
-    const Rgb width = shape->width();
-    Ref<Profile> profile =
-        make<Profile>(PEL_PROFILE_TABLE, std::max({width[0], width[1], width[2]}), std::move(shape));
+    Ref<Profile> profile = make<Profile>(PEL_PROFILE_TABLE, std::make_unique<TableShape>(std::move(pieces)));
     for (uint32_t i = 0; i < count; ++i)
         profile->recipe_.rows.push_back({distances[i], values[3 * i], values[3 * i + 1], values[3 * i + 2]});
     return profile;

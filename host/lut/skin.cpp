@@ -337,86 +337,6 @@ std::array<double, n> between(const std::vector<std::array<double, n>>& table, d
     return mixed;
 }
 
-}  // namespace
-
-PelSkin readSkin(const PelSkin* skin) {
-    constexpr const char* structure = "PelSkin";
-    const PelSkin fields = readStructOr(skin, pelSkinDefaults(), structure);
-    PEL_EACH_SKIN_FIELD(PEL_CHECK_RANGE)
-    return fields;
-}
-
-PelSkinInfo skinInfo(const PelSkin& skin) {
-    PelSkinInfo info = pelSkinInfoDefaults();
-    const Computed computed = compute(skin, true);
-    const Fit gaussians = fit(computed);
-    const Lab lab = labFromLinear(computed.albedo);
-    for (int c = 0; c < 3; ++c) {
-        info.albedo[c] = float(computed.albedo[c]);
-        info.meanFreePath[c] = float(computed.freePath[c]);
-        info.singleScatteringAlbedo[c] = float(computed.scattered[c]);
-        info.meanDistance[c] = float(gaussians.meanDistance[c]);
-        info.profileError[c] = float(gaussians.error[c]);
-        info.lab[c] = float(lab[c]);
-    }
-    info.typologyAngle = float(std::atan2(lab[0] - 50, lab[2]) * 180 / pi);
-    return info;
-}
-
-void skinReflectance(const PelSkin& skin, std::span<const float> nanometres, float* reflectance) {
-    const auto values = compute(skin, false).reflectance;
-    const float first = skinSpectra[0].nanometres, step = skinSpectra[1].nanometres - first;
-    for (size_t i = 0; i < nanometres.size(); ++i) {
-        const double at = (nanometres[i] - first) / step;
-        if (!(at >= 0 && at <= skinWavelengths - 1))
-            invalidArgument("wavelength ", i, " is ", nanometres[i], " nm; it must be from ", first, " to ",
-                            skinSpectra[skinWavelengths - 1].nanometres);
-        const int cell = std::min(int(at), skinWavelengths - 2);
-        reflectance[i] = float(values[cell] + (values[cell + 1] - values[cell]) * (at - cell));
-    }
-}
-
-Ref<Profile> skinLayersProfile(const PelSkin& skin) {
-    auto shape = std::make_unique<GaussianShape>(fit(compute(skin, true)).gaussians);
-    const Rgb width = shape->width();
-    auto profile =
-        make<Profile>(PEL_PROFILE_SKIN_LAYERS, std::max({width[0], width[1], width[2]}), std::move(shape));
-    profile->setPigments(skin);
-    return profile;
-}
-
-void skinAlbedo(const PelSkin& skin, const float* melanin, const float* blood, size_t count, float* albedo,
-                float* radius) {
-    const auto maps = Maps::of(skin);
-    const double own = radius ? logDistanceOf(fit(compute(skin, true))) : 0;
-    const auto root = [](float value, float instead, const FieldRange& range) {
-        return std::sqrt(std::clamp(std::isnan(value) ? instead : value, range.min, range.max) / range.max);
-    };
-    for (size_t i = 0; i < count; ++i) {
-        const double u = root(melanin[i], skin.melanin, range::skin::melanin),
-                     v = root(blood[i], skin.blood, range::skin::blood);
-        const auto node = between(maps->nodes, u, v);
-        for (int c = 0; albedo && c < 3; ++c) albedo[3 * i + c] = float(node[c] * node[c]);
-        if (radius) radius[i] = float(std::exp(node[3] - own));
-    }
-}
-
-std::vector<float> skinTable(const PelSkin& skin, int oxygenations) {
-    const double own = logDistanceOf(fit(compute(skin, true)));
-    std::vector<float> table;
-    for (int o = 0; o < oxygenations; ++o) {
-        PelSkin at = skin;
-        if (oxygenations > 1) at.oxygenation = float(o) / float(oxygenations - 1);
-        const Maps maps(at);
-        for (const auto& node : maps.nodes)
-            table.insert(table.end(),
-                         {float(node[0]), float(node[1]), float(node[2]), float(std::exp(node[3] - own))});
-    }
-    return table;
-}
-
-namespace {
-
 double inside(double x) {
     return std::clamp(x, 0.0, 1.0);
 }
@@ -485,6 +405,80 @@ void refine(const std::vector<Lab>& table, const Lab& lab, Match& match) {
 }
 
 }  // namespace
+
+PelSkin readSkin(const PelSkin* skin) {
+    constexpr const char* structure = "PelSkin";
+    const PelSkin fields = readStructOr(skin, pelSkinDefaults());
+    PEL_EACH_SKIN_FIELD(PEL_CHECK_RANGE)
+    return fields;
+}
+
+PelSkinInfo skinInfo(const PelSkin& skin) {
+    PelSkinInfo info = pelSkinInfoDefaults();
+    const Computed computed = compute(skin, true);
+    const Fit gaussians = fit(computed);
+    const Lab lab = labFromLinear(computed.albedo);
+    for (int c = 0; c < 3; ++c) {
+        info.albedo[c] = float(computed.albedo[c]);
+        info.meanFreePath[c] = float(computed.freePath[c]);
+        info.singleScatteringAlbedo[c] = float(computed.scattered[c]);
+        info.meanDistance[c] = float(gaussians.meanDistance[c]);
+        info.profileError[c] = float(gaussians.error[c]);
+        info.lab[c] = float(lab[c]);
+    }
+    info.typologyAngle = float(std::atan2(lab[0] - 50, lab[2]) * 180 / pi);
+    return info;
+}
+
+void skinReflectance(const PelSkin& skin, std::span<const float> nanometres, float* reflectance) {
+    const auto values = compute(skin, false).reflectance;
+    const float first = skinSpectra[0].nanometres, step = skinSpectra[1].nanometres - first;
+    for (size_t i = 0; i < nanometres.size(); ++i) {
+        const double at = (nanometres[i] - first) / step;
+        if (!(at >= 0 && at <= skinWavelengths - 1))
+            invalidArgument("wavelength ", i, " is ", nanometres[i], " nm; it must be from ", first, " to ",
+                            skinSpectra[skinWavelengths - 1].nanometres);
+        const int cell = std::min(int(at), skinWavelengths - 2);
+        reflectance[i] = float(values[cell] + (values[cell + 1] - values[cell]) * (at - cell));
+    }
+}
+
+Ref<Profile> skinLayersProfile(const PelSkin& skin) {
+    auto profile = make<Profile>(PEL_PROFILE_SKIN_LAYERS,
+                                 std::make_unique<GaussianShape>(fit(compute(skin, true)).gaussians));
+    profile->setPigments(skin);
+    return profile;
+}
+
+void skinAlbedo(const PelSkin& skin, const float* melanin, const float* blood, size_t count, float* albedo,
+                float* radius) {
+    const auto maps = Maps::of(skin);
+    const double own = radius ? logDistanceOf(fit(compute(skin, true))) : 0;
+    const auto root = [](float value, float instead, const FieldRange& range) {
+        return std::sqrt(std::clamp(std::isnan(value) ? instead : value, range.min, range.max) / range.max);
+    };
+    for (size_t i = 0; i < count; ++i) {
+        const double u = root(melanin[i], skin.melanin, range::skin::melanin),
+                     v = root(blood[i], skin.blood, range::skin::blood);
+        const auto node = between(maps->nodes, u, v);
+        for (int c = 0; albedo && c < 3; ++c) albedo[3 * i + c] = float(node[c] * node[c]);
+        if (radius) radius[i] = float(std::exp(node[3] - own));
+    }
+}
+
+std::vector<float> skinTable(const PelSkin& skin, int oxygenations) {
+    const double own = logDistanceOf(fit(compute(skin, true)));
+    std::vector<float> table;
+    for (int o = 0; o < oxygenations; ++o) {
+        PelSkin at = skin;
+        if (oxygenations > 1) at.oxygenation = float(o) / float(oxygenations - 1);
+        const Maps maps(at);
+        for (const auto& node : maps.nodes)
+            table.insert(table.end(),
+                         {float(node[0]), float(node[1]), float(node[2]), float(std::exp(node[3] - own))});
+    }
+    return table;
+}
 
 void skinFromAlbedo(const PelSkin& skin, const float* albedo, size_t count, float* melanin, float* blood,
                     float* difference) {

@@ -1,7 +1,5 @@
 #include "lut/lut_terms.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 namespace pel {
@@ -38,9 +36,7 @@ std::vector<double> meshOfCells(double end, int cells) {
 }
 
 Rgb lineSpread(const Profile& profile, double distance) {
-    Rgb P = profile.shape().lineSpread(distance * profile.radius());
-    for (double& value : P) value *= profile.radius();
-    return P;
+    return profile.radius() * profile.shape().lineSpread(distance * profile.radius());
 }
 
 // visit(distance from a, total) for the points that stand for P from a to b. P behaves like the root of the
@@ -50,9 +46,7 @@ void eachPoint(const Profile& profile, double a, double b, auto&& visit) {
     const double h = b - a;
     for (int q = 0; q < 4; ++q) {
         const double x = 0.5 + 0.5 * fourAt[q], t = h * (1 - x * x), weight = fourWeight[q] * h * x;
-        Rgb m = lineSpread(profile, a + t);
-        for (double& value : m) value *= weight;
-        visit(t, m);
+        visit(t, weight * lineSpread(profile, a + t));
     }
 }
 
@@ -63,11 +57,7 @@ std::vector<cl_float4> tableKnots(const Profile& profile) {
     std::vector<double> distances{0};
     for (double knot : profile.shape().knots()) distances.push_back(knot);
     std::vector<cl_float4> knots;
-    for (double d : distances) {
-        Rgb R = profile.shape().radial(d);
-        for (double& value : R) value *= unit * unit;
-        knots.push_back(float4Of(R, d / unit));
-    }
+    for (double d : distances) knots.push_back(float4Of(unit * unit * profile.shape().radial(d), d / unit));
     return knots;
 }
 
@@ -90,18 +80,14 @@ std::vector<cl_float4> tableTails(const Profile& profile, double end) {
     for (int i = PEL_TAIL_CELLS; i >= 0; --i) {
         while (borders[border] > mesh[i]) {
             const double b = borders[border], a = borders[--border], h = b - a;
-            for (int c = 0; c < 3; ++c) {
-                third[c] += h * (second[c] + h * (first[c] / 2 + h * total[c] / 6));
-                second[c] += h * (first[c] + h * total[c] / 2);
-                first[c] += h * total[c];
-            }
+            third += h * (second + h * (first / 2 + h * total / 6));
+            second += h * (first + h * total / 2);
+            first += h * total;
             eachPoint(profile, a, b, [&](double t, const Rgb& m) {
-                for (int c = 0; c < 3; ++c) {
-                    total[c] += m[c];
-                    first[c] += m[c] * t;
-                    second[c] += m[c] * t * t / 2;
-                    third[c] += m[c] * t * t * t / 6;
-                }
+                total += m;
+                first += t * m;
+                second += t * (t * m) / 2;
+                third += t * (t * (t * m)) / 6;
             });
         }
         cl_float4* out = tails.data() + size_t(i) * PEL_TAIL_VALUES;
@@ -122,12 +108,10 @@ std::vector<cl_float4> lineSums(const Profile& profile, double end, int cells) {
     for (double distance : mesh) {
         while (borders[border] < distance) {
             const double a = borders[border], b = borders[++border];
-            for (int c = 0; c < 3; ++c) moment[c] += (b - a) * total[c];
+            moment += (b - a) * total;
             eachPoint(profile, a, b, [&](double t, const Rgb& m) {
-                for (int c = 0; c < 3; ++c) {
-                    total[c] += m[c];
-                    moment[c] += m[c] * (b - a - t);
-                }
+                total += m;
+                moment += (b - a - t) * m;
             });
         }
         sums.insert(sums.end(),
@@ -142,26 +126,23 @@ std::vector<cl_float4> radialSums(const Profile& profile, double end, int cells)
     Rgb total{}, moment{};
     size_t piece = 0;
     double at = 0;
-    const auto radial = [&](double distance, int c) {
-        const cl_float4 &low = knots[piece], &high = knots[piece + 1];
-        const double f = (distance - low.s[3]) / (double(high.s[3]) - low.s[3]);
-        return low.s[c] + f * (double(high.s[c]) - low.s[c]);
+    const auto radial = [&](double distance) {
+        const float *low = knots[piece].s, *high = knots[piece + 1].s;
+        const double f = (distance - low[3]) / (double(high[3]) - low[3]);
+        return threeAt(low) + f * (threeAt(high) - threeAt(low));
     };
     for (double distance : meshOfCells(end, cells)) {
         while (at < distance) {
             const bool last = piece + 2 == knots.size();
             const double next = last ? distance : std::min<double>(distance, knots[piece + 1].s[3]),
                          h = next - at;
-            for (int c = 0; c < 3; ++c) {
-                const double low = radial(at, c), high = radial(next, c);
-                moment[c] += h * total[c] + h * h * (2 * low + high) / 6;
-                total[c] += h * (low + high) / 2;
-            }
+            const Rgb low = radial(at), high = radial(next);
+            moment += h * total + h * h * (2 * low + high) / 6;
+            total += h * (low + high) / 2;
             at = next;
             if (next < distance) ++piece;
         }
-        Rgb R;
-        for (int c = 0; c < 3; ++c) R[c] = std::max(radial(distance, c), 0.0);
+        const Rgb R = threeOf([&](int c) { return std::max(radial(distance)[c], 0.0); });
         sums.insert(sums.end(), {float4Of(R, 0), float4Of(total, 0), float4Of(moment, 0)});
     }
     return sums;
@@ -170,13 +151,9 @@ std::vector<cl_float4> radialSums(const Profile& profile, double end, int cells)
 std::vector<cl_float4> antipodes(const Profile& profile, bool radial, const std::vector<double>& radii) {
     std::vector<cl_float4> densities;
     for (double radius : radii) {
-        const double chord = 2 * radius * std::cos(antipodalAngle / 4);
-        Rgb density = lineSpread(profile, chord);
-        if (radial) {
-            density = profile.shape().radial(chord * profile.radius());
-            for (double& value : density) value *= profile.radius() * profile.radius();
-        }
-        densities.push_back(float4Of(density, 0));
+        const double chord = 2 * radius * std::cos(antipodalAngle / 4), unit = profile.radius();
+        densities.push_back(float4Of(
+            radial ? unit * unit * profile.shape().radial(chord * unit) : lineSpread(profile, chord), 0));
     }
     return densities;
 }
@@ -278,32 +255,25 @@ std::vector<cl_float4> tablePoints(const std::vector<cl_float4>& knots, double d
             for (int q = 0; q < 4; ++q) {
                 const double d = (a + b) / 2 + h * fourAt[q],
                              f = (d - low.s[3]) / (double(high.s[3]) - low.s[3]);
-                for (int c = 0; c < 3; ++c) {
-                    const double m = fourWeight[q] * h * d * (low.s[c] + f * (double(high.s[c]) - low.s[c]));
-                    sum[c] += m;
-                    moment[c] += m * (d - middle) / half;
-                }
+                const Rgb m =
+                    fourWeight[q] * h * d * (threeAt(low.s) + f * (threeAt(high.s) - threeAt(low.s)));
+                sum += m;
+                moment += (d - middle) * m / half;
             }
             a = b;
         }
         for (double sign : {-1.0, 1.0}) {
             const double at = sign / std::numbers::sqrt3;
-            Rgb weight;
-            for (int c = 0; c < 3; ++c) {
-                weight[c] = (sum[c] + moment[c] / at) / 2;
-                all[c] += weight[c];
-            }
+            const Rgb weight = (sum + moment / at) / 2;
+            all += weight;
             points.push_back({weight, middle + half * at});
         }
     }
     // A table may have no energy so near in some channel: then nothing scatters.
-    Rgb none{};
-    for (int c = 0; c < 3; ++c)
-        if (!(all[c] > 0)) none[c] = 1;
-    std::vector<cl_float4> result{float4Of(none, 0)};
-    for (auto& [weight, d] : points) {
-        for (int c = 0; c < 3; ++c) weight[c] = all[c] > 0 ? weight[c] / all[c] : 0;
-        result.push_back(float4Of(weight, d));
+    std::vector<cl_float4> result{float4Of(threeOf([&](int c) { return all[c] > 0 ? 0.0 : 1.0; }), 0)};
+    for (const auto& [weight, d] : points) {
+        const Rgb share = threeOf([&](int c) { return all[c] > 0 ? weight[c] / all[c] : 0; });
+        result.push_back(float4Of(share, d));
     }
     return result;
 }

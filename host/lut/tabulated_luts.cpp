@@ -1,7 +1,6 @@
 // Beside kernels/lut/tabulated_curvature_lut.cl and kernels/lut/tabulated_shadow_lut.cl.
 #include "lut/luts.h"
 
-#include <cmath>
 #include <numbers>
 
 #include "core/launch_policy.h"
@@ -84,21 +83,21 @@ void integrateTabulatedCurvature(Lut& lut) {
         device.allocate(PEL_CURVATURE_RECORD(size_t(intervals)) * desc.height * sizeof(cl_float4));
     if (sphere) {
         const SpherePoints of = spherePoints(profile, desc, axis);
-        const cl::Memory nodes = upload(device, meshOfNodes(intervals)), ofRow = upload(device, of.ofRow),
-                         points = upload(device, of.points);
+        const cl::Memory nodes = device.upload(meshOfNodes(intervals)), ofRow = device.upload(of.ofRow),
+                         points = device.upload(of.points);
         cl::Launch launch(program, "tabulated_sphere_rows", params, nodes, ofRow, points, rows);
         device.launch(launch, {{intervals / lanes + 1, desc.height, 1}, {group, 1, 1}});
     } else {
-        const cl::Memory mesh = upload(device, tableMesh(intervals, chord)),
-                         sums = upload(device, ring ? radialSums(profile, end, radialCells)
-                                                    : lineSums(profile, end, PEL_TAIL_CELLS)),
-                         opposite = upload(device, antipodes(profile, ring, radiiOf(desc, axis)));
+        const cl::Memory mesh = device.upload(tableMesh(intervals, chord)),
+                         sums = device.upload(ring ? radialSums(profile, end, radialCells)
+                                                   : lineSums(profile, end, PEL_TAIL_CELLS)),
+                         opposite = device.upload(antipodes(profile, ring, radiiOf(desc, axis)));
         cl::Launch launch(program, "tabulated_rows", params, mesh, sums, opposite, rows);
         const size_t rowsPerItem = std::max(lanes / 4, 1u);
         device.launch(launch, {{(desc.height + rowsPerItem - 1) / rowsPerItem, 1, 1}, {group, 1, 1}});
     }
     const std::vector<LutColumn> columnWeights = curvatureColumns(desc.width, desc.axis, intervals);
-    const cl::Memory columns = upload(device, columnWeights);
+    const cl::Memory columns = device.upload(columnWeights);
     cl::Launch texelLaunch(program, "curvature_texels", desc.width, desc.height, rows, columns, lut.texels());
     const size_t items = (columnWeights.size() + columnsPerItem - 1) / columnsPerItem;
     device.launch(texelLaunch, {{items, desc.height + size_t(1), 1}, {group, 1, 1}});
@@ -119,11 +118,11 @@ void integrateTabulatedShadow(Lut& lut) {
     const size_t group = launchPolicy(device).group, columnsPerItem = launchPolicy(device).tableColumns;
     const cl::Program program = device.programs().get(
         "lut/tabulated_shadow_lut.cl", {{"PEL_GROUP", group}, {"PEL_COLUMNS", columnsPerItem}});
-    const cl::Memory tails = upload(device, tableTails(*lut.profile(), end));
+    const cl::Memory tails = device.upload(tableTails(*lut.profile(), end));
     const size_t record = PEL_RAMP_RECORD(size_t(nodes)), samples = 2 * PEL_RAMP_SAMPLES(size_t(nodes));
     const cl::Memory ofRows = device.allocate(record * desc.height * sizeof(cl_float4));
     if (nodes) {
-        const cl::Memory weights = upload(device, rampWeights()),
+        const cl::Memory weights = device.upload(rampWeights()),
                          scratch = device.allocate(samples * desc.height * sizeof(cl_float4));
         cl::Launch rows(program, "tabulated_shadow_rows", params, tails, weights, scratch, ofRows);
         device.launch(rows, {{(desc.height + group - 1) / group * group, 1, 1}, {group, 1, 1}});

@@ -17,9 +17,8 @@ MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, cons
     const VertexView& normals = given.memory ? given : positions;
     Device& device = topology.device();
     cl::Launch count(device.programs().get("mesh/mesh_rows.cl", mapping(topology)), "mesh_count",
-                     topology.vertices(), positions.memory, positions.layout, normals.memory, normals.layout,
-                     topology.slots(), topology.slices(), topology.rings(), data.positions.memory,
-                     data.positions.layout, memory);
+                     topology.vertices(), positions, normals, topology.slots(), topology.slices(),
+                     topology.rings(), data.positions, memory);
     device.launch(count, over(topology.vertices()));
     MeshCounts counts;
     device.read(memory.get(), 0, sizeof counts, &counts, true);
@@ -95,10 +94,8 @@ cl::Defines passDefines(const MeshTopology& topology, const PelCurvatureParams& 
             {"PEL_WIDTH", width(topology.device())}};
 }
 
-namespace {
-
-void estimateQuadric(MeshTopology& topology, const cl::Defines& common, const SlotData& data,
-                     const cl::Memory& planes, const Rows& rows, const cl::Memory& counts) {
+static void estimateQuadric(MeshTopology& topology, const cl::Defines& common, const SlotData& data,
+                            const cl::Memory& planes, const Rows& rows, const cl::Memory& counts) {
     cl::Defines defines = common;
     const uint32_t lanes = rows.list ? width(topology.device()) : topology.device().info().mathWidth;
     defines["PEL_WIDTH"] = lanes;
@@ -113,8 +110,6 @@ void estimateQuadric(MeshTopology& topology, const cl::Defines& common, const Sl
                   lists.rounds, counts);
     launchRows(topology, estimate, rows, lanes);
 }
-
-}  // namespace
 
 void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params, const SlotData& data,
                        const cl::Memory& planes, const Rows& rows, const cl::Memory& counts) {
@@ -141,7 +136,7 @@ void storeQuantity(MeshTopology& topology, const PelCurvatureParams& params, uin
     cl::Launch store(
         topology.device().programs().get("mesh/curvature.cl", passDefines(topology, params, stride)),
         "curvature_store", topology.slotOf(), planeStrideOf(topology), smoothed, estimated, params.scale,
-        curvature.memory, curvature.layout);
+        curvature);
     topology.device().launch(store, over(topology.vertices()));
     if (work) ++work->launches, work->rows += topology.slots();
 }
@@ -172,10 +167,8 @@ void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, con
     if (counts) *counts = countFaults(topology, positions, normals, data, counted);
 }
 
-namespace {
-
 // The first row of each slice, from the numbers of points of its slots.
-std::vector<uint32_t> startsOf(const std::vector<uint32_t>& counts) {
+static std::vector<uint32_t> startsOf(const std::vector<uint32_t>& counts) {
     std::vector<uint32_t> starts{0};
     for (auto slice = counts.begin(); slice != counts.end(); slice += PEL_POINT_LANES) {
         const uint32_t rows = *std::max_element(slice, slice + PEL_POINT_LANES);
@@ -185,8 +178,6 @@ std::vector<uint32_t> startsOf(const std::vector<uint32_t>& counts) {
     }
     return starts;
 }
-
-}  // namespace
 
 const MeshTopology::TwoRings& twoRings(MeshTopology& topology, const cl::Program& program) {
     MeshTopology::TwoRings& made = topology.twoRings;

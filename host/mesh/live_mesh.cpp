@@ -42,8 +42,7 @@ void LiveMesh::find(const std::vector<PelVertexRange>& changed) {
     // Copied now: the queue may be busy and is not used for this.
     const auto upload = [&](const std::vector<uint32_t>& values) {
         stats_.bytesUploaded += values.size() * sizeof(uint32_t);
-        return values.empty() ? cl::Memory()
-                              : topology_->device().allocate(values.size() * sizeof(uint32_t), values.data());
+        return topology_->device().upload(values);
     };
     list_ = upload(reach_.slices);
     lanes_ = upload(reach_.lanes);
@@ -123,7 +122,7 @@ void LiveMesh::update(const VertexView& positions, const VertexView& normals, co
                          "curvature_store_listed");
         rowArguments(topology, store, stored);
         store.args(lanes_, topology.memberOffsets(), topology.members(), planeStride, values.from, estimated,
-                   params_.scale, curvature.memory, curvature.layout);
+                   params_.scale, curvature);
         launchRows(topology, store, stored, 1);
         storing.rows = reach_.storedSlots;
     } else {
@@ -146,16 +145,12 @@ PelLiveMeshStats LiveMesh::stats() {
     return stats;
 }
 
-namespace {
-
-std::vector<uint32_t> readBack(Device& device, const cl::Memory& memory) {
+static std::vector<uint32_t> readBack(Device& device, const cl::Memory& memory) {
     if (!memory) return {};
     std::vector<uint32_t> values(cl::info<size_t>(memory.get(), CL_MEM_SIZE) / sizeof(uint32_t));
     device.readOnSideQueue(memory.get(), values.size() * sizeof(uint32_t), values.data());
     return values;
 }
-
-}  // namespace
 
 MeshReacher::MeshReacher(const MeshTopology& topology)
     : slots_(topology.slots()),

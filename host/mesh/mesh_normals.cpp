@@ -11,8 +11,7 @@ SlotData gatherRows(MeshTopology& topology, const VertexView& positions, const V
     defines["PEL_WIDTH"] = width(topology.device());  // whether to fetch ahead
     cl::Launch gather(topology.device().programs().get("mesh/mesh_rows.cl", defines), "mesh_rows");
     rowArguments(topology, gather, rows);
-    gather.args(topology.memberOffsets(), topology.members(), positions.memory, positions.layout,
-                normals.memory, normals.layout, memory);
+    gather.args(topology.memberOffsets(), topology.members(), positions, normals, memory);
     launchRows(topology, gather, rows, 1);
     const uint32_t slots = topology.slots();
     return {{memory, {slots, 0, 8, 0}}, {memory, {slots, 4, 8, 0}}, 8};
@@ -52,7 +51,7 @@ void meshNormals(MeshTopology& topology, const VertexView& positions, const Vert
     const auto lock = topology.lock();
     const SlotData data = gatherBySlot(topology, positions, {}, scratchOf(topology));
     cl::Launch store(program(topology, data.stride, {}), "mesh_normals_store", topology.slotOf(),
-                     data.normals.memory, data.normals.layout.offset, normals.memory, normals.layout);
+                     data.normals.memory, data.normals.layout.offset, normals);
     topology.device().launch(store, over(topology.vertices()));
 }
 

@@ -1,8 +1,6 @@
 #include "mesh/mesh_topology.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
+#include "core/three.h"
 
 namespace pel {
 namespace {
@@ -13,33 +11,9 @@ constexpr uint32_t none = UINT32_MAX;
 // ones reach 0.5 to 1; sums of random signs reach about 1 / root(triangles).
 constexpr double believed = 0.1;
 
-using Vec = std::array<double, 3>;
-
-Vec operator-(const Vec& a, const Vec& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Vec cross(const Vec& a, const Vec& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Vec& a, const Vec& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-// Three floats per vertex in the caller's memory.
-struct Vectors {
-    const char* begin;
-    size_t stride;
-    Vec operator[](size_t vertex) const {
-        float v[3];
-        std::memcpy(v, begin + vertex * stride, sizeof v);
-        return {v[0], v[1], v[2]};
-    }
-};
-
-Vectors vectorsAt(const float* begin, uint32_t stride, const char* name) {
+void checkStride(uint32_t stride, const char* name) {
     if (stride % sizeof(float) != 0 || (stride > 0 && stride < 3 * sizeof(float)))
         invalidArgument(name, " is ", stride, "; 0 (12 bytes) or a multiple of 4 of at least 12 is needed");
-    return {reinterpret_cast<const char*>(begin), stride ? stride : 3 * sizeof(float)};
 }
 
 // Across side s (from corner s % 3 to the next corner of triangle s / 3): 2 * the other triangle, plus 1 if
@@ -79,9 +53,10 @@ std::vector<uint32_t> findAcross(const std::vector<uint32_t>& slots, uint32_t sl
 class Orienter {
   public:
     Orienter(const PelMeshTopologyDesc& desc, const float* normals, uint32_t normalStride)
-        : desc_(desc),
-          positions_(vectorsAt(desc.positions, desc.positionStride, "PelMeshTopologyDesc.positionStride")),
-          normals_(vectorsAt(normals, normalStride, "normalStride")) {}
+        : desc_(desc), positions_(desc.positions, desc.positionStride), normals_(normals, normalStride) {
+        checkStride(desc.positionStride, "PelMeshTopologyDesc.positionStride");
+        checkStride(normalStride, "normalStride");
+    }
 
     std::vector<uint32_t> run(PelMeshOrientation& found) {
         std::vector<uint32_t> indices(desc_.indices, desc_.indices + desc_.numIndices);
@@ -156,10 +131,11 @@ class Orienter {
         return turns_ * 2 > part_.size();
     }
 
-    Vec normalOf(uint32_t t) const {  // of twice the triangle's area
+    Three position(uint32_t vertex) const { return threeAt(positions_[vertex].data()); }
+    Three normalOf(uint32_t t) const {  // of twice the triangle's area
         const uint32_t* v = desc_.indices + 3 * size_t(t);
-        const Vec p = positions_[v[0]], n = cross(positions_[v[1]] - p, positions_[v[2]] - p);
-        return state_[t] == turn ? Vec{-n[0], -n[1], -n[2]} : n;
+        const Three p = position(v[0]), n = cross(position(v[1]) - p, position(v[2]) - p);
+        return state_[t] == turn ? -1 * n : n;
     }
 
     // 1: the triangles in the order of state_ face the direction of the summed vector; -1: the opposite
@@ -178,29 +154,28 @@ class Orienter {
 
     int sideOfNormals() const {
         return sideOf([&](uint32_t t) {
-            const Vec face = normalOf(t);
+            const Three face = normalOf(t);
             double sum = 0;
-            for (int c = 0; c < 3; ++c) sum += dot(face, normals_[desc_.indices[3 * size_t(t) + c]]);
+            for (int c = 0; c < 3; ++c)
+                sum += dot(face, threeAt(normals_[desc_.indices[3 * size_t(t) + c]].data()));
             return sum;
         });
     }
 
     int sideOfVolume() const {
-        Vec middle{};
-        size_t count = 0;
+        Three middle{};
         for (uint32_t t : part_) {
-            const Vec p = positions_[desc_.indices[3 * size_t(t)]];
+            const Three p = position(desc_.indices[3 * size_t(t)]);
             if (!std::isfinite(p[0] + p[1] + p[2])) return 0;
-            for (int k = 0; k < 3; ++k) middle[k] += p[k];
-            ++count;
+            middle += p;
         }
-        for (double& x : middle) x /= double(count);
+        for (double& x : middle) x /= double(part_.size());
         return sideOf(
-            [&](uint32_t t) { return dot(normalOf(t), positions_[desc_.indices[3 * size_t(t)]] - middle); });
+            [&](uint32_t t) { return dot(normalOf(t), position(desc_.indices[3 * size_t(t)]) - middle); });
     }
 
     const PelMeshTopologyDesc& desc_;
-    const Vectors positions_, normals_;
+    const VertexFloats positions_, normals_;
     std::vector<uint32_t> across_, part_;
     std::vector<State> state_;
     uint32_t turns_ = 0, left_ = 0;

@@ -114,12 +114,8 @@ void smoothToRadius(MeshTopology& topology, const SlotData& data, const Diffusio
     values.from = sum;
 }
 
-namespace {
-
 // erfc of this is 2e-4.
 constexpr double reach = 2.63;
-
-}  // namespace
 
 double stagesOfSpan(double span) {
     return std::ceil(1 + reach * std::sqrt(2 * span));

@@ -24,9 +24,19 @@ void checkTopologyDesc(const PelMeshTopologyDesc& desc) {
                             "; the mesh has ", desc.numVertices, " vertices, numbered from 0");
 }
 
-cl::Memory MeshTopology::upload(std::span<const uint32_t> values) {
+cl::Memory MeshTopology::upload(Words values) {
     if (values.empty()) return {};
     return device_->allocate(values.size_bytes(), values.data());
+}
+
+void MeshTopology::uploadLists(Words slotOf, Words memberOffsets, Words members, Words slices, Words rings) {
+    slotOf_ = upload(slotOf);
+    memberOffsets_ = upload(memberOffsets);
+    members_ = upload(members);
+    slices_ = upload(slices);
+    rings_ = upload(rings);
+    runs_ = upload(findRuns(rings));
+    ringEntries_ = rings.size();
 }
 
 Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopologyDesc& desc,
@@ -62,14 +72,8 @@ Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopology
     topology->report_ = report;
     if (desc.numIndices > 0)
         topology->indices_ = device->allocate(desc.numIndices * sizeof(uint32_t), desc.indices);
-    topology->slotOf_ = topology->upload(weld.slotOf);
-    topology->memberOffsets_ = topology->upload(weld.memberOffsets);
-    topology->members_ = topology->upload(weld.members);
     const MeshSlices rings = sliceAdjacency(adjacency);
-    topology->slices_ = topology->upload(rings.slices);
-    topology->rings_ = topology->upload(rings.rows);
-    topology->runs_ = topology->upload(findRuns(rings.rows));
-    topology->ringEntries_ = rings.rows.size();
+    topology->uploadLists(weld.slotOf, weld.memberOffsets, weld.members, rings.slices, rings.rows);
     progress(1.0);
     return topology;
 }

@@ -1,6 +1,7 @@
 // The analysis of a mesh's indices, made once and kept on the device; and the scratch memory of the passes
 // over it.
 #pragma once
+#include <cstring>
 #include <functional>
 #include <span>
 
@@ -78,7 +79,9 @@ class MeshTopology final : public Object {
 
   private:
     ~MeshTopology() override = default;
-    cl::Memory upload(std::span<const uint32_t> values);
+    using Words = std::span<const uint32_t>;
+    cl::Memory upload(Words values);
+    void uploadLists(Words slotOf, Words memberOffsets, Words members, Words slices, Words rings);
 
     Ref<Device> device_;
     PelMeshReport report_ = pelMeshReportDefaults();
@@ -86,6 +89,22 @@ class MeshTopology final : public Object {
     cl::Memory indices_, slotOf_, memberOffsets_, members_, slices_, rings_, runs_;
     std::mutex mutex_;
     SizedMemory scratch_[scratchCount];
+};
+
+// Three floats per vertex in the caller's memory, `stride` bytes apart; 0: tightly packed.
+class VertexFloats {
+  public:
+    VertexFloats(const float* begin, uint32_t stride)
+        : begin(reinterpret_cast<const char*>(begin)), stride_(stride ? stride : 3 * sizeof(float)) {}
+    std::array<float, 3> operator[](uint32_t vertex) const {
+        std::array<float, 3> v;
+        std::memcpy(v.data(), begin + vertex * stride_, sizeof v);
+        return v;
+    }
+    const char* const begin;
+
+  private:
+    size_t stride_;
 };
 
 // Welding: which of the caller's vertices are at one place, and become one vertex of the topology.

@@ -1,12 +1,9 @@
 // A topology as bytes: a header, then its arrays one after another. Loading checks everything, because
 // kernels use these numbers as indices without checks.
 #include <algorithm>
-#include <cstring>
 
 #include "mesh/mesh_adjacency.h"
 #include "mesh/mesh_topology.h"
-
-#define XXH_INLINE_ALL
 
 namespace pel {
 namespace {
@@ -118,13 +115,7 @@ Ref<MeshTopology> MeshTopology::load(Ref<Device> device, const void* bytes, size
     Ref<MeshTopology> topology = make<MeshTopology>(device);
     topology->report_ = r;
     topology->indices_ = topology->upload(indices);
-    topology->slotOf_ = topology->upload(slotOf);
-    topology->memberOffsets_ = topology->upload(memberOffsets);
-    topology->members_ = topology->upload(members);
-    topology->slices_ = topology->upload(slices);
-    topology->rings_ = topology->upload(rings);
-    topology->runs_ = topology->upload(findRuns(rings));
-    topology->ringEntries_ = rings.size();
+    topology->uploadLists(slotOf, memberOffsets, members, slices, rings);
     return topology;
 }
 

@@ -1,7 +1,7 @@
 #include "mesh/mesh_topology.h"
 
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
 namespace pel {
@@ -9,21 +9,6 @@ namespace {
 
 using Point = std::array<float, 3>;
 using Cell = std::array<int64_t, 3>;
-
-class Positions {
-  public:
-    Positions(const float* data, uint32_t stride)
-        : data_(reinterpret_cast<const char*>(data)), stride_(stride ? stride : 12) {}
-    Point operator[](uint32_t vertex) const {
-        Point p;
-        std::memcpy(p.data(), data_ + size_t(vertex) * stride_, sizeof p);
-        return p;
-    }
-
-  private:
-    const char* data_;
-    size_t stride_;
-};
 
 // Chains of the vertices of each cell of space, in a hash table twice as long as there are vertices.
 class CellTable {
@@ -65,12 +50,7 @@ bool finite(const Point& p) {
 // Every distinct coordinate is a cell of its own.
 Cell exactCell(const Point& p) {
     Cell cell;
-    for (int c = 0; c < 3; ++c) {
-        const float value = p[c] + 0.0f;  // -0 becomes 0
-        uint32_t bits;
-        std::memcpy(&bits, &value, sizeof bits);
-        cell[c] = bits;
-    }
+    for (int c = 0; c < 3; ++c) cell[c] = std::bit_cast<uint32_t>(p[c] + 0.0f);  // -0 becomes 0
     return cell;
 }
 
@@ -80,11 +60,11 @@ Cell gridCell(const Point& p, double size) {
     return cell;
 }
 
-uint32_t findExact(const CellTable& table, const Positions& positions, const Point& p) {
+uint32_t findExact(const CellTable& table, const VertexFloats& positions, const Point& p) {
     return table.find(exactCell(p), [&](uint32_t v) { return positions[v] == p; });
 }
 
-uint32_t findNear(const CellTable& table, const Positions& positions, const Point& p, double tolerance) {
+uint32_t findNear(const CellTable& table, const VertexFloats& positions, const Point& p, double tolerance) {
     const Cell centre = gridCell(p, tolerance);
     uint32_t found = CellTable::none;
     for (int n = 0; n < 27; ++n) {
@@ -137,7 +117,7 @@ MeshWeld weldVertices(const PelMeshTopologyDesc& desc, const std::function<void(
         invalidArgument("PelMeshTopologyDesc.weldTolerance is ", desc.weldTolerance,
                         "; a length above 0 is needed (PEL_WELD_EXACT welds equal positions)");
 
-    const Positions positions(desc.positions, desc.positionStride);
+    const VertexFloats positions(desc.positions, desc.positionStride);
     CellTable table(desc.numVertices);
     weld.slotOf.resize(desc.numVertices);
     uint32_t slots = 0;

@@ -19,8 +19,8 @@ float meshUvScale(MeshTopology& topology, const VertexView& positions, const Ver
     const cl::Memory& memory =
         topology.scratch(MeshTopology::scratchReduce, PEL_UV_SCALE_ITEMS * sizeof(UvScaleShare));
 
-    cl::Launch largest(program, "uv_scale_largest", topology.triangles(), topology.indices(),
-                       positions.memory, positions.layout, uvs.memory, uvs.layout, memory);
+    cl::Launch largest(program, "uv_scale_largest", topology.triangles(), topology.indices(), positions, uvs,
+                       memory);
     device.launch(largest, range);
     std::vector<std::array<float, 2>> maxima(PEL_UV_SCALE_ITEMS);
     device.read(memory.get(), 0, maxima.size() * sizeof maxima[0], maxima.data(), true);
@@ -34,9 +34,8 @@ float meshUvScale(MeshTopology& topology, const VertexView& positions, const Ver
                         " triangles the longest edge is ", std::sqrt(length2), " and the longest UV edge ",
                         std::sqrt(uv2));
 
-    cl::Launch sum(program, "uv_scale_sum", topology.triangles(), topology.indices(), positions.memory,
-                   positions.layout, uvs.memory, uvs.layout, length2 * smallestPart * smallestPart,
-                   uv2 * smallestPart * smallestPart, memory);
+    cl::Launch sum(program, "uv_scale_sum", topology.triangles(), topology.indices(), positions, uvs,
+                   length2 * smallestPart * smallestPart, uv2 * smallestPart * smallestPart, memory);
     device.launch(sum, range);
     std::vector<UvScaleShare> shares(PEL_UV_SCALE_ITEMS);
     device.read(memory.get(), 0, shares.size() * sizeof shares[0], shares.data(), true);

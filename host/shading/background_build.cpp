@@ -1,6 +1,5 @@
 #include "shading/background_build.h"
 
-#include <cstdlib>
 #include <set>
 
 #include "cl/machine.h"

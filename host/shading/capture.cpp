@@ -1,14 +1,9 @@
 #include "shading/capture.h"
 
-#include <cmath>
-#include <cstdio>
-#include <filesystem>
-
 #include "cl/module.h"
 #include "core/error_log.h"
 #include "core/handle_table.h"
 #include "core/launch_policy.h"
-#include "fields/captured_frame.h"
 #include "shading/image_slots.h"
 #include "shading/launch_ranges.h"
 #include "shading/shading_constants.h"

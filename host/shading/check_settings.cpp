@@ -1,8 +1,6 @@
 // The settings that a shader accepts: value by value when they are set, and all together at commit.
 #include "shading/check_settings.h"
 
-#include <cmath>
-
 #include "core/check_range.h"
 #include "shared/shade.h"
 
@@ -66,6 +64,12 @@ void checkFinite(const char* structure, const char* field, const float* values, 
 
 void checkImage(PelImageSlot slot, const ImageView& view) {
     checkContent(view, imageSlot(slot).content, slotName(slot));
+}
+
+void checkSize(const char* name, const ImageView& view, const char* outName, const ImageView& of) {
+    if (view.width != of.width || view.height != of.height)
+        invalidArgument("the ", name, " image is ", view.width, " x ", view.height, ", the ", outName, " ",
+                        of.width, " x ", of.height, "; all must have one size");
 }
 
 void checkLightImage(PelLightSlot slot, const ImageView& view, const char* what) {
@@ -234,9 +238,7 @@ void checkOptions(const PelShaderOptions& options) {
     checkChoice(structure, "tileLists", options.tileLists, PEL_TILES_NO_LIST + 1, "PelTileLists");
 }
 
-namespace {
-
-void checkCube(const ShaderLight& light, const std::string& name) {
+static void checkCube(const ShaderLight& light, const std::string& name) {
     const PelLight& l = light.params;
     if (l.type == PEL_LIGHT_DIRECTIONAL)
         invalidArgument(
@@ -275,7 +277,7 @@ void checkCube(const ShaderLight& light, const std::string& name) {
                         ": the distance from the light at depth 1 is needed, above 0");
 }
 
-void checkCascades(const ShaderLight& light, const std::string& name) {
+static void checkCascades(const ShaderLight& light, const std::string& name) {
     const PelLight& l = light.params;
     if (l.type != PEL_LIGHT_DIRECTIONAL || l.shadowProjection != PEL_SHADOW_PARALLEL)
         invalidArgument(name, ".shadowCascades is ", l.shadowCascades,
@@ -305,7 +307,7 @@ void checkCascades(const ShaderLight& light, const std::string& name) {
     }
 }
 
-void checkContent(const ShaderLight& light, const std::string& name) {
+static void checkContent(const ShaderLight& light, const std::string& name) {
     const PelLight& l = light.params;
     const ImageView& map = light.images[PEL_LIGHT_SHADOW_MAP];
     if (l.shadowContent == PEL_SHADOW_CONTENT_MOMENTS && map.info().components < 2)
@@ -321,8 +323,6 @@ void checkContent(const ShaderLight& light, const std::string& name) {
                         "; exponential maps need c of exp(c z), ", growth > 0 ? "above" : "below",
                         " 0 here so that c z grows away from the light, such as ", growth > 0 ? "80" : "-80");
 }
-
-}  // namespace
 
 void checkLightMap(const ShaderLight& light, uint32_t index) {
     const PelLight& l = light.params;

@@ -8,6 +8,8 @@ namespace pel {
 // NAME.FIELD[i] of a structure.
 void checkFinite(const char* structure, const char* field, const float* values, size_t count);
 void checkImage(PelImageSlot slot, const ImageView& view);
+// An input of an operation on plain images, of which `of` is the output.
+void checkSize(const char* name, const ImageView& view, const char* outName, const ImageView& of);
 void checkLightImage(PelLightSlot slot, const ImageView& view, const char* what);
 void checkNormalMap(const std::vector<ImageView>& levels);
 void checkMaterial(const PelMaterial& material);

@@ -1,7 +1,5 @@
 #include "shading/features.h"
 
-#include <algorithm>
-
 #include "shading/image_slots.h"
 
 namespace pel {
@@ -94,9 +92,7 @@ ShaderState standInOf(const ShaderState& given) {
     return state;
 }
 
-namespace {
-
-void checkMaterial(uint32_t id, const ShaderMaterial& material, const ShaderState& state) {
+static void checkMaterial(uint32_t id, const ShaderMaterial& material, const ShaderState& state) {
     const PelMaterial& m = material.params;
     if (m.thinThickness > 0 && (!material.profile || !readsIrradiance(material)))
         invalidArgument("material ", id, " has a thinThickness of ", m.thinThickness, " and ",
@@ -117,8 +113,6 @@ void checkMaterial(uint32_t id, const ShaderMaterial& material, const ShaderStat
              scatteringName(m.scattering),
              "\"; only separable, and screen with scatterTaps of 8 to 256, let light cross borders");
 }
-
-}  // namespace
 
 void checkScattering(const ShaderState& state) {
     for (const auto& [id, material] : state.materials) checkMaterial(id, material, state);

@@ -54,7 +54,9 @@ class ClassifyTiles final : public Pass {
 
     void enqueue(PassWork& work) override {
         if (!work.alone()) classify(work);
-        if (work.plan.bandRows < work.plan.tileRows) keepCounts(work);
+        if (work.plan.bandRows < work.plan.tileRows)  // the next band starts counting again
+            work.device.copy(lists_->memory().get(), countsAt, bandCounts_->memory().get(),
+                             work.band * countBytes, countBytes);
     }
 
     void addStats(Device& device, const ShaderPlan& plan, uint64_t bands,
@@ -66,9 +68,9 @@ class ClassifyTiles final : public Pass {
         stats.tilesShaded = stats.tilesEye = 0;
         for (size_t i = 0; i < counts.size(); ++i) {
             const size_t list = i % PEL_TILE_LISTS;
-            if (plan.variants.size() > 1 ? list > 0 : list == 0) stats.tilesShaded += counts[i];
-            if (list > 1) stats.tilesPartial += counts[i];
             const bool counted = plan.variants.size() > 1 ? list > 0 : list == 0;
+            if (counted) stats.tilesShaded += counts[i];
+            if (list > 1) stats.tilesPartial += counts[i];
             if (counted && plan.variants[list ? list - 1 : 0] & PEL_FEATURE_EYE) stats.tilesEye += counts[i];
         }
     }
@@ -90,14 +92,6 @@ class ClassifyTiles final : public Pass {
         const size_t group = classifyGroup(work.device), run = classifyRun(work.device), tiles = work.tiles();
         const size_t items = work.device.info().mathWidth == 1 ? tiles * group : (tiles + run - 1) / run;
         work.launch(launch, {{items, 1, 1}, {group, 1, 1}});
-    }
-
-    // The next band starts counting again.
-    void keepCounts(PassWork& work) const {
-        cl::check(
-            clEnqueueCopyBuffer(work.device.queue(), lists_->memory().get(), bandCounts_->memory().get(),
-                                countsAt, work.band * countBytes, countBytes, 0, nullptr, nullptr),
-            "clEnqueueCopyBuffer");
     }
 
     Ref<Buffer> lists_, bandCounts_;  // bandCounts_: the counts of the lists, one band after another

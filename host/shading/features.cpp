@@ -1,7 +1,5 @@
 #include "shading/features.h"
 
-#include <algorithm>
-
 #include "shading/check_settings.h"
 #include "shading/launch_ranges.h"
 #include "shared/light_space.h"
@@ -107,20 +105,18 @@ void checkNormalMapFormats(const ShaderState& state) {
 }  // namespace
 
 bool makesIrradiance(const ShaderState& state) {
-    return !state.images[PEL_SLOT_IRRADIANCE] &&
-           std::ranges::any_of(state.materials, [](const auto& m) { return readsIrradiance(m.second); });
+    return !state.images[PEL_SLOT_IRRADIANCE] && anyMaterial(state, readsIrradiance);
 }
 
 bool makesLightFromBehind(const ShaderState& state, uint32_t features) {
     return features & PEL_FEATURE_MAKE_IRRADIANCE && !state.images[PEL_SLOT_IRRADIANCE_BACK] &&
-           std::ranges::any_of(state.materials,
-                               [](const auto& m) { return m.second.params.thinThickness > 0; });
+           anyMaterial(state, [](const ShaderMaterial& m) { return m.params.thinThickness > 0; });
 }
 
 // True if irradiance is made, or if materials that read it have specular light.
 static bool takesSharpShadows(const ShaderState& state) {
-    return makesIrradiance(state) || std::ranges::any_of(state.materials, [](const auto& m) {
-               return readsIrradiance(m.second) && m.second.params.specular > 0;
+    return makesIrradiance(state) || anyMaterial(state, [](const ShaderMaterial& m) {
+               return readsIrradiance(m) && m.params.specular > 0;
            });
 }
 
@@ -132,7 +128,7 @@ bool filtersShadow(const ShaderState& state, const ShaderLight& light) {
 bool filtersWide(const ShaderState& state, const ShaderLight& light) {
     if (light.params.shadowFilterTexels == 0) return false;
     return isArea(light.params) ||
-           std::ranges::any_of(state.materials, [](const auto& m) { return !readsIrradiance(m.second); });
+           anyMaterial(state, [](const ShaderMaterial& m) { return !readsIrradiance(m); });
 }
 
 uint32_t formFeatures(const PelLight& l) {
@@ -299,8 +295,7 @@ uint32_t mapsOf(const ShaderLight& light) {
 }
 
 bool usesSkinMaps(const ShaderState& state) {
-    return state.images[PEL_SLOT_SKIN] &&
-           std::ranges::any_of(state.materials, [](const auto& m) { return takesSkinMaps(m.second); });
+    return state.images[PEL_SLOT_SKIN] && anyMaterial(state, takesSkinMaps);
 }
 
 bool lightIsMapped(const ShaderState& state) {

@@ -14,6 +14,10 @@ ShaderState inRegion(ShaderState state);
 
 // The PelFeature bits of a state. Throws if a required input is missing or does not match.
 uint32_t deriveFeatures(const ShaderState& state);
+template <class Has>
+bool anyMaterial(const ShaderState& state, const Has& has) {
+    return std::ranges::any_of(state.materials, [&](const auto& entry) { return has(entry.second); });
+}
 // The features that one material needs, as far as their other inputs exist.
 uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material);
 // The features for the projection, cascades and content of a light's shadow map.

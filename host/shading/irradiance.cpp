@@ -22,7 +22,7 @@ class Irradiance final : public Pass {
             device, plan.state,
             plan.features & (PEL_FEATURE_SHADOW | PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_CUBE));
         defines["PEL_THIN"] = int(makesLightFromBehind(plan.state, plan.features));
-        if (std::ranges::any_of(plan.state.materials, [](const auto& m) { return m.second.gain[0] > 0; }))
+        if (anyMaterial(plan.state, [](const ShaderMaterial& m) { return m.gain[0] > 0; }))
             defines["PEL_FORMAT_THICKNESS"] =
                 formatCode(plan.state.images[PEL_SLOT_THICKNESS], device.info().mathWidth);
         defines["PEL_PASS_GROUP"] = tileGroup(device);

@@ -1,6 +1,5 @@
 #include "shading/kept_maps.h"
 
-#include "shading/scratch_image.h"
 #include "shading/shading_constants.h"
 
 namespace pel {

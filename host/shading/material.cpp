@@ -1,8 +1,5 @@
 #include "shading/material.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/handle_table.h"
 #include "lut/luts.h"
 #include "shading/features.h"

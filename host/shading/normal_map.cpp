@@ -1,6 +1,4 @@
 // Blurred normals from the materials' normal maps.
-#include <algorithm>
-#include <cmath>
 
 #include "shading/launch_ranges.h"
 #include "shading/pass.h"

@@ -1,7 +1,5 @@
 #include "shading/pass.h"
 
-#include <algorithm>
-
 namespace pel {
 namespace {
 

@@ -1,6 +1,5 @@
 #include "shading/scratch_image.h"
 
-#include <algorithm>
 #include <cstddef>
 
 #include "core/sized_memory.h"

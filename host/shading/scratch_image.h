@@ -21,6 +21,14 @@ class CachedUpload {
   public:
     // Returns the bytes sent.
     size_t update(Device& device, const void* bytes, size_t count);
+    template <class T>
+    size_t update(Device& device, const T& value) {
+        return update(device, &value, sizeof value);
+    }
+    template <class T>
+    size_t update(Device& device, const std::vector<T>& values) {
+        return update(device, values.data(), values.size() * sizeof(T));
+    }
     const cl::Memory& memory() const { return memory_; }
     size_t bytes() const { return bytes_.size(); }
 

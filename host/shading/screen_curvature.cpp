@@ -1,7 +1,5 @@
 #include "shading/screen_curvature.h"
 
-#include <cmath>
-
 #include "core/launch_policy.h"
 #include "shading/check_settings.h"
 #include "shading/launch_ranges.h"
@@ -33,10 +31,7 @@ void checkScreenCurvature(const PelScreenCurvatureParams& params, const ScreenCu
     for (const auto& [slot, view] : inputs) {
         if (!*view) continue;
         checkImage(slot, *view);
-        if (view->width != images.curvature.width || view->height != images.curvature.height)
-            invalidArgument("the ", slotName(slot), " image is ", view->width, " x ", view->height,
-                            ", the curvature image ", images.curvature.width, " x ", images.curvature.height,
-                            "; all must have one size");
+        checkSize(slotName(slot), *view, "curvature image", images.curvature);
         // A pixel reads its neighbours, so not even the same pixel may be overwritten.
         if (sharesBytes(images.curvature, *view))
             invalidArgument("the curvature image overlaps the ", slotName(slot), " image, which is read");
@@ -55,19 +50,17 @@ void screenCurvature(Device& device, const PelScreenCurvatureParams& params,
     std::copy_n(params.inverseViewProjection, 16, frame.inverseViewProjection);
     frame.normal = describeImage(images.normals);
     frame.position = describeImage(where);
-    if (images.ids) frame.ids = describeImage(images.ids);
+    frame.ids = describeImage(images.ids);
     frame.curvature = describeImage(images.curvature);
+    // Copied now: the queue may be busy and is not used for this.
+    const cl::Memory memory = device.allocate(sizeof frame, &frame);
     cl::Launch launch(device.programs().get("shading/screen_curvature.cl",
                                             {{"PEL_FORMAT_NORMAL", formatCode(images.normals, lanes)},
                                              {"PEL_FORMAT_POSITION", formatCode(images.positions, lanes)},
                                              {"PEL_FORMAT_DEPTH", formatCode(images.depth, lanes)},
                                              {"PEL_FORMAT_IDS", formatCode(images.ids, lanes)},
                                              {"PEL_FORMAT_CURVATURE", formatCode(images.curvature, lanes)}}),
-                      "screen_curvature");
-    // Copied now: the queue may be busy and is not used for this.
-    const cl::Memory memory = device.allocate(sizeof frame, &frame);
-    launch.args(memory, images.normals.buffer->memory(), where.buffer->memory(),
-                images.ids ? images.ids.buffer->memory() : cl::Memory(), images.curvature.buffer->memory());
+                      "screen_curvature", memory, images.normals, where, images.ids, images.curvature);
     device.launch(launch, vectorRange(device, frame.width, frame.height));
 }
 

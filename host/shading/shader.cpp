@@ -1,8 +1,6 @@
 // Commit and execution of a PelShader, and its statistics.
 #include "shading/shader.h"
 
-#include <algorithm>
-
 #include "core/image_substitutes.h"
 #include "core/sized_memory.h"
 #include "shading/background_build.h"

@@ -1,6 +1,5 @@
 // The plan that a commit makes from a shader's state (shader_state.h), and the data that passes exchange.
 #pragma once
-#include "shading/shader_state.h"
 #include "shading/time_budget.h"
 #include "shared/shade.h"
 

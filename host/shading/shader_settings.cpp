@@ -84,12 +84,9 @@ void Shader::setNormalMap(uint32_t id, const PelImageDesc* levels, uint32_t coun
         invalidArgument("a normal map of ", count, " levels; ", PEL_MAP_LEVELS, " are the most");
     if (count > 0 && !levels) invalidArgument("levels is NULL but their count is ", count);
     std::vector<ImageView> views;
-    const char* next = reinterpret_cast<const char*>(levels);
-    for (uint32_t i = 0; i < count; ++i) {
-        const auto* level = reinterpret_cast<const PelImageDesc*>(next);
+    eachStruct(levels, count, [&](const PelImageDesc* level, uint32_t i) {
         views.push_back(makeImageView(level, *device_, text("normal map ", i).c_str()));
-        next += level->structSize;
-    }
+    });
     checkNormalMap(views);
     material.normalMap = std::move(views);
     committed_ = false;
@@ -144,14 +141,11 @@ void Shader::setLights(const PelLight* lights, uint32_t count) {
     if (count > 64) invalidArgument(count, " lights were given; 64 is the most");
     if (count > 0 && !lights) invalidArgument("lights is NULL but their count is ", count);
     std::vector<ShaderLight> list(count);
-    const char* next = reinterpret_cast<const char*>(lights);
-    for (uint32_t i = 0; i < count; ++i) {
-        const auto* light = reinterpret_cast<const PelLight*>(next);
-        list[i].params = readStruct(light, pelLightDefaults(), "PelLight");
-        next += light->structSize;
+    eachStruct(lights, count, [&](const PelLight* light, uint32_t i) {
+        list[i].params = readStruct(light, pelLightDefaults());
         checkLight(list[i].params, i);
         if (i < state_.lights.size()) list[i].images = state_.lights[i].images;
-    }
+    });
     state_.lights = std::move(list);
     committed_ = false;
 }

@@ -1,8 +1,5 @@
 #include "shading/shading_constants.h"
 
-#include <algorithm>
-#include <cfloat>
-#include <cmath>
 #include <cstddef>
 
 #include "shading/features.h"
@@ -47,12 +44,10 @@ size_t ShadingConstants::update(Device& device, const ShaderState& state,
     const auto materials = describeMaterials(state, variants);
     const auto lights = describeLights(state);
     const auto eyes = describeEyes(state);
-    const size_t frameBytes = frameUpload_.update(device, &frame_, sizeof frame_);
+    const size_t frameBytes = frameUpload_.update(device, frame_);
     if (frameBytes) band_ = {frame_.tiles, frame_.firstTile, frame_.scratchRow};
-    return frameBytes +
-           materialUpload_.update(device, materials.data(), materials.size() * sizeof materials[0]) +
-           lightUpload_.update(device, lights.data(), lights.size() * sizeof(PelShadeLight)) +
-           (eyes.empty() ? 0 : eyeUpload_.update(device, eyes.data(), eyes.size() * sizeof eyes[0]));
+    return frameBytes + materialUpload_.update(device, materials) + lightUpload_.update(device, lights) +
+           (eyes.empty() ? 0 : eyeUpload_.update(device, eyes));
 }
 
 void ShadingConstants::setBand(Device& device, uint32_t firstTile, uint32_t tiles, uint32_t scratchRow) {
@@ -98,7 +93,7 @@ void ShadingConstants::gatherLuts(Device& device, const ShaderState& state) {
         bytes = texels * sizeof(cl_float4);
         memory = device.allocate(bytes);
         for (size_t i = 0; i < wanted.size(); ++i)
-            device.copy(wanted[i]->texels().get(), memory.get(), offsets[i] * sizeof(cl_float4),
+            device.copy(wanted[i]->texels().get(), 0, memory.get(), offsets[i] * sizeof(cl_float4),
                         texelCount(*wanted[i]) * sizeof(cl_float4));
     }
     luts_ = memory;
@@ -254,14 +249,7 @@ std::vector<PelShadeLight> ShadingConstants::describeLights(const ShaderState& s
     for (const ShaderLight& from : state.lights) {
         const PelLight& l = from.params;
         PelShadeLight to{};
-        to.type = l.type;
-        copy(to.toLight, l.toLight);
-        copy(to.position, l.position);
-        copy(to.spotDirection, l.spotDirection);
-        to.spotCosOuter = l.spotCosOuter;
-        to.spotScale = 1 / std::max(l.spotCosInner - l.spotCosOuter, 1e-6f);
-        copy(to.color, l.color);
-        to.range2 = l.range > 0 ? std::min(l.range * l.range, FLT_MAX) : FLT_MAX;
+        describeLamp(l, to);
         copy(to.worldToShadow, l.worldToShadow);
         to.projection = l.shadowProjection;
         to.depthRange = l.shadowDepthRange;
@@ -272,10 +260,6 @@ std::vector<PelShadeLight> ShadingConstants::describeLights(const ShaderState& s
         to.mapBuffer = map ? lightBuffer(map.buffer->memory()) : PEL_LIGHT_BUFFERS;
         to.wide = describeImage(wide);
         to.map = describeImage(map);
-        if (l.shadowExponent != 0) to.perExponent = float(std::log(2.0) / l.shadowExponent);
-        to.radius = l.radius;
-        copy(to.halfWidth, l.halfWidth);
-        copy(to.halfHeight, l.halfHeight);
         to.cascades = map ? l.shadowCascades : 0;
         for (uint32_t i = 0; i < to.cascades; ++i) {
             const ShadowCascade c = shadowCascade(from, i);

@@ -1,5 +1,7 @@
 // The shading constants of a shader: frame, materials, lights and look-up tables, sent when they change.
 #pragma once
+#include <cfloat>
+
 #include "shading/scratch_image.h"
 
 namespace pel {
@@ -49,5 +51,22 @@ class ShadingConstants {
 
 // Where the kernel finds an image; all zero for none.
 PelShadeImage describeImage(const struct ImageView& view);
+
+// The fields that PelShadeLight and PelLightMap have in common.
+template <class To>
+void describeLamp(const PelLight& light, To& to) {
+    to.type = light.type;
+    std::ranges::copy(light.toLight, to.toLight);
+    std::ranges::copy(light.position, to.position);
+    std::ranges::copy(light.spotDirection, to.spotDirection);
+    to.spotCosOuter = light.spotCosOuter;
+    to.spotScale = 1 / std::max(light.spotCosInner - light.spotCosOuter, 1e-6f);
+    std::ranges::copy(light.color, to.color);
+    to.range2 = light.range > 0 ? std::min(light.range * light.range, FLT_MAX) : FLT_MAX;
+    to.radius = light.radius;
+    std::ranges::copy(light.halfWidth, to.halfWidth);
+    std::ranges::copy(light.halfHeight, to.halfHeight);
+    if (light.shadowExponent != 0) to.perExponent = float(std::log(2.0) / light.shadowExponent);
+}
 
 }  // namespace pel

@@ -1,7 +1,5 @@
 #include "shading/tap_cells.h"
 
-#include <cmath>
-
 #include "core/launch_policy.h"
 #include "shading/features.h"
 #include "shading/kept_maps.h"

@@ -1,17 +1,13 @@
 #include "shading/time_budget.h"
 
-#include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <locale>
 
 #include "shading/features.h"
 #include "shading/image_slots.h"
-#include "tuning/launch_sizes.h"
 
 namespace pel {
 namespace {
@@ -97,10 +93,8 @@ Tuning tuningOf(const PelDeviceInfo& device) {
     return tuning;
 }
 
-namespace {
-
 // The id as kernels read it (lib/image/image.clh, loadId); 0 for values that are not ids.
-uint32_t idOf(const unsigned char* pixel, const FormatInfo& format) {
+static uint32_t idOf(const unsigned char* pixel, const FormatInfo& format) {
     uint32_t bits = 0;
     for (uint32_t b = 0; b < format.componentBytes; ++b) bits |= uint32_t(pixel[b]) << 8 * b;
     if (format.kind != FormatKind::FLOAT) return bits;
@@ -115,7 +109,7 @@ uint32_t idOf(const unsigned char* pixel, const FormatInfo& format) {
 }
 
 // Number of pixels of these materials; all pixels of the frame if the image shows none of them yet.
-uint64_t pixelsOf(const std::vector<uint32_t>& ids, const ShaderState& state, Device& device) {
+static uint64_t pixelsOf(const std::vector<uint32_t>& ids, const ShaderState& state, Device& device) {
     const ImageView& frame = state.images[PEL_SLOT_RADIANCE];
     const uint64_t all = uint64_t(frame.width) * frame.height;
     const ImageView& image = state.images[PEL_SLOT_MATERIAL];
@@ -130,8 +124,6 @@ uint64_t pixelsOf(const std::vector<uint32_t>& ids, const ShaderState& state, De
         }
     return count ? count : all;
 }
-
-}  // namespace
 
 TakenSetting keepToBudget(ShaderState& state, uint32_t methods, Device& device, uint64_t& pixels,
                           std::string& warnings) {

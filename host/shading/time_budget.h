@@ -1,7 +1,6 @@
 // The cost of settings of PEL_SCATTERING_AUTO on a device, and the choice of one within
 // PelShaderOptions.timeBudget.
 #pragma once
-#include "core/device.h"
 #include "shading/shader_state.h"
 
 namespace pel {

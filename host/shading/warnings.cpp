@@ -1,6 +1,4 @@
 // Warnings of a commit: settings that can be shaded but are probably not intended (pelShaderGetWarnings).
-#include <algorithm>
-#include <cmath>
 
 #include "shading/features.h"
 #include "shading/image_slots.h"
@@ -95,8 +93,7 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
         }
     if (state.images[PEL_SLOT_SKIN] && !usesSkinMaps(state))
         warn("the skin image is without effect: no material has a profile of pelProfileCreateSkinLayers");
-    if (state.options.historyWeight > 0 &&
-        std::ranges::none_of(state.materials, [](auto& m) { return scattersByTaps(m.second); }))
+    if (state.options.historyWeight > 0 && !anyMaterial(state, scattersByTaps))
         warn("historyWeight is without effect: no material scatters by taps");
     for (const auto& [id, material] : state.materials) {
         const PelMaterial& m = material.params;

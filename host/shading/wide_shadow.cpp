@@ -1,19 +1,18 @@
 // Wide shadows from shadow maps, for lights whose wide shadow the caller did not give.
-#include <cmath>
 #include <cstddef>
 
 #include "core/launch_policy.h"
 #include "shading/features.h"
 #include "shading/kept_maps.h"
 #include "shading/launch_ranges.h"
-#include "shading/pass.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
+namespace {
 
 // The one program of wide shadows and of their maps' bounds, because the first frame waits for the driver's
 // cost per program.
-static cl::ProgramKey wideShadowKey(const Device& device, const ShaderPlan& plan) {
+cl::ProgramKey wideShadowKey(const Device& device, const ShaderPlan& plan) {
     const uint32_t lanes = device.info().mathWidth;
     const PelImageSlot normal = geometricNormalSlot(plan.state);
     uint32_t bits = (plan.state.options.countPixels ? PEL_BIT_COUNT : 0) |
@@ -44,7 +43,7 @@ static cl::ProgramKey wideShadowKey(const Device& device, const ShaderPlan& plan
 
 // The constants of a light's map, or of its cascade-th one. Throws if its matrix does not distinguish across
 // from along.
-static PelWideShadow describeWideShadow(const ShaderLight& light, uint32_t index, uint32_t cascade) {
+PelWideShadow describeWideShadow(const ShaderLight& light, uint32_t index, uint32_t cascade) {
     const PelLight& l = light.params;
     const ShadowCascade from = shadowCascade(light, cascade);
     const float(&matrix)[16] = *from.worldToShadow;
@@ -67,47 +66,33 @@ static PelWideShadow describeWideShadow(const ShaderLight& light, uint32_t index
     to.map = describeImage(*from.map);
     to.out = describeImage(light.images[PEL_LIGHT_WIDE_SHADOW]);
     if (isCube(l)) return to;
-    struct Vec {
-        double x, y, z;
-        Vec scaled(double s) const { return {x * s, y * s, z * s}; }
-        Vec minus(Vec b) const { return {x - b.x, y - b.y, z - b.z}; }
-        double dot(Vec b) const { return x * b.x + y * b.y + z * b.z; }
-        Vec cross(Vec b) const { return {y * b.z - z * b.y, z * b.x - x * b.z, x * b.y - y * b.x}; }
-        double length() const { return std::sqrt(dot(*this)); }
-        void to(float (&out)[3]) const { out[0] = float(x), out[1] = float(y), out[2] = float(z); }
-    };
-    const auto row = [&](int r) {
-        const float* m = matrix + 4 * r;
-        return Vec{m[0], m[1], m[2]};
-    };
+    const auto row = [&](int r) { return threeAt(matrix + 4 * r); };
     const bool perspective = l.shadowProjection == PEL_SHADOW_PERSPECTIVE;
-    const double w = perspective ? row(3).length() : matrix[15];
+    const double w = perspective ? length(row(3)) : matrix[15];
     // Along a ray of the light u and v do not change; across it they grow by 1 / extent per length.
-    Vec forward = perspective ? row(3).scaled(1 / w) : row(0).cross(row(1));
+    Three forward = perspective ? 1 / w * row(3) : cross(row(0), row(1));
     if (!perspective) {
-        const double length = forward.length(), sign = row(2).dot(forward) * w * from.depthRange < 0 ? -1 : 1;
-        forward = forward.scaled(sign / length);
-        to.zPerLength = float(row(2).dot(forward) / w);
+        const double sign = dot(row(2), forward) * w * from.depthRange < 0 ? -1 : 1;
+        forward = sign / length(forward) * forward;
+        to.zPerLength = float(dot(row(2), forward) / w);
     }
-    const Vec right = row(0).minus(forward.scaled(row(0).dot(forward))),
-              down = row(1).minus(forward.scaled(row(1).dot(forward)));
-    const double u = right.length(), v = down.length(), skew = right.dot(down) / (u * v);
-    if (!(u > 0 && v > 0 && std::isfinite(forward.length()) && std::abs(skew) < 0.999 &&
+    const Three right = row(0) - dot(row(0), forward) * forward,
+                down = row(1) - dot(row(1), forward) * forward;
+    const double u = length(right), v = length(down), skew = dot(right, down) / (u * v);
+    if (!(u > 0 && v > 0 && std::isfinite(length(forward)) && std::abs(skew) < 0.999 &&
           (perspective || to.zPerLength != 0)))
         invalidArgument("PelLight ", index,
                         cascade ? text(".cascadeToShadow[", cascade - 1, "]") : ".worldToShadow",
                         " is singular: a wide shadow cannot be filtered from its shadow map");
-    right.scaled(1 / u).to(to.right);
-    down.scaled(1 / v).to(to.down);
-    forward.to(to.forward);
+    std::ranges::copy(1 / u * right, to.right);
+    std::ranges::copy(1 / v * down, to.down);
+    std::ranges::copy(forward, to.forward);
     to.extent[0] = float(std::abs(w) / u);
     to.extent[1] = float(std::abs(w) / v);
-    to.centre[0] = float(row(0).dot(forward) / w);
-    to.centre[1] = float(row(1).dot(forward) / w);
+    to.centre[0] = float(dot(row(0), forward) / w);
+    to.centre[1] = float(dot(row(1), forward) / w);
     return to;
 }
-
-namespace {
 
 class WideShadow final : public Pass {
   public:
@@ -146,7 +131,7 @@ class WideShadow final : public Pass {
                 maps[k * PEL_CASCADES + i] = describeWideShadow(light, index, i);
         }
         for (const BoundedMap& map : plan.boundedMaps) maps[map.index()].bounds = map.offset;
-        const size_t bytes = constants_.update(device, maps.data(), maps.size() * sizeof maps[0]);
+        const size_t bytes = constants_.update(device, maps);
         plan.wideShadows = constants_.memory();
         return bytes;
     }
@@ -202,18 +187,12 @@ class WideShadow final : public Pass {
     CachedUpload constants_;
 };
 
-}  // namespace
-
-constinit const PassKind wideShadowPass = passKind<WideShadow>("wide_shadow");
-
-// Bounds of the blocks of shadow maps, which decide most wide shadows without reading texels.
-namespace {
-
 // Number of blocks of PEL_BOUNDS_BLOCK texels.
 uint32_t blocks(uint32_t texels) {
     return (texels + PEL_BOUNDS_BLOCK - 1) / PEL_BOUNDS_BLOCK;
 }
 
+// Bounds of the blocks of shadow maps, which decide most wide shadows without reading texels.
 class ShadowBounds final : public Pass {
   public:
     static bool needed(const ShaderPlan& plan) {
@@ -275,6 +254,7 @@ class ShadowBounds final : public Pass {
 
 }  // namespace
 
+constinit const PassKind wideShadowPass = passKind<WideShadow>("wide_shadow");
 constinit const PassKind shadowBoundsPass = passKind<ShadowBounds>("shadow_bounds");
 
 }  // namespace pel

@@ -16,10 +16,8 @@ namespace {
 
 // Sizes that were measured with another driver or version may be slow.
 std::string madeWith(const PelDeviceInfo& device) {
-    std::ostringstream text;
-    text.imbue(std::locale::classic());
-    text << PEL_VERSION_MAJOR << '.' << PEL_VERSION_MINOR << '.' << PEL_VERSION_PATCH << ' ' << device.driver;
-    return text.str();
+    return std::to_string(PEL_VERSION_MAJOR) + '.' + std::to_string(PEL_VERSION_MINOR) + '.' +
+           std::to_string(PEL_VERSION_PATCH) + ' ' + device.driver;
 }
 
 // The sizes in a line "launch GROUP COLUMNS TABLE_COLUMNS TEXELS VERSION DRIVER"; returns an error message,

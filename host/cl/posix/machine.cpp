@@ -143,9 +143,7 @@ void freeAligned(void* at) {
 }
 
 namespace fs = std::filesystem;
-namespace {
-
-std::string whyNotPrivate(const fs::path& part, bool last) {
+static std::string whyNotPrivate(const fs::path& part, bool last) {
     struct stat status {};
     if (::stat(part.c_str(), &status) != 0) return text(part.string(), " cannot be examined");
     if (!S_ISDIR(status.st_mode)) return text(part.string(), " is not a folder");
@@ -156,8 +154,6 @@ std::string whyNotPrivate(const fs::path& part, bool last) {
         return text("other users may write to ", part.string());
     return {};
 }
-
-}  // namespace
 
 bool makePrivateFolder(const fs::path& folder) {
     struct stat status {};
@@ -198,14 +194,12 @@ uint64_t roomIn(const fs::path& folder) {
     return uint64_t(status.f_bavail) * status.f_frsize;
 }
 
-namespace {
-
-std::atomic<pid_t> owner{0};  // 0: no process yet
+static std::atomic<pid_t> owner{0};  // 0: no process yet
 // 1 in the owner. Linux clears it in every fork. NULL if there is no such memory. Reading it takes a
 // nanosecond; asking for the process number takes several hundred on virtual machines.
-std::atomic<std::atomic<uint32_t>*> mark{nullptr};
+static std::atomic<std::atomic<uint32_t>*> mark{nullptr};
 
-std::atomic<uint32_t>* makeMark() {
+static std::atomic<uint32_t>* makeMark() {
 #ifdef MADV_WIPEONFORK
     const size_t bytes = size_t(::sysconf(_SC_PAGESIZE));
     void* const page = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -219,8 +213,6 @@ std::atomic<uint32_t>* makeMark() {
     return nullptr;
 #endif
 }
-
-}  // namespace
 
 void claimProcess() {
     pid_t nobody = 0;
