@@ -1,6 +1,6 @@
 // Eyes: the table of a cornea's caustics against the flux that enters it, and a frame that shows an eye
 // against the tracer of tests/reference, with the same table.
-#include "eye/eye_lut_error.h"
+#include "eye/reference_eye.h"
 #include "measure.h"
 
 namespace pellucid::bench {

@@ -201,13 +201,19 @@ void measure(const BenchArguments& a) {
     if (a.request.firstGpu) pel::system::setVariable("PELLUCID_MATH_WIDTH", "1");
     const std::string jsonPath = folder + "/bench.json";
     std::vector<double> budgets;
-    for (const std::string& text : a.budgets) budgets.push_back(numberOf(text, "ms", "--budget"));
+    for (const std::string& text : a.budgets) {
+        budgets.push_back(numberOf(text, "ms", "--budget"));
+        if (budgets.back() == 0) throw UsageError("--budget " + text + ": it must be above 0ms");
+    }
     const std::vector<std::string> chosen = chosenDevices(a);
+    for (const std::string& selector : chosen) Device{selector};
     checkFolder(folder, "bench.json");
-    std::signal(SIGINT, [](int signal) {
-        stopped = true;
-        std::signal(signal, SIG_DFL);
-    });
+    // The processes that measure end with this one.
+    for (const int signal : {SIGINT, SIGTERM})
+        std::signal(signal, [](int given) {
+            stopped = true;
+            std::signal(given, SIG_DFL);
+        });
     const auto start = std::chrono::steady_clock::now();
     Json report = {{"host", measurements().describeHost()},
                    {"quick", a.request.quick},
@@ -346,17 +352,18 @@ void addBench(CLI::App& app) {
     option(*command, "--stability", a->stability,
            "also search inputs of every operation for the worst error (docs/stability.md): minutes more");
     option(*command, "--stability-share", a->stabilityShare,
-           "the same, with this share of the whole search's points (0.05; with --quick 0.002)", isPositive());
+           "the same, with this share of the whole search's points (0.05; with --quick 0.002)",
+           inRange(1e-6, 1.0));
     option(*command, "--budget", a->budgets,
            "milliseconds at 1080p, such as 1ms, for which the report names the nearest method; several times",
            Word{"TIME"}, oneEach);
     option(*command, "--error", a->errors,
            "share of white, for which the report names the fastest method; several times", Word{"ERROR"},
-           oneEach);
+           oneEach, isPositive());
     option(*command, "--limit", a->request.limitSeconds,
            "seconds that an operation may take to be prepared, and again to be measured, before it is given "
            "up (120; with --quick 60)",
-           isPositive());
+           inRange(1.0, 86400.0));
     option(*command, "--events", a->events, "", hidden);
     option(*command, "--make-truth", a->truth, "", hidden);
     option(*command, "--powercap", a->request.powercap, "", hidden);

@@ -300,6 +300,21 @@ TEST(BenchReport, FrontAndAnswersFollowFromTheRows) {
     }
 }
 
+TEST_F(BenchCommand, WrongArgumentsAreFoundBeforeAnythingIsMade) {
+    for (const std::string words : {"--budget 0ms", "--error -1", "--limit 1e-9", "--stability-share 2"})
+        refused("bench --quick -o @out " + words, 2, words.substr(0, words.rfind(' ')));
+    refused("bench --quick -o @out --device 99", 4, "99");
+}
+
+TEST_F(BenchCommand, EndsWithItsProcessesWhenItIsTerminated) {
+    const Result result =
+        cli("bench --quick --only table-arc -o @out", "TMPDIR=@ timeout --foreground -s TERM 1");
+    EXPECT_EQ(result.exitCode, 124) << result.err;  // of `timeout`
+    EXPECT_TRUE(contains(result.err, "cancelled"));
+    for (const auto& entry : std::filesystem::directory_iterator(path("")))
+        EXPECT_EQ(entry.path().filename(), "out");
+}
+
 // A sanitizer's library has to be the first of all.
 #ifndef __SANITIZE_ADDRESS__
 TEST_F(BenchCommand, ADriverThatHangsOrCrashesCostsOneOperation) {

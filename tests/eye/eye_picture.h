@@ -1,25 +1,12 @@
 // A picture of one eye: the G-buffer of its exact surface, shaded by the library and by the tracer.
 #pragma once
-#include "reference/eye.h"
+#include "eye/reference_eye.h"
 #include "shading/shade_scene.h"
 
 namespace eye_test {
 
 using reference::Rgb;
 using reference::Vec3;
-
-inline reference::Eye referenceOf(const PelEye& e) {
-    reference::Eye eye;
-    eye.sclera = e.scleraRadius, eye.cornea = e.corneaRadius, eye.conic = e.corneaConic,
-    eye.limbus = e.limbusRadius;
-    eye.limbusWidth = e.limbusWidth, eye.limbusDarkening = e.limbusDarkening, eye.chamber = e.chamberDepth;
-    eye.nCornea = e.corneaIndex, eye.nAqueous = e.aqueousIndex, eye.concavity = e.irisConcavity;
-    eye.iris = e.irisRadius > 0 ? e.irisRadius : e.limbusRadius, eye.pupil = e.pupilRadius;
-    eye.texturePupil = e.texturePupil, eye.tearRoughness = e.tearRoughness,
-    eye.wetLineRoughness = e.wetLineRoughness;
-    eye.nTear = e.tearIndex;
-    return eye;
-}
 
 struct EyeScene {
     PelEye eye = pelEyeDefaults();
