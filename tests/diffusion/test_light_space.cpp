@@ -467,6 +467,21 @@ TEST(LightSpace, SlabsReflectWhatRandomWalksDo) {
     }
 }
 
+// Too thin for the share that stays to differ from 0 in single precision: dark, but lit.
+TEST(LightSpace, TheThinnestSlabsAreLit) {
+    const float path[] = {0.5f, 0.5f, 0.5f}, albedo[] = {0.8f, 0.8f, 0.8f};
+    Frame f = frameOf({makeBall(Form::parallel, {1, 0, 0.5}, 96)}, 48, byAuto, 0,
+                      Profile::burley(path, albedo, PEL_BURLEY_SEARCHLIGHT));
+    f.giveIrradiance = false;
+    f.material.curvatureGain = 1;
+    const auto brightest = [&](float thickness) {
+        f.images[PEL_SLOT_THICKNESS].assign(f.picture.pixels(), thickness);
+        return std::ranges::max(f.shade().light);
+    };
+    EXPECT_NEAR(brightest(1e-12f), brightest(1e-5f), 0.01);
+    EXPECT_GT(brightest(1e-12f), 0);
+}
+
 // A slab that is lit from behind as far as the point: half of the light of one that is lit beyond it, at each
 // border of the map.
 TEST(LightSpace, AllTexelsUpToABorderCount) {
