@@ -27,10 +27,10 @@ inline Frame reliefFrame(uint32_t seed, uint32_t width, uint32_t height, float p
                 3 * std::sin(fx * px) * std::cos(fy * py) + (x > 0.6f * float(width) ? 30.0f : 0.0f);
             const float dx = 3 * fx * std::cos(fx * px) * std::cos(fy * py),
                         dy = -3 * fy * std::sin(fx * px) * std::sin(fy * py);
-            const Vec3 geometric = reference::normalized(Vec3{-dx, -dy, 1});
+            const Vec3 geometric = normalized(Vec3{-dx, -dy, 1});
             f.slots[PEL_SLOT_POSITION].set(i, {px, py, z});
             f.slots[PEL_SLOT_NORMAL_GEOMETRIC].set(i, geometric);
-            f.slots[PEL_SLOT_NORMAL_SHADING].set(i, reference::normalized(geometric + 0.4 * random.unit()));
+            f.slots[PEL_SLOT_NORMAL_SHADING].set(i, normalized(geometric + 0.4 * random.unit()));
             const bool hole = std::hypot(float(x) - 0.3f * float(width), float(y) - 0.5f * float(height)) <
                               0.1f * float(height);
             f.slots[PEL_SLOT_MATERIAL].values[i] = hole ? 0 : 3 * x + y < width ? 2 : 1;
@@ -58,11 +58,6 @@ inline void showBlurredNormal(Frame& f) {
     for (auto& [id, m] : f.materials)
         for (int c = 0; c < 3; ++c) m.normalBlend[c] = m.albedo[c] = 1;
 }
-// The largest difference of a component.
-inline double distance(reference::Vec3 a, reference::Vec3 b) {
-    return reference::magnitude(a - b);
-}
-
 inline reference::Vec3 shownNormal(const std::vector<float>& radiance, size_t i) {
     return 2.0 * (vectorOf(&radiance[3 * i]) - Vec3{1, 1, 1});
 }
@@ -110,14 +105,15 @@ struct MapLight {
     reference::ShadowView view;
     reference::ShadowMap map;
 };
-inline MapLight mapLight(uint32_t seed, bool perspective, bool reversed, Vec3 toLight, Vec3 target,
-                         double extent, uint32_t size) {
+inline MapLight mapLight(uint32_t seed, bool perspective = false, bool reversed = false,
+                         Vec3 toLight = {0.5, 0.2, 0.9}, Vec3 target = {24, 10, 5}, double extent = 70,
+                         uint32_t size = 61) {
     Random random(seed);
     MapLight out;
     auto& v = out.view;
-    v.forward = -1.0 * reference::normalized(toLight);
-    v.right = reference::normalized(reference::cross(v.forward, Vec3{0.3, 1, 0.2}));
-    v.down = reference::cross(v.forward, v.right);
+    v.forward = -1.0 * normalized(toLight);
+    v.right = normalized(cross(v.forward, Vec3{0.3, 1, 0.2}));
+    v.down = cross(v.forward, v.right);
     const double away = 150, near = 50, far = 400;
     v.origin = target - away * v.forward;
     v.extent = perspective ? extent / away : extent;
@@ -134,7 +130,7 @@ inline MapLight mapLight(uint32_t seed, bool perspective, bool reversed, Vec3 to
     l.shadowProjection = perspective ? PEL_SHADOW_PERSPECTIVE : PEL_SHADOW_PARALLEL;
     const auto row = [&](int r, Vec3 axis, double constant) {
         copyTo(l.worldToShadow + 4 * r, axis);
-        l.worldToShadow[4 * r + 3] = float(constant - reference::dot(axis, v.origin));
+        l.worldToShadow[4 * r + 3] = float(constant - dot(axis, v.origin));
     };
     const Vec3 none{0, 0, 0};
     const double k = 1 / v.extent;

@@ -126,6 +126,15 @@ inline std::pair<std::vector<float>, PelShaderStats> shadeCounted(const Frame& f
     std::vector<float> radiance = shade(f, &stats);
     return {std::move(radiance), stats};
 }
+// What each light gives alone, added up.
+inline std::vector<float> sumOfLights(Frame f) {
+    std::vector<float> sum(3 * f.pixels());
+    for (const Light& light : std::exchange(f.lights, {})) {
+        f.lights = {light};
+        std::ranges::transform(sum, shade(f), sum.begin(), std::plus<>());
+    }
+    return sum;
+}
 
 // --- the oracle's ---
 
@@ -140,15 +149,13 @@ inline std::vector<reference::Vec2> diskTaps(uint32_t count) {
     if (!taps.empty()) return taps;
     std::ifstream file(diskFile());
     const std::string start = "pelDisk" + std::to_string(count) + "[";
-    for (std::string line; std::getline(file, line);)
-        if (line.find(start) != std::string::npos)
-            while (std::getline(file, line) && line[0] != '}')
-                for (size_t at = line.find("(float2)"); at != std::string::npos;
-                     at = line.find("(float2)", at + 1)) {
-                    double x = NAN, y = NAN;
-                    if (std::sscanf(line.c_str() + at, "(float2)(%lff, %lff)", &x, &y) == 2)
-                        taps.push_back({x, y});
-                }
+    std::string word;
+    while (file >> word && word.find(start) == std::string::npos) {
+    }
+    double x = NAN, y = NAN;
+    while (taps.size() < count && std::getline(file, word, ')') && std::getline(file, word, ')') &&
+           std::sscanf(word.c_str(), "(%lff, %lff", &x, &y) == 2)
+        taps.push_back({x, y});
     if (taps.size() != count) throw std::runtime_error(start + " was not found in poisson_disk.clh");
     return taps;
 }
@@ -243,14 +250,14 @@ inline reference::Shaded truth(const Frame& f, const Tables& tables, size_t i) {
     material.shadowLut = f.shadowLut && wide ? &tables.shadowTruth : nullptr;
     reference::Pixel pixel;
     // Unit to double precision: 6e-8 of length would be seen as an angle by sharp lobes.
-    const auto unit = [&](PelImageSlot slot) { return reference::normalized(s[slot].vec(i)); };
+    const auto unit = [&](PelImageSlot slot) { return normalized(s[slot].vec(i)); };
     pixel.shading = unit(PEL_SLOT_NORMAL_SHADING);
     pixel.geometric =
         s[PEL_SLOT_NORMAL_GEOMETRIC].values.empty() ? pixel.shading : unit(PEL_SLOT_NORMAL_GEOMETRIC);
     pixel.blurred =
         s[PEL_SLOT_NORMAL_BLURRED].values.empty() ? pixel.geometric : unit(PEL_SLOT_NORMAL_BLURRED);
     if (material.specular > 0) {
-        pixel.toViewer = reference::normalized(vectorOf(f.camera.position) - s[PEL_SLOT_POSITION].vec(i));
+        pixel.toViewer = normalized(vectorOf(f.camera.position) - s[PEL_SLOT_POSITION].vec(i));
     }
     pixel.curvature = value(PEL_SLOT_CURVATURE, 0);
     pixel.ambientOcclusion = value(PEL_SLOT_AMBIENT_OCCLUSION, 1);

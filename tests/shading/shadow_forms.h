@@ -76,8 +76,8 @@ inline Seen shadeForms(Frame f, std::vector<Light> lights, bool atlas = false) {
         Vec3 toLight = vectorOf(first.toLight);
         if (first.type != PEL_LIGHT_DIRECTIONAL) {
             const Vec3 away = vectorOf(first.position) - f.slots[PEL_SLOT_POSITION].vec(i);
-            strength[i] = 1 / reference::dot(away, away);
-            toLight = reference::normalized(away);
+            strength[i] = 1 / dot(away, away);
+            toLight = normalized(away);
         }
         f.slots[PEL_SLOT_NORMAL_SHADING].set(i, toLight);
     }
@@ -95,9 +95,18 @@ inline Seen shadeForms(Frame f, std::vector<Light> lights, bool atlas = false) {
     return seen;
 }
 
-inline const PelMaterial* materialAt(const Frame& f, size_t i) {
+// A place of a surface, with its geometric normal.
+struct SurfacePlace {
+    const PelMaterial& material;
+    Vec3 position, normal;
+    Vec3 inset() const { return position - double(material.deepScatterNormalOffset) * normal; }
+};
+// Of a pixel that has a material.
+inline std::optional<SurfacePlace> placeAt(const Frame& f, size_t i) {
     const auto found = f.materials.find(uint32_t(f.slots[PEL_SLOT_MATERIAL].at(i)));
-    return found == f.materials.end() ? nullptr : &found->second;
+    if (found == f.materials.end()) return std::nullopt;
+    return SurfacePlace{found->second, f.slots[PEL_SLOT_POSITION].vec(i),
+                        f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i)};
 }
 
 inline std::vector<reference::Vec2> tapsOf(const Frame& f, const PelMaterial& m, size_t i) {
@@ -110,17 +119,15 @@ inline std::vector<reference::Vec2> tapsOf(const Frame& f, const PelMaterial& m,
 
 struct Turn {
     Vec3 x, y, z;  // rows: world to the space of the cube
-    Vec3 operator()(Vec3 v) const {
-        return {reference::dot(x, v), reference::dot(y, v), reference::dot(z, v)};
-    }
+    Vec3 operator()(Vec3 v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
     Vec3 back(Vec3 v) const { return v.x * x + v.y * y + v.z * z; }
 };
 // The direction `to` of the world becomes `axis` of the cube.
 inline Turn turnTo(Vec3 to, Vec3 axis) {
     const auto frame = [](Vec3 a) {
-        a = reference::normalized(a);
-        const Vec3 b = reference::normalized(reference::cross(a, Vec3{0.31, 0.83, 0.47}));
-        return std::array{a, b, reference::cross(a, b)};
+        a = normalized(a);
+        const Vec3 b = normalized(cross(a, Vec3{0.31, 0.83, 0.47}));
+        return std::array{a, b, cross(a, b)};
     };
     const auto w = frame(to), c = frame(axis);
     const auto row = [&](int k) { return c[0][k] * w[0] + c[1][k] * w[1] + c[2][k] * w[2]; };
@@ -151,7 +158,7 @@ inline CubeLight cubeLight(uint32_t size, bool radial, Turn turn, Vec3 position,
     const Vec3 rows[3] = {turn.x, turn.y, turn.z};
     for (int r = 0; r < 3; ++r) {
         copyTo(l.worldToShadow + 4 * r, rows[r]);
-        l.worldToShadow[4 * r + 3] = float(-reference::dot(rows[r], position));
+        l.worldToShadow[4 * r + 3] = float(-dot(rows[r], position));
     }
     l.shadowProjection = radial ? PEL_SHADOW_CUBE_RADIAL : PEL_SHADOW_CUBE;
     l.shadowDepthRange = float(far);
@@ -163,8 +170,7 @@ inline CubeLight cubeLight(uint32_t size, bool radial, Turn turn, Vec3 position,
         for (uint32_t i = 0; i < size * size; ++i) {
             const Vec3 d = reference::shadowCubeDirection(face, i % size, i / size, int(size));
             const double s = reach(turn.back(d), int(i));
-            const double z =
-                radial ? s * reference::length(d) / far : (1 / s - out.map.decoding.b) / out.map.decoding.a;
+            const double z = radial ? s * length(d) / far : (1 / s - out.map.decoding.b) / out.map.decoding.a;
             image.values.push_back(float(std::clamp(z, 0.0, 1.0)));
             out.map.depth.push_back(image.values.back());
         }
@@ -265,42 +271,33 @@ inline ContentLight contentLight(PelShadowContent content, bool perspective, boo
 
 // --- the oracle ---
 
-// At a place with its geometric normal. Refers to the light that it was made of.
-struct FormTruth {
-    std::function<double(const PelMaterial&, Vec3, Vec3)> wide;
-    std::function<double(const PelMaterial&, Vec3, Vec3, const std::vector<reference::Vec2>& taps)> thickness;
-};
+using Taps = std::vector<reference::Vec2>;
 
 inline reference::WideFilterParams filterOf(const PelLight& l, const PelMaterial& m) {
     return {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope,
             int(l.shadowFilterTexels)};
 }
-inline Vec3 insetOf(const PelMaterial& m, Vec3 p, Vec3 n) {
-    return p - double(m.deepScatterNormalOffset) * n;
+inline Vec3 insideMap(const PelLight& l, const SurfacePlace& at) {
+    return reference::shadowCoordinates(matrixOf(l.worldToShadow), at.position, at.normal,
+                                        at.material.deepScatterNormalOffset);
 }
 
-inline FormTruth truthOf(const MapLight& from) {
-    const PelLight& l = from.light.params;
-    return {[&](const PelMaterial& m, Vec3 p, Vec3 n) {
-                return reference::wideShadow(from.map, from.view, p, n, filterOf(l, m));
-            },
-            [&](const PelMaterial& m, Vec3 p, Vec3 n, const auto& taps) {
-                return reference::thickness(
-                    from.map,
-                    reference::shadowCoordinates(matrixOf(l.worldToShadow), p, n, m.deepScatterNormalOffset),
-                    taps, m.thicknessFilterRadius, from.view.decoding);
-            }};
+inline double wideOf(const MapLight& from, const SurfacePlace& at) {
+    return reference::wideShadow(from.map, from.view, at.position, at.normal,
+                                 filterOf(from.light.params, at.material));
+}
+inline double thicknessOf(const MapLight& from, const SurfacePlace& at, const Taps& taps) {
+    return reference::thickness(from.map, insideMap(from.light.params, at), taps,
+                                at.material.thicknessFilterRadius, from.view.decoding);
 }
 
-inline FormTruth truthOf(const CubeLight& from) {
-    return {[&](const PelMaterial& m, Vec3 p, Vec3 n) {
-                return reference::cubeWideShadow(from.map, from.turn(p - from.position), from.turn(n),
-                                                 filterOf(from.light.params, m));
-            },
-            [&](const PelMaterial& m, Vec3 p, Vec3 n, const auto& taps) {
-                return reference::cubeThickness(from.map, from.turn(insetOf(m, p, n) - from.position), taps,
-                                                m.thicknessFilterRadius);
-            }};
+inline double wideOf(const CubeLight& from, const SurfacePlace& at) {
+    return reference::cubeWideShadow(from.map, from.turn(at.position - from.position), from.turn(at.normal),
+                                     filterOf(from.light.params, at.material));
+}
+inline double thicknessOf(const CubeLight& from, const SurfacePlace& at, const Taps& taps) {
+    return reference::cubeThickness(from.map, from.turn(at.inset() - from.position), taps,
+                                    at.material.thicknessFilterRadius);
 }
 
 inline std::vector<reference::Matrix4> matricesOf(const CascadeLight& from) {
@@ -309,46 +306,41 @@ inline std::vector<reference::Matrix4> matricesOf(const CascadeLight& from) {
     for (uint32_t i = 1; i < l.shadowCascades; ++i) matrices.push_back(matrixOf(l.cascadeToShadow[i - 1]));
     return matrices;
 }
-
-inline FormTruth truthOf(const CascadeLight& from) {
-    const std::vector<reference::Matrix4> matrices = matricesOf(from);
-    return {[&from, matrices](const PelMaterial& m, Vec3 p, Vec3 n) {
-                const int k = reference::cascadeOf(matrices, p, m.shadowFilterWidth / 2);
-                return k < 0 ? 1
-                             : reference::wideShadow(from.maps[size_t(k)].map, from.maps[size_t(k)].view, p,
-                                                     n, filterOf(from.light.params, m));
-            },
-            [&from, matrices](const PelMaterial& m, Vec3 p, Vec3 n, const auto& taps) {
-                const Vec3 inside = insetOf(m, p, n);
-                const double radius = m.thicknessFilterRadius / reference::uvPerLength(matrices[0], 0);
-                const int k = reference::cascadeOf(matrices, inside, radius);
-                if (k < 0) return 0.0;
-                const auto& matrix = matrices[size_t(k)];
-                return reference::thickness(
-                    from.maps[size_t(k)].map, reference::shadowCoordinates(matrix, inside, {0, 0, 0}, 0),
-                    taps, radius * reference::uvPerLength(matrix, 0), from.maps[size_t(k)].view.decoding);
-            }};
+inline double wideOf(const CascadeLight& from, const SurfacePlace& at) {
+    const int k = reference::cascadeOf(matricesOf(from), at.position, at.material.shadowFilterWidth / 2);
+    if (k < 0) return 1;
+    const MapLight& map = from.maps[size_t(k)];
+    return reference::wideShadow(map.map, map.view, at.position, at.normal,
+                                 filterOf(from.light.params, at.material));
+}
+inline double thicknessOf(const CascadeLight& from, const SurfacePlace& at, const Taps& taps) {
+    const auto matrices = matricesOf(from);
+    const double radius = at.material.thicknessFilterRadius / reference::uvPerLength(matrices[0], 0);
+    const int k = reference::cascadeOf(matrices, at.inset(), radius);
+    if (k < 0) return 0;
+    const auto& matrix = matrices[size_t(k)];
+    const MapLight& map = from.maps[size_t(k)];
+    return reference::thickness(map.map, reference::shadowCoordinates(matrix, at.inset(), {0, 0, 0}, 0), taps,
+                                radius * reference::uvPerLength(matrix, 0), map.view.decoding);
 }
 
-inline FormTruth truthOf(const ContentLight& from) {
+inline double wideOf(const ContentLight& from, const SurfacePlace& at) {
     const PelLight& l = from.light.params;
-    const bool moments = l.shadowContent == PEL_SHADOW_CONTENT_MOMENTS;
-    return {[&from, &l, moments](const PelMaterial& m, Vec3 p, Vec3 n) {
-                return moments
-                           ? reference::momentShadow(from.first, from.second, from.from.view, p, n,
-                                                     filterOf(l, m), {l.shadowMinDeviation, l.shadowBleeding})
-                           : reference::exponentialShadow(from.first, l.shadowExponent, from.from.view, p, n,
-                                                          filterOf(l, m));
-            },
-            [&from, &l, moments](const PelMaterial& m, Vec3 p, Vec3 n, const auto& taps) {
-                const Vec3 uvz =
-                    reference::shadowCoordinates(matrixOf(l.worldToShadow), p, n, m.deepScatterNormalOffset);
-                return moments ? reference::thickness(from.first, uvz, taps, m.thicknessFilterRadius,
-                                                      from.from.view.decoding)
-                               : reference::exponentialThickness(from.first, l.shadowExponent, uvz, taps,
-                                                                 m.thicknessFilterRadius,
-                                                                 from.from.view.decoding);
-            }};
+    const auto filter = filterOf(l, at.material);
+    return l.shadowContent == PEL_SHADOW_CONTENT_MOMENTS
+               ? reference::momentShadow(from.first, from.second, from.from.view, at.position, at.normal,
+                                         filter, {l.shadowMinDeviation, l.shadowBleeding})
+               : reference::exponentialShadow(from.first, l.shadowExponent, from.from.view, at.position,
+                                              at.normal, filter);
+}
+inline double thicknessOf(const ContentLight& from, const SurfacePlace& at, const Taps& taps) {
+    const PelLight& l = from.light.params;
+    const double radius = at.material.thicknessFilterRadius;
+    const auto& decoding = from.from.view.decoding;
+    return l.shadowContent == PEL_SHADOW_CONTENT_MOMENTS
+               ? reference::thickness(from.first, insideMap(l, at), taps, radius, decoding)
+               : reference::exponentialThickness(from.first, l.shadowExponent, insideMap(l, at), taps, radius,
+                                                 decoding);
 }
 
 // The worst difference from the oracle, and how many pixels are lit, dark and in between, or thick.
@@ -356,15 +348,15 @@ struct Worst {
     double wide = 0, thickness = 0;
     size_t lit = 0, dark = 0, between = 0, thick = 0;
 };
-// Leaves out pixels for which `counts`, if given, is false.
-inline Worst worstOf(const Frame& f, const Seen& seen, const FormTruth& truth,
-                     const std::function<bool(const PelMaterial&, Vec3, Vec3)>& counts = {}) {
+// Leaves out places for which `counts`, if given, is false.
+template <class From>
+Worst worstOf(const Frame& f, const Seen& seen, const From& from,
+              const std::function<bool(const SurfacePlace&)>& counts) {
     Worst worst;
     for (size_t i = 0; i < f.pixels(); ++i) {
-        const PelMaterial* m = materialAt(f, i);
-        const Vec3 p = f.slots[PEL_SLOT_POSITION].vec(i), n = f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i);
-        if (!m || (counts && !counts(*m, p, n))) continue;
-        const double wide = truth.wide(*m, p, n), thickness = truth.thickness(*m, p, n, tapsOf(f, *m, i));
+        const auto at = placeAt(f, i);
+        if (!at || (counts && !counts(*at))) continue;
+        const double wide = wideOf(from, *at), thickness = thicknessOf(from, *at, tapsOf(f, at->material, i));
         worst.wide = std::max(worst.wide, std::abs(wide - seen.wide[i]));
         worst.thickness = std::max(worst.thickness, std::abs(thickness - seen.thickness[i]));
         ++(wide < 0.01 ? worst.dark : wide > 0.99 ? worst.lit : worst.between);

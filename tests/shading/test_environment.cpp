@@ -12,21 +12,31 @@ namespace {
 using Sky = std::function<Rgb(Vec3)>;
 constexpr double pi = reference::pi;
 
-// Equirectangular, the upper edge +y, the middle column +z, +x left of it.
-std::vector<float> picture(const Sky& sky, uint32_t height) {
-    Image image{3, {}};
-    for (uint32_t y = 0; y < height; ++y)
-        for (uint32_t x = 0; x < 2 * height; ++x) {
-            const double down = pi * (y + 0.5) / height, turn = pi * (1 - (x + 0.5) / height);
-            image.push(
-                sky({std::sin(down) * std::sin(turn), std::cos(down), std::sin(down) * std::cos(turn)}));
-        }
-    return image.values;
+struct SkyTexel {
+    Vec3 direction;
+    double solidAngle;
+};
+// Of six faces below one another, n high each; or equirectangular and n high: the upper edge +y, the middle
+// column +z, +x left of it.
+std::vector<SkyTexel> texelsOf(bool faces, uint32_t n) {
+    std::vector<SkyTexel> texels;
+    for (uint32_t y = 0; y < (faces ? 6 : 1) * n; ++y)
+        for (uint32_t x = 0; x < (faces ? 1 : 2) * n; ++x)
+            if (faces) {
+                const Vec3 d =
+                    reference::cubeDirection(int(y / n), (2 * x + 1.0) / n - 1, (2 * (y % n) + 1.0) / n - 1);
+                texels.push_back({normalized(d), 4 / (double(n) * n * std::pow(dot(d, d), 1.5))});
+            } else {
+                const double down = pi * (y + 0.5) / n, turn = pi * (1 - (x + 0.5) / n), s = std::sin(down);
+                texels.push_back(
+                    {{s * std::sin(turn), std::cos(down), s * std::cos(turn)}, s * pi / n * pi / n});
+            }
+    return texels;
 }
 
 // The integral of sky times `weight` over all directions.
 Rgb integral(const Sky& sky, const std::function<double(Vec3)>& weight) {
-    constexpr int rows = 400, columns = 800;
+    constexpr int rows = 200, columns = 400;
     Rgb sum;
     for (int i = 0; i < rows; ++i)
         for (int k = 0; k < columns; ++k) {
@@ -80,14 +90,31 @@ class Environment : public testing::Test {
             .setMaterial(1, material_);
     }
     void surround(const Sky& sky, const float* axes = nullptr, uint32_t height = 128) {
-        shader_.setEnvironment(
-            imageDesc(Buffer(device(), picture(sky, height)), PEL_FORMAT_RGB32F, 2 * height, height), axes);
+        Image image{3, {}};
+        for (const SkyTexel& t : texelsOf(false, height)) image.push(sky(t.direction));
+        shader_.setEnvironment(imageDesc(upload(device(), image), PEL_FORMAT_RGB32F, 2 * height, height),
+                               axes);
     }
-    Rgb at(const Buffer& buffer, size_t i) const {
-        const auto v = buffer.readAll<float>();
-        return {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
-    }
+    Rgb at(const Buffer& buffer, size_t i) const { return vectorOf(&buffer.readAll<float>()[3 * i]); }
     Rgb diffuse(size_t i) const { return at(target_, i) - at(specular_, i); }
+    // Radiance with this image of the surroundings.
+    std::vector<float> seen(const Image& image, uint32_t width, uint32_t height) {
+        shader_.setEnvironment(imageDesc(upload(device(), image), PEL_FORMAT_RGB32F, width, height));
+        return seen();
+    }
+    std::vector<float> seen() {
+        shader_.commit().execute();
+        return target_.readAll<float>();
+    }
+    // Of the material's first lobe, over pi: to the view of pixel i.
+    double lobe(size_t i, Vec3 d) const {
+        const PelMaterial& m = material_;
+        const Vec3 n = pixels_.normals[i], v = pixels_.views[i];
+        return (m.specularModel == PEL_SPECULAR_GGX
+                    ? reference::specularGgx(n, d, v, m.roughness, m.roughness, 0, 1, m.f0)
+                    : reference::specular(n, d, v, m.roughness, 1, m.f0)) /
+               pi;
+    }
 };
 
 // Bright above, a warm side, a soft lamp.
@@ -117,13 +144,7 @@ TEST_F(Environment, SpecularLightIsTheIntegralOverTheLobe) {
             shader_.commit().execute();
             double squares = 0, whole = 0;
             for (size_t i = 0; i < count; i += 3) {
-                const Vec3 n = pixels_.normals[i], v = pixels_.views[i];
-                const Rgb expected = integral(studio, [&](Vec3 d) {
-                    return (model == PEL_SPECULAR_GGX
-                                ? reference::specularGgx(n, d, v, roughness, roughness, 0, 1, 0.5)
-                                : reference::specular(n, d, v, roughness, 1, 0.5)) /
-                           pi;
-                });
+                const Rgb expected = integral(studio, [&](Vec3 d) { return lobe(i, d); });
                 for (int c = 0; c < 3; ++c) {
                     squares += std::pow(at(specular_, i)[c] - expected[c], 2);
                     whole += expected[c] * expected[c];
@@ -142,12 +163,7 @@ TEST_F(Environment, EvenLightIsReflectedEvenly) {
         surround(even);
         shader_.commit().execute();
         for (size_t i = 0; i < count; i += 5) {
-            const Vec3 n = pixels_.normals[i], v = pixels_.views[i];
-            const Rgb share = integral(even, [&](Vec3 d) {
-                return (model == PEL_SPECULAR_GGX ? reference::specularGgx(n, d, v, 0.3, 0.3, 0, 1)
-                                                  : reference::specular(n, d, v, 0.3, 1)) /
-                       pi;
-            });
+            const Rgb share = integral(even, [&](Vec3 d) { return lobe(i, d); });
             EXPECT_NEAR(diffuse(i).x, 0.5, 1e-4);
             for (int c = 0; c < 3; ++c)
                 EXPECT_NEAR(at(specular_, i)[c], share.x, tolerance::environmentShare) << model << ' ' << i;
@@ -157,59 +173,27 @@ TEST_F(Environment, EvenLightIsReflectedEvenly) {
 
 TEST_F(Environment, AxesTurnTheImage) {
     surround(studio);
-    shader_.commit().execute();
-    const auto plain = target_.readAll<float>();
+    const auto plain = seen();
     // The image's x axis is the world's y, its y the world's z, its z the world's x.
     const float axes[9] = {0, 1, 0, 0, 0, 1, 1, 0, 0};
     surround([](Vec3 d) { return studio({d.z, d.x, d.y}); }, axes);
-    shader_.commit().execute();
-    const auto turned = target_.readAll<float>();
+    const auto turned = seen();
     for (size_t i = 0; i < plain.size(); ++i) EXPECT_NEAR(plain[i], turned[i], 0.01) << i;
 }
 
 TEST_F(Environment, SixFacesAreTheSameLight) {
     surround(studio);
-    shader_.commit().execute();
-    const auto round = target_.readAll<float>();
-    constexpr int n = 64;
-    Image faces{3, std::vector<float>(size_t(3) * 6 * n * n)}, beside = faces;
-    for (int face = 0; face < 6; ++face)
-        for (int y = 0; y < n; ++y)
-            for (int x = 0; x < n; ++x) {
-                const Rgb c = studio(
-                    normalized(reference::cubeDirection(face, (2 * x + 1.0) / n - 1, (2 * y + 1.0) / n - 1)));
-                faces.set(size_t((face * n + y) * n + x), c);
-                beside.set(size_t((y * 6 + face) * n + x), c);
-            }
-    const auto seen = [&](const Image& image, uint32_t width, uint32_t height) {
-        shader_.setEnvironment(imageDesc(upload(device(), image), PEL_FORMAT_RGB32F, width, height))
-            .commit()
-            .execute();
-        return target_.readAll<float>();
-    };
+    const auto round = seen();
+    constexpr uint32_t n = 64;
+    Image faces{3, {}}, beside{3, std::vector<float>(size_t(3) * 6 * n * n)};
+    for (const SkyTexel& t : texelsOf(true, n)) {
+        const auto i = faces.values.size() / 3, face = i / (n * n), y = i / n % n, x = i % n;
+        faces.push(studio(t.direction));
+        beside.set((y * 6 + face) * n + x, studio(t.direction));
+    }
     const auto below = seen(faces, n, 6 * n);
     for (size_t i = 0; i < round.size(); ++i) EXPECT_NEAR(below[i], round[i], 0.01) << i;
     EXPECT_EQ(below, seen(beside, 6 * n, n));
-}
-
-struct SkyTexel {
-    Vec3 direction;
-    double solidAngle;
-};
-std::vector<SkyTexel> texelsOf(bool faces, uint32_t n) {
-    std::vector<SkyTexel> texels;
-    for (uint32_t y = 0; y < (faces ? 6 : 1) * n; ++y)
-        for (uint32_t x = 0; x < (faces ? 1 : 2) * n; ++x)
-            if (faces) {
-                const Vec3 d =
-                    reference::cubeDirection(int(y / n), (2 * x + 1.0) / n - 1, (2 * (y % n) + 1.0) / n - 1);
-                texels.push_back({normalized(d), 4 / (double(n) * n * std::pow(dot(d, d), 1.5))});
-            } else {
-                const double down = pi * (y + 0.5) / n, turn = pi * (1 - (x + 0.5) / n), s = std::sin(down);
-                texels.push_back(
-                    {{s * std::sin(turn), std::cos(down), s * std::cos(turn)}, s * pi / n * pi / n});
-            }
-    return texels;
 }
 
 // What a lamp gives to all normals together, wherever it is. A lamp of radius 0 is one texel.
@@ -219,7 +203,7 @@ TEST_F(Environment, ASmallLampKeepsItsLight) {
         const auto far = [&](const SkyTexel& t) { return -dot(t.direction, lamp); };
         const SkyTexel* const nearest = &*std::ranges::min_element(texels, {}, far);
         Image image{3, std::vector<float>(3 * texels.size())};
-        double expected = 0, seen = 0;
+        double expected = 0, sum = 0;
         for (size_t i = 0; i < texels.size(); ++i) {
             const SkyTexel& t = texels[i];
             if (&t != nearest && far(t) > -std::cos(degrees * pi / 180)) continue;
@@ -227,14 +211,10 @@ TEST_F(Environment, ASmallLampKeepsItsLight) {
             for (const Vec3& normal : pixels_.normals)
                 expected += 50 * t.solidAngle / pi * std::max(dot(normal, t.direction), 0.0);
         }
-        shader_
-            .setEnvironment(
-                imageDesc(upload(device(), image), PEL_FORMAT_RGB32F, faces ? n : 2 * n, faces ? 6 * n : n))
-            .commit()
-            .execute();
-        const auto all = target_.readAll<float>(), shine = specular_.readAll<float>();
-        for (size_t i = 0; i < all.size(); i += 3) seen += double(all[i]) - double(shine[i]);
-        EXPECT_NEAR(seen / expected, 1, tolerance::environmentLamp)
+        const auto all = seen(image, faces ? n : 2 * n, faces ? 6 * n : n),
+                   shine = specular_.readAll<float>();
+        for (size_t i = 0; i < all.size(); i += 3) sum += double(all[i]) - double(shine[i]);
+        EXPECT_NEAR(sum / expected, 1, tolerance::environmentLamp)
             << (faces ? "faces, " : "") << n << " high, " << degrees << " degrees at " << lamp.x << ' '
             << lamp.y << ' ' << lamp.z;
     };
@@ -248,18 +228,17 @@ TEST_F(Environment, ASmallLampKeepsItsLight) {
 }
 
 TEST_F(Environment, ItIsReducedOnceAndTakenAwayAgain) {
-    shader_.set(pellucid::directionalLight({0, 1, 0}, {1, 1, 1})).commit().execute();
-    const auto without = target_.readAll<float>();
+    shader_.set(pellucid::directionalLight({0, 1, 0}, {1, 1, 1}));
+    const auto without = seen();
     surround(studio);
-    shader_.commit().execute();
-    const auto with = target_.readAll<float>();
+    const auto with = seen();
     const uint64_t before = spy::launchesOf("environment_level");
     shader_.set(pellucid::directionalLight({0, 1, 0}, {1, 1, 1})).commit().execute();
     shader_.execute();
     EXPECT_EQ(spy::launchesOf("environment_level"), before);
     EXPECT_EQ(target_.readAll<float>(), with);
-    shader_.clearEnvironment().commit().execute();
-    EXPECT_EQ(target_.readAll<float>(), without);
+    shader_.clearEnvironment();
+    EXPECT_EQ(seen(), without);
     EXPECT_FALSE(shader_.stats().features & (PEL_FEATURE_ENVIRONMENT | PEL_FEATURE_AMBIENT_CUBE));
 }
 
@@ -287,17 +266,14 @@ TEST_F(Environment, OcclusionAndRoughnessImagesCount) {
 TEST_F(Environment, WhatIsNoLightCountsAsNone) {
     const auto holes = [](Vec3 d) { return d.x > 0.2 ? Rgb{NAN, -1, INFINITY} : Rgb{0.5, 0.5, 0.5}; };
     surround(holes);
-    shader_.commit().execute();
-    const auto seen = target_.readAll<float>();
+    const auto first = seen();
     surround([&](Vec3 d) { return d.x > 0.2 ? Rgb{0, 0, 0} : Rgb{0.5, 0.5, 0.5}; });
-    shader_.commit().execute();
-    EXPECT_EQ(seen, target_.readAll<float>());
+    EXPECT_EQ(seen(), first);
     surround([](Vec3) { return Rgb{1, 1, 1}; }, nullptr, 1);
-    shader_.commit().execute();
+    seen();
     for (size_t i = 0; i < count; ++i) EXPECT_NEAR(diffuse(i).x, 0.5, 1e-4) << "two texels, pixel " << i;
     surround([](Vec3) { return Rgb{3e38, 1e30, 1e-40}; }, nullptr, 1);
-    shader_.commit().execute();
-    for (const float v : target_.readAll<float>()) EXPECT_TRUE(std::isfinite(v));
+    for (const float v : seen()) EXPECT_TRUE(std::isfinite(v));
 }
 
 TEST_F(Environment, BadInput) {

@@ -65,7 +65,7 @@ Vec3 normalOf(PelFormat format, std::vector<uint8_t>& to, uint32_t i) {
     }
     if (format == PEL_FORMAT_RGB32F) {  // taken as unit vectors
         std::vector<uint8_t> other;
-        const Vec3 n = reference::normalized(normalOf(PEL_FORMAT_A2B10G10R10_UNORM, other, i));
+        const Vec3 n = normalized(normalOf(PEL_FORMAT_A2B10G10R10_UNORM, other, i));
         for (int c = 0; c < 3; ++c) append(to, float(n[c]));
         return n;
     }
@@ -78,26 +78,15 @@ Vec3 normalOf(PelFormat format, std::vector<uint8_t>& to, uint32_t i) {
     return out;
 }
 
-// What the codes of a pixel stand for, and all pixels' bytes.
+// What the codes of a pixel stand for.
 struct Pixel {
     Rgb albedo;
     double occlusion;
     Vec3 normal;
 };
-struct Bytes {
-    std::vector<uint8_t> albedo, occlusion, normal;
-};
 struct Formats {
     const char* name;
     PelFormat albedo, occlusion, normal, id;
-    Pixel pack(uint32_t i, Bytes& to) const {
-        Pixel out;
-        for (uint32_t c = 0; c < 3; ++c) out.albedo[int(c)] = component(albedo, to.albedo, i, c);
-        appendAlpha(albedo, to.albedo);
-        out.occlusion = component(occlusion, to.occlusion, i, 3);
-        out.normal = normalOf(normal, to.normal, i);
-        return out;
-    }
 };
 
 const Formats formats[] = {
@@ -113,37 +102,38 @@ const Formats formats[] = {
 uint32_t idOf(uint32_t i) {
     return code(i, 2, 65536) % 3;  // 0 is background
 }
-std::vector<uint8_t> packedIds(PelFormat format) {
-    std::vector<uint8_t> bytes;
-    for (uint32_t i = 0; i < pixels; ++i) {
-        if (format == PEL_FORMAT_R8_UINT) append(bytes, uint8_t(idOf(i)));
-        if (format == PEL_FORMAT_R16_UINT) append(bytes, uint16_t(idOf(i)));
-        if (format == PEL_FORMAT_R32_UINT) append(bytes, idOf(i));
-        if (format == PEL_FORMAT_R32F) append(bytes, float(idOf(i)));
-    }
-    return bytes;
+void appendId(PelFormat format, std::vector<uint8_t>& bytes, uint32_t id) {
+    if (format == PEL_FORMAT_R8_UINT) append(bytes, uint8_t(id));
+    if (format == PEL_FORMAT_R16_UINT) append(bytes, uint16_t(id));
+    if (format == PEL_FORMAT_R32_UINT) append(bytes, id);
+    if (format == PEL_FORMAT_R32F) append(bytes, float(id));
 }
 
 struct Packed {
-    Bytes bytes;
-    std::vector<Pixel> pixels;
+    std::vector<uint8_t> albedo, occlusion, normal, ids;
+    std::vector<Pixel> pixels = std::vector<Pixel>(::pixels);
     PelAmbient ambient = pelAmbientDefaults();
 
     explicit Packed(const Formats& f) {
-        for (uint32_t i = 0; i < ::pixels; ++i) pixels.push_back(f.pack(i, bytes));
-        const float strength[3] = {0.5f, 0.25f, 0.75f};
-        std::copy_n(strength, 3, ambient.constant);
+        for (uint32_t i = 0; i < ::pixels; ++i) {
+            Pixel& p = pixels[i];
+            for (uint32_t c = 0; c < 3; ++c) p.albedo[int(c)] = component(f.albedo, albedo, i, c);
+            appendAlpha(f.albedo, albedo);
+            p.occlusion = component(f.occlusion, occlusion, i, 3);
+            p.normal = normalOf(f.normal, normal, i);
+            appendId(f.id, ids, idOf(i));
+        }
+        copyTo(ambient.constant, {0.5, 0.25, 0.75});
         for (int c = 0; c < 3; ++c) ambient.sh[1 + c][c] = 0.3f;
     }
     // NaN where the normal has no direction.
     Rgb radiance(size_t i) const {
         const Pixel& p = pixels[i];
         if (idOf(uint32_t(i)) == 0) return {0, 0, 0};
-        if (reference::length(p.normal) < 1e-3) return {NAN, NAN, NAN};
-        reference::Ambient a{{ambient.constant[0], ambient.constant[1], ambient.constant[2]}, {}};
-        for (int k = 0; k < 9; ++k)
-            a.harmonics[size_t(k)] = {ambient.sh[k][0], ambient.sh[k][1], ambient.sh[k][2]};
-        return p.occlusion * (p.albedo * reference::irradiance(a, reference::normalized(p.normal)));
+        if (length(p.normal) < 1e-3) return {NAN, NAN, NAN};
+        reference::Ambient a{vectorOf(ambient.constant), {}};
+        for (size_t k = 0; k < 9; ++k) a.harmonics[k] = vectorOf(ambient.sh[k]);
+        return p.occlusion * (p.albedo * reference::irradiance(a, normalized(p.normal)));
     }
     // `padded`: each pixel is followed by as many bytes of something else.
     std::vector<float> shade(const Formats& f, bool padded) const {
@@ -167,10 +157,10 @@ struct Packed {
             desc.rowStride = side * desc.pixelStride;
             shader.set(slot, desc);
         };
-        set(PEL_SLOT_ALBEDO, bytes.albedo, f.albedo);
-        set(PEL_SLOT_AMBIENT_OCCLUSION, bytes.occlusion, f.occlusion);
-        set(PEL_SLOT_NORMAL_SHADING, bytes.normal, f.normal);
-        set(PEL_SLOT_MATERIAL, packedIds(f.id), f.id);
+        set(PEL_SLOT_ALBEDO, albedo, f.albedo);
+        set(PEL_SLOT_AMBIENT_OCCLUSION, occlusion, f.occlusion);
+        set(PEL_SLOT_NORMAL_SHADING, normal, f.normal);
+        set(PEL_SLOT_MATERIAL, ids, f.id);
         shader.set(PEL_SLOT_RADIANCE, imageDesc(out, PEL_FORMAT_RGB32F, side, side));
         shader.commit().execute();
         return out.readAll<float>();

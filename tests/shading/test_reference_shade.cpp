@@ -136,8 +136,6 @@ TEST_F(FaceWorksPixels, ThicknessAgreesOnAverage) {
             const double rms = std::sqrt(apart * double(in_.shape[0])) / theirs;
             EXPECT_NEAR(ours / theirs, 1, tolerance::faceWorksTapsMean) << taps.size();
             EXPECT_LT(rms, tolerance::faceWorksTapsRms) << taps.size();
-            std::printf("%zu taps: mean %.5f of FaceWorks', RMS difference %.4f of it\n", taps.size(),
-                        ours / theirs, rms);
         }
 }
 
@@ -171,7 +169,6 @@ TEST_P(PoissonDisk, SeesEdgesBetterThanRandomTaps) {
             ours += std::pow(beyond / count - area, 2);
             random += area * (1 - area) / count;
         }
-    std::printf("%.0f taps: %.3f of random taps' RMS error over edges\n", count, std::sqrt(ours / random));
     EXPECT_LE(std::sqrt(ours / random), tolerance::diskEdge);
 }
 

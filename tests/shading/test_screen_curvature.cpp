@@ -8,8 +8,6 @@ using namespace shade_test;
 
 namespace {
 
-constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
-
 struct GBuffer {
     uint32_t width, height;
     std::vector<float> normals, positions, depth;  // depth, if there, in place of positions
@@ -17,9 +15,8 @@ struct GBuffer {
     GBuffer(uint32_t w, uint32_t h)
         : width(w), height(h), normals(3 * w * h), positions(3 * w * h), ids(w * h, 1) {}
     size_t at(uint32_t x, uint32_t y) const { return size_t(y) * width + x; }
-    void set(size_t pixel, reference::Vec3 p, reference::Vec3 n) {
-        for (int k = 0; k < 3; ++k)
-            positions[3 * pixel + k] = float(p[k]), normals[3 * pixel + k] = float(n[k]);
+    void set(size_t pixel, Vec3 p, Vec3 n) {
+        copyTo(&positions[3 * pixel], p), copyTo(&normals[3 * pixel], n);
     }
 };
 
@@ -45,8 +42,8 @@ std::vector<float> measure(const GBuffer& g, const Options& options = {}) {
 reference::ScreenImage exactOf(const GBuffer& g, bool ids) {
     reference::ScreenImage image{int(g.width), int(g.height), {}, {}, {}};
     for (size_t i = 0; i < g.ids.size(); ++i) {
-        image.normals.push_back({g.normals[3 * i], g.normals[3 * i + 1], g.normals[3 * i + 2]});
-        image.positions.push_back({g.positions[3 * i], g.positions[3 * i + 1], g.positions[3 * i + 2]});
+        image.normals.push_back(vectorOf(&g.normals[3 * i]));
+        image.positions.push_back(vectorOf(&g.positions[3 * i]));
         if (ids) image.ids.push_back(g.ids[i]);
     }
     return image;
@@ -59,11 +56,8 @@ GBuffer sphereOverPlane(uint32_t width, uint32_t height, double radius, double s
         for (uint32_t x = 0; x < width; ++x) {
             const double px = (x + 0.5 - width / 2.0) * step, py = (y + 0.5 - height / 2.0) * step;
             const double z2 = radius * radius - px * px - py * py;
-            if (z2 > 0)
-                g.set(g.at(x, y), {px, py, std::sqrt(z2)},
-                      {px / radius, py / radius, std::sqrt(z2) / radius});
-            else
-                g.set(g.at(x, y), {px, py, -3 * radius}, {0, 0, 1});
+            const Vec3 p{px, py, z2 > 0 ? std::sqrt(z2) : -3 * radius};
+            g.set(g.at(x, y), p, z2 > 0 ? p / radius : Vec3{0, 0, 1});
             g.ids[g.at(x, y)] = z2 > 0 ? 1 : 2;
         }
     return g;
@@ -83,15 +77,13 @@ TEST(ScreenCurvature, EqualsTheOracleAtEverySize) {
             g.set(i, {x, y, std::sin(0.3f * x) + std::cos(0.2f * y) + cliff},
                   {0.3 * noise(random), 0.3 * noise(random), 1.2});
             g.ids[i] = uint8_t(random() % 6);
-            if (random() % 23 == 0) g.normals[3 * i + random() % 3] = random() % 2 ? notANumber : INFINITY;
-            if (random() % 23 == 0) g.positions[3 * i + random() % 3] = random() % 2 ? notANumber : -INFINITY;
+            if (random() % 23 == 0) g.normals[3 * i + random() % 3] = random() % 2 ? NAN : INFINITY;
+            if (random() % 23 == 0) g.positions[3 * i + random() % 3] = random() % 2 ? NAN : -INFINITY;
             if (random() % 23 == 0) std::fill_n(&g.normals[3 * i], 3, 0.0f);
         }
         for (bool ids : {false, true})
             for (bool strided : {false, true}) {
-                Options options;
-                options.ids = ids;
-                options.strided = strided;
+                Options options{.ids = ids, .strided = strided};
                 options.params.scale = strided ? 2 : 1;
                 const auto expected = reference::screenCurvature(exactOf(g, ids), options.params.edge);
                 const auto actual = measure(g, options);
@@ -106,19 +98,13 @@ TEST(ScreenCurvature, OfASphereIsOneOverItsRadiusUpToTheSilhouette) {
     for (double radius : {0.01, 8.0, 1e5}) {
         const GBuffer g = sphereOverPlane(120, 90, radius, radius / 30);
         for (bool ids : {false, true}) {
-            Options options;
-            options.ids = ids;
-            const std::vector<float> c = measure(g, options);
-            size_t measured = 0, at = 0;
-            for (float value : c) {
-                const bool sphere = g.ids[at++] == 1;
-                if (sphere && value != 0) {
-                    ++measured;
-                    ASSERT_NEAR(value * radius, 1, tolerance::screenSphere) << "pixel " << at - 1;
-                }
-                if (!sphere) {
-                    ASSERT_EQ(value, 0) << "the plane has none, and nothing of the sphere's";
-                }
+            const std::vector<float> c = measure(g, {.ids = ids});
+            size_t measured = 0;
+            for (size_t i = 0; i < c.size(); ++i) {
+                if (c[i] == 0) continue;
+                ASSERT_EQ(g.ids[i], 1) << "the plane has none, and nothing of the sphere's";
+                ASSERT_NEAR(c[i] * radius, 1, tolerance::screenSphere) << "pixel " << i;
+                ++measured;
             }
             EXPECT_GT(measured, 2700u) << "of 2827 pixels";
         }
@@ -164,12 +150,11 @@ TEST(ScreenCurvature, NamesWhatIsWrong) {
     const PelImageDesc three = imageDesc(b, PEL_FORMAT_RGB32F, 8, 8),
                        one = imageDesc(out, PEL_FORMAT_R32F, 8, 8);
     PelScreenCurvatureParams params = pelScreenCurvatureParamsDefaults();
-    const auto measured = [&](const PelImageDesc* n, const PelImageDesc* p, const PelImageDesc* d,
-                              const PelImageDesc* c) {
+    using Desc = const PelImageDesc*;
+    const auto measured = [&](Desc n, Desc p, Desc d, Desc c) {
         return pelScreenCurvature(device().get(), &params, n, p, d, nullptr, c, nullptr);
     };
-    const auto refused = [&](const char* word, const PelImageDesc* n, const PelImageDesc* p,
-                             const PelImageDesc* d, const PelImageDesc* c) {
+    const auto refused = [&](const char* word, Desc n, Desc p, Desc d, Desc c) {
         expectRefused(word, [&] { return measured(n, p, d, c); });
     };
     EXPECT_EQ(pelScreenCurvature(device().get(), nullptr, &three, &three, nullptr, nullptr, &one, nullptr),
@@ -200,6 +185,6 @@ TEST(ScreenCurvature, NamesWhatIsWrong) {
     params.edge = 0;
     refused("edge", &three, &three, nullptr, &one);
     params = pelScreenCurvatureParamsDefaults();
-    params.scale = notANumber;
+    params.scale = NAN;
     refused("scale", &three, &three, nullptr, &one);
 }

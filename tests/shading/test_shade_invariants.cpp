@@ -26,12 +26,12 @@ enum Part : uint32_t {
 struct Scene {
     Frame frame;
     uint32_t parts;
-    std::vector<float> texels, uv, tangent, target;
+    std::vector<float> texels, target;
     bool has(Part part) const { return parts & part; }
 };
 
 Light sceneLight(Random& random, const Frame& f, uint32_t seed, uint32_t parts, bool spot) {
-    Light light = mapLight(seed, spot, false, {0.5, spot ? 0.4 : -0.2, 0.9}, {24, 10, 5}, 70, 61).light;
+    Light light = mapLight(seed, spot, false, {0.5, spot ? 0.4 : -0.2, 0.9}).light;
     PelLight& l = light.params;
     if (!(parts & FILTER)) {
         l.shadowFilterTexels = 0;
@@ -56,7 +56,7 @@ Light sceneLight(Random& random, const Frame& f, uint32_t seed, uint32_t parts, 
 
 Scene randomScene(uint32_t seed, uint32_t parts, uint32_t width, uint32_t height) {
     Random random(seed);
-    Scene s{reliefFrame(seed, width, height, 0.5f), parts, {}, {}, {}, {}};
+    Scene s{reliefFrame(seed, width, height, 0.5f), parts, {}, {}};
     Frame& f = s.frame;
     f.curvatureLut = f.shadowLut = true;
     f.options.blurNormals = s.has(BLUR);
@@ -92,14 +92,15 @@ Scene randomScene(uint32_t seed, uint32_t parts, uint32_t width, uint32_t height
         if (s.has(IRRADIANCE) && id == 1) m.scattering = PEL_SCATTERING_NONE;
     }
     for (int i = 0; i < 64 * 64 * 3; ++i) s.texels.push_back(random.uniform());
-    for (size_t i = 0; i < f.pixels(); ++i) {
-        s.uv.insert(s.uv.end(), {random.uniform(-2, 2), random.uniform(-2, 2)});
-        s.tangent.insert(s.tangent.end(), {1, 0, 0});
-    }
     for (size_t i = 0; i < f.pixels() * 3; ++i) s.target.push_back(random.uniform());
     for (int slot = PEL_SLOT_POSITION; slot < PEL_SLOT_OUT_DIFFUSE; ++slot)
         for (float& v : f.slots[slot].values)
             if (random.below(900) == 0) v = random.below(2) ? std::nanf("") : 1e38f;
+    f.slots[PEL_SLOT_UV].components = 2, f.slots[PEL_SLOT_TANGENT].components = 3;
+    for (size_t i = 0; s.has(NORMAL_MAP) && i < f.pixels(); ++i) {
+        f.slots[PEL_SLOT_TANGENT].push({1, 0, 0});
+        for (int k = 0; k < 2; ++k) f.slots[PEL_SLOT_UV].values.push_back(random.uniform(-2, 2));
+    }
     return s;
 }
 
@@ -113,12 +114,8 @@ OutputBytes run(const Scene& s, const PelShaderOptions& options, PelShaderStats*
     setFrame(device(), shader, f, tables());
     shader.set(options);
     if (s.has(PLAIN)) shader.setMaterial(2, f.materials.at(2));  // without tables
-    if (s.has(NORMAL_MAP)) {
+    if (s.has(NORMAL_MAP))
         shader.setNormalMap(2, {imageDesc(Buffer(device(), s.texels), PEL_FORMAT_RGB32F, 64, 64)});
-        shader.set(PEL_SLOT_UV, imageDesc(Buffer(device(), s.uv), PEL_FORMAT_RG32F, f.width, f.height));
-        shader.set(PEL_SLOT_TANGENT,
-                   imageDesc(Buffer(device(), s.tangent), PEL_FORMAT_RGB32F, f.width, f.height));
-    }
     std::vector<Buffer> targets;
     for (const PelImageSlot slot : {PEL_SLOT_RADIANCE, PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER,
                                     PEL_SLOT_OUT_SPECULAR, PEL_SLOT_OUT_THICKNESS}) {
@@ -309,15 +306,8 @@ TEST(ShadeSum, LightsAddUp) {
     Light other = f.lights[0];
     other.params.shadowFilterTexels = 0;
     other.params.toLight[0] = -0.6f;
-    const std::vector<Light> both{f.lights[0], other};
-    std::vector<float> sum(3 * f.pixels());
-    for (const Light& light : both) {
-        f.lights = {light};
-        const std::vector<float> one = shade(f);
-        for (size_t i = 0; i < sum.size(); ++i) sum[i] += one[i];
-    }
-    f.lights = both;
-    const std::vector<float> all = shade(f);
+    f.lights.push_back(other);
+    const std::vector<float> all = shade(f), sum = sumOfLights(f);
     for (size_t i = 0; i < sum.size(); ++i) {
         if (f.slots[PEL_SLOT_MATERIAL].at(i / 3) == 2) continue;  // summed more finely under uneven light
         ASSERT_NEAR(all[i], sum[i], 1e-5) << i;
@@ -329,8 +319,7 @@ TEST(ShadeSum, LightsAddUp) {
 // Blurred normals, two wide shadows to filter; lit by both lights.
 Frame passesFrame(uint32_t seed, uint32_t width, uint32_t height) {
     Frame f = reliefFrame(seed, width, height, 0.4f);
-    for (const bool perspective : {false, true})
-        f.lights.push_back(mapLight(seed, perspective, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 61).light);
+    for (const bool perspective : {false, true}) f.lights.push_back(mapLight(seed, perspective).light);
     f.options.blurNormals = 1;
     f.curvatureLut = f.shadowLut = true;
     f.slots[PEL_SLOT_CURVATURE] = f.slots[PEL_SLOT_MATERIAL];
@@ -341,7 +330,7 @@ Frame passesFrame(uint32_t seed, uint32_t width, uint32_t height) {
 // The blur reads up to 384 rows to each side: the frame is taller than that, and seen from far enough for
 // wide steps.
 TEST(ShadeBands, BlurredNormalsWithTheirHalo) {
-    Scene s{passesFrame(2, 70, 1000), BLUR | FILTER, {}, {}, {}, {}};
+    Scene s{passesFrame(2, 70, 1000), BLUR | FILTER, {}, {}};
     for (float& p : s.frame.slots[PEL_SLOT_POSITION].values) p *= 0.02f;  // a close-up: steps of many pixels
     s.target.resize(3 * s.frame.pixels());
     PelShaderOptions options = s.frame.options;
@@ -426,8 +415,7 @@ TEST(BetweenPixels, WideShadowsAreThoseOfEveryPixel) {
 }
 
 TEST(BetweenPixels, BadPixelsStayAlone) {
-    Frame f =
-        interpolated(shadowed(5, mapLight(5, false, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 97).light));
+    Frame f = interpolated(shadowed(5, mapLight(5).light));
     const auto before = shade(f);
     const size_t normal = 22 * f.width + 60, position = sized(41, 9) * f.width + 121;
     f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values[3 * normal] = NAN;
@@ -437,7 +425,7 @@ TEST(BetweenPixels, BadPixelsStayAlone) {
 }
 
 TEST(BetweenPixels, SharpShadowsAndNarrowFramesAreComputedEverywhere) {
-    const MapLight from = mapLight(2, false, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 97);
+    const MapLight from = mapLight(2);
     Frame sharp = shadowed(2, from.light);
     for (auto& [id, m] : sharp.materials) m.scattering = PEL_SCATTERING_NONE;
     EXPECT_EQ(shade(sharp), shade(device(), interpolated(sharp), tables()));

@@ -1,8 +1,8 @@
 // A material that names its profile: tables, widths, transmission and gain that follow from it, against
 // closed forms and the oracle's tables; units; warnings about settings without effect.
 #include "diffusion/scatter_scene.h"
+#include "io/io_files.h"
 #include "shade_scene.h"
-#include "test.h"
 
 using namespace pellucid;
 
@@ -15,7 +15,6 @@ constexpr uint32_t width = 64, height = 3;
 // own; lengths in mm.
 struct BodyScene {
     std::vector<float> normals, curvature, meanCurvature, thickness, shadow, position;
-    float toLight[3] = {0, 0, 1};
 
     BodyScene() {
         std::mt19937 random(4);
@@ -35,7 +34,7 @@ struct BodyScene {
 };
 
 struct Inputs {
-    bool thickness = true, shadow = false, meanCurvature = false;
+    bool thickness = true, shadow = false, meanCurvature = false, position = false;
     float perMillimetre = 1;  // units of the scene
     PelShaderOptions options = pelShaderOptionsDefaults();
 };
@@ -44,12 +43,12 @@ struct Inputs {
 struct SquareMap {
     uint32_t side;
     float extent;
-    std::vector<float> depth;
+    std::vector<float> depth = std::vector<float>(size_t(side) * side, 0.5f);
 };
 
 struct Shading : scatter_scene::ShownImages {
     explicit Shading(const PelMaterial& material, const Inputs& in = {})
-        : ShownImages(Device(""), ::width, ::height) {
+        : ShownImages(::device(), ::width, ::height) {
         const auto scaled = [](std::vector<float> values, float by) {
             for (float& v : values) v *= by;
             return values;
@@ -59,11 +58,16 @@ struct Shading : scatter_scene::ShownImages {
         set(PEL_SLOT_CURVATURE, scaled(scene.curvature, 1 / in.perMillimetre));
         if (in.meanCurvature) set(PEL_SLOT_MEAN_CURVATURE, scaled(scene.meanCurvature, 1 / in.perMillimetre));
         if (in.thickness) set(PEL_SLOT_THICKNESS, scaled(scene.thickness, in.perMillimetre));
-        PelLight light = pelLightDefaults();
-        std::copy(scene.toLight, scene.toLight + 3, light.toLight);
-        shader.set(std::vector<PelLight>{light});
+        if (in.position) set(PEL_SLOT_POSITION, scene.position);
+        shader.set(directionalLight({0, 0, 1}, {1, 1, 1}));
         if (in.shadow) setMap(PEL_LIGHT_WIDE_SHADOW, scene.shadow, width, height);
         shader.setMaterial(1, material).commit();
+    }
+    // Other points, where the table's dark side is 0.
+    void place(const std::vector<float>& positions, const std::vector<float>& normals) {
+        set(PEL_SLOT_POSITION, positions);
+        set(PEL_SLOT_NORMAL_SHADING, normals);
+        set(PEL_SLOT_CURVATURE, std::vector<float>(positions.size() / 3));
     }
     // Of a light that looks down; the finest first. `others`: lights without any.
     void setMaps(const std::vector<SquareMap>& maps, const std::vector<PelLight>& others = {}) {
@@ -87,11 +91,18 @@ struct Shading : scatter_scene::ShownImages {
 };
 
 PelMaterial materialOf(const Profile& profile) {
-    PelMaterial m = pelMaterialDefaults();
-    m.profile = profile.get();
+    PelMaterial m = material(profile, {1, 1, 1});
     m.scattering = PEL_SCATTERING_PREINTEGRATED;
-    for (float& a : m.albedo) a = 1;
     return m;
+}
+
+const Profile& burley() {
+    static const Profile profile = Profile::burleyDistance(burleyDistance);
+    return profile;
+}
+
+bool warned(const Shading& shading, const char* words) {
+    return contains(shading.shader.warnings(), words);
 }
 
 // Section 11: what a slab of thickness s lets through, of Burley's profile of length d.
@@ -115,10 +126,9 @@ reference::ProfilePtr oracleProfile() {
 }  // namespace
 
 TEST(ShadeProfile, TheProfileAloneGivesItsTablesAndWidths) {
-    const Profile profile = Profile::burleyDistance(burleyDistance);
+    const Profile profile = burley();
     const PelProfileInfo info = profile.info();
-    Inputs in{.thickness = false};
-    Shading shading(materialOf(profile), in);
+    Shading shading(materialOf(profile), {.thickness = false});
     const auto radiance = shading.execute();
     const auto truth = oracleProfile();
     for (size_t i = 0; i < width * height; ++i) {
@@ -141,38 +151,35 @@ TEST(ShadeProfile, ARadiusOfZeroIsTheTablesOwn) {
     PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.width = desc.height = 32;
     desc.profile = marble.get();
-    const Lut lut(Device(""), desc);
+    const Lut lut(device(), desc);
     EXPECT_EQ(lut.info().curvature.diffusionRadius, marble.info().radius);
     PelMaterial silent = pelMaterialDefaults(), spoken = silent;
     spoken.diffusionRadius = marble.info().radius;
-    EXPECT_EQ(Shading(silent).shader.material(1).diffusionRadius, 2.7f);
     Shading a(silent), b(spoken);
-    const Lut own(a.device, desc), other(b.device, desc);
-    a.shader.setMaterial(1, silent, own).commit();
-    b.shader.setMaterial(1, spoken, other).commit();
+    EXPECT_EQ(a.shader.material(1).diffusionRadius, 2.7f);
+    a.shader.setMaterial(1, silent, lut).commit();
+    b.shader.setMaterial(1, spoken, lut).commit();
     EXPECT_EQ(a.shader.material(1).diffusionRadius, marble.info().radius);
     EXPECT_EQ(a.execute(), b.execute());
     // Profiles are in mm, whatever the scene's unit is; a radius that the table is given is in the scene's.
     Inputs cm;
     cm.options.millimetresPerUnit = 10;
     Shading c(silent, cm);
-    c.shader.setMaterial(1, silent, Lut(c.device, desc)).commit();
+    c.shader.setMaterial(1, silent, lut).commit();
     EXPECT_FLOAT_EQ(c.shader.material(1).diffusionRadius, marble.info().radius / 10);
     desc.diffusionRadius = 0.3f;
-    c.shader.setMaterial(1, silent, Lut(c.device, desc)).commit();
+    c.shader.setMaterial(1, silent, Lut(device(), desc)).commit();
     EXPECT_FLOAT_EQ(c.shader.material(1).diffusionRadius, 0.3f);
 }
 
 // Section 11: the slab's transmission takes the place of the table's dark side where it is the larger, and is
 // never added.
 TEST(ShadeProfile, TransmissionIsTheSlabsAndNeverAdded) {
-    const Profile profile = Profile::burleyDistance(burleyDistance);
-    const auto truth = oracleProfile();
-    Shading shading(materialOf(profile));
+    PelMaterial material = materialOf(burley());
+    Shading shading(material);
     const auto radiance = shading.execute();
-    PelMaterial off = materialOf(profile);
-    off.transmission = 0;
-    const auto without = Shading(off).execute();
+    material.transmission = 0;
+    const auto without = Shading(material).execute();
     int through = 0;
     for (size_t i = 0; i < width * height; ++i)
         for (size_t c = 0; c < 3; ++c) {
@@ -185,18 +192,15 @@ TEST(ShadeProfile, TransmissionIsTheSlabsAndNeverAdded) {
             through += slab > without[3 * i + c] + tolerance::profileLookUp;
         }
     EXPECT_GT(through, 100);
-    PelMaterial half = materialOf(profile);
-    half.transmission = 0.5f;
-    const auto less = Shading(half).execute();
+    material.transmission = 0.5f;
+    const auto less = Shading(material).execute();
     for (size_t i = 0; i < less.size(); ++i) EXPECT_LE(less[i], radiance[i]);
 }
 
 TEST(ShadeProfile, NothingIsKnownToComeThroughFromALightWithoutAMap) {
-    Shading shading(materialOf(Profile::burleyDistance(burleyDistance)), {.thickness = false});
-    shading.set(PEL_SLOT_POSITION, shading.scene.position);
-    PelLight below = pelLightDefaults();
-    below.toLight[0] = below.toLight[1] = 0, below.toLight[2] = -1;
-    shading.shader.set(std::vector<PelLight>{below}).commit();
+    Shading shading(materialOf(burley()), {.thickness = false, .position = true});
+    const PelLight below = directionalLight({0, 0, -1}, {1, 1, 1});
+    shading.shader.set(below).commit();
     const auto alone = shading.execute();
     const std::vector<SquareMap> map{{2, 60, std::vector<float>(4, 0.2f)}};
     shading.setMaps(map);
@@ -208,8 +212,7 @@ TEST(ShadeProfile, NothingIsKnownToComeThroughFromALightWithoutAMap) {
 }
 
 TEST(ShadeProfile, TransmissionOfEveryKindIsWhatLiesBeyond) {
-    const std::vector<Profile> all{Profile::skin(), Profile::named("marble"),
-                                   Profile::burleyDistance(burleyDistance),
+    const std::vector<Profile> all{Profile::skin(), Profile::named("marble"), burley(),
                                    Profile::table({0, 1, 2.5f}, {3, 2, 1, 1, 1, 2, 0, 0.5f, 0})};
     for (const Profile& profile : all) {
         const double radius = profile.info().radius;
@@ -237,11 +240,9 @@ TEST(ShadeProfile, TransmissionOfEveryKindIsWhatLiesBeyond) {
 // Closed ends: where the filter is lit to its end the shadow takes nothing, and leaves nothing at the other
 // end.
 TEST(ShadeProfile, LitSkinLosesNothingToTheShadow) {
-    const Profile profile = Profile::burleyDistance(burleyDistance);
-    Inputs in{.thickness = false};
-    const auto lit = Shading(materialOf(profile), in).execute();
-    in.shadow = true;
-    Shading shading(materialOf(profile), in);
+    const PelMaterial material = materialOf(burley());
+    const auto lit = Shading(material, {.thickness = false}).execute();
+    Shading shading(material, {.thickness = false, .shadow = true});
     const auto shadowed = shading.execute();
     for (size_t i = 0; i < width * height; ++i)
         for (size_t c = 0; c < 3; ++c) {
@@ -274,10 +275,9 @@ TEST(ShadeProfile, UnitsOfTheSceneDoNotMatter) {
 TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
     const float path[3] = {1, 0.5f, 0.25f}, albedo[3] = {0.9f, 0.8f, 0.3f};
     const Profile profile = Profile::burley(path, albedo);
-    Inputs in{.thickness = false};
-    const auto plain = Shading(materialOf(profile), in).execute();
-    in.meanCurvature = true;
     PelMaterial material = materialOf(profile);
+    const auto plain = Shading(material, {.thickness = false}).execute();
+    const Inputs in{.thickness = false, .meanCurvature = true};
     const auto expectGain = [&](const Profile& of, double strength, const auto& pathOf,
                                 const auto& lengthOf) {
         material.profile = of.get();
@@ -302,7 +302,7 @@ TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
     expectGain(profile, 0.5, ofBurley, lengthOf);
     // Of Burley's distance d the path is 1.087 d. Sums of Gaussians say nothing of it.
     expectGain(
-        Profile::burleyDistance(burleyDistance), 1, [&](size_t c) { return 1.087 * burleyDistance[c]; },
+        burley(), 1, [&](size_t c) { return 1.087 * burleyDistance[c]; },
         [&](size_t c) { return burleyDistance[c]; });
     expectGain(
         Profile::skin(), 1, [](size_t) { return 0.0; }, [](size_t) { return 1.0; });
@@ -310,20 +310,16 @@ TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
 
 TEST(ShadeProfile, WhatHasNoEffectIsSaid) {
     PelMaterial m = pelMaterialDefaults();
-    Inputs in{.thickness = false};
-    EXPECT_EQ(Shading(m, in).shader.warnings(), "");
+    EXPECT_EQ(Shading(m, {.thickness = false}).shader.warnings(), "");
     m.deepScatterColor[0] = 1;
-    EXPECT_NE(Shading(m, in).shader.warnings().find("deepScatterColor without effect"), std::string::npos);
-    in.thickness = true;
-    EXPECT_EQ(Shading(m, in).shader.warnings(), "");
+    EXPECT_TRUE(warned(Shading(m, {.thickness = false}), "deepScatterColor without effect"));
+    EXPECT_EQ(Shading(m).shader.warnings(), "");
     // Taps without the camera's matrix.
     const Profile profile = Profile::named("skin-burley");
     m = materialOf(profile);
-    Shading shading(m, in);
-    shading.set(PEL_SLOT_POSITION, shading.scene.position);
     m.scattering = PEL_SCATTERING_SEPARABLE;
-    shading.shader.setMaterial(1, m).commit();
-    EXPECT_NE(shading.shader.warnings().find("placed by PelCamera.inverseViewProjection"), std::string::npos);
+    Shading shading(m, {.position = true});
+    EXPECT_TRUE(warned(shading, "placed by PelCamera.inverseViewProjection"));
     PelCamera camera = pelCameraDefaults();
     camera.inverseViewProjection[0] = 2;
     EXPECT_EQ(std::string(shading.shader.set(camera).commit().warnings()), "");
@@ -334,9 +330,7 @@ TEST(ShadeProfile, AutoKeepsToTheScratchBudget) {
     const Profile profile = Profile::named("skin-burley");
     PelMaterial material = materialOf(profile);
     material.scattering = PEL_SCATTERING_AUTO;
-    Inputs in{.thickness = false};
-    Shading shading(material, in);
-    shading.set(PEL_SLOT_POSITION, shading.scene.position);
+    Shading shading(material, {.thickness = false, .position = true});
     const auto said = [&](uint64_t budget) {
         PelShaderOptions options = pelShaderOptionsDefaults();
         options.scratchBudget = budget;
@@ -370,7 +364,7 @@ TEST(ShadeProfile, AutoKeepsToTheScratchBudget) {
 // Texels that are longer than light reaches; and a map that is smaller, which holds no body of that profile:
 // the unit is wrong.
 TEST(ShadeProfile, MapsThatDoNotFitTheProfileAreSaid) {
-    const Profile profile = Profile::burleyDistance(burleyDistance), skin = Profile::skin();
+    const Profile profile = burley(), skin = Profile::skin();
     const struct {
         const Profile& profile;
         uint32_t side;
@@ -383,30 +377,23 @@ TEST(ShadeProfile, MapsThatDoNotFitTheProfileAreSaid) {
                  {skin, 512, 300, 3, "millimetresPerUnit", false},
                  {skin, 512, 300, 0.01f, "millimetresPerUnit", true}};
     for (const auto& c : cases) {
-        Inputs in;
-        in.thickness = c.side > 4;
+        Inputs in{.thickness = c.side > 4, .position = true};
         in.options.millimetresPerUnit = c.unit;
         Shading shading(materialOf(c.profile), in);
-        shading.set(PEL_SLOT_POSITION, shading.scene.position);
-        shading.setMaps({{c.side, c.extent, std::vector<float>(c.side * c.side, 0.5f)}});
-        EXPECT_EQ(shading.shader.warnings().find(c.word) != std::string::npos, c.said)
+        shading.setMaps({{c.side, c.extent}});
+        EXPECT_EQ(warned(shading, c.word), c.said)
             << c.extent << ' ' << c.unit << ": " << shading.shader.warnings();
     }
-    Inputs in;  // the largest cascade is what the object must fit in
-    in.thickness = false;
-    Shading shading(materialOf(skin), in);
-    shading.set(PEL_SLOT_POSITION, shading.scene.position);
-    const std::vector<float> depth(64 * 64, 0.5f);
-    shading.setMaps({{64, 4, depth}, {64, 300, depth}});
-    EXPECT_EQ(shading.shader.warnings().find("millimetresPerUnit"), std::string::npos);
+    // The largest cascade is what the object must fit in.
+    Shading shading(materialOf(skin), {.thickness = false, .position = true});
+    shading.setMaps({{64, 4}, {64, 300}});
+    EXPECT_FALSE(warned(shading, "millimetresPerUnit"));
 }
 
 // The thickness is the greatest of eight taps within two texels: over a map of random heights, each tap is
 // the greatest somewhere. Of cascades it is that of the finest map that holds the taps.
 TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
-    const Profile profile = Profile::burleyDistance(burleyDistance);
-    Inputs in{.thickness = false};
-    Shading shading(materialOf(profile), in);
+    Shading shading(materialOf(burley()), {.thickness = false});
     std::mt19937 random(5);
     std::uniform_real_distribution<float> even(-1, 1);
     std::vector<float> position, normals;
@@ -418,9 +405,7 @@ TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
         position.insert(position.end(), {28 * even(random), 28 * even(random), -1});
         normals.insert(normals.end(), {0, 0, -1});
     }
-    shading.set(PEL_SLOT_POSITION, position);
-    shading.set(PEL_SLOT_NORMAL_SHADING, normals);
-    shading.set(PEL_SLOT_CURVATURE, std::vector<float>(width * height, 0.0f));  // the table's dark side is 0
+    shading.place(position, normals);
     for (const bool cascades : {true, false}) {
         if (!cascades) maps.erase(maps.begin());
         shading.setMaps(maps);
@@ -445,11 +430,10 @@ TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
 
 // Also in a cube: beside a step of the map, the thicker side does not become thin.
 TEST(ShadeProfile, ThicknessFromACubeIsTheGreatestNearby) {
-    const Profile profile = Profile::burleyDistance(burleyDistance);
-    Inputs in{.thickness = false};
-    Shading shading(materialOf(profile), in);
+    Shading shading(materialOf(burley()), {.thickness = false});
     constexpr uint32_t side = 256;
-    constexpr double texel = 2.0 / side, far = 30, thick = 6, thin = 1;  // texel: radians; others: mm
+    constexpr float far = 30;                                  // mm, as the thickness
+    constexpr double texel = 2.0 / side, thick = 6, thin = 1;  // texel: radians
     const reference::Vec3 axis = normalized(reference::Vec3{0.5, -0.7, 0.4}),
                           right = normalized(cross(axis, reference::Vec3{0, 0, 1})), up = cross(right, axis);
     std::vector<float> depth, position, normals;
@@ -468,16 +452,12 @@ TEST(ShadeProfile, ThicknessFromACubeIsTheGreatestNearby) {
         above.push_back(angle);
         for (int k = 0; k < 3; ++k) position.push_back(float(far * d[k])), normals.push_back(float(d[k]));
     }
-    shading.set(PEL_SLOT_POSITION, position);
-    shading.set(PEL_SLOT_NORMAL_SHADING, normals);
-    shading.set(PEL_SLOT_CURVATURE, std::vector<float>(width * height, 0.0f));  // the table's dark side is 0
-    PelLight light = pelLightDefaults();
-    light.type = PEL_LIGHT_POINT;
+    shading.place(position, normals);
+    PelLight light = pointLight({0, 0, 0}, {far * far, far * far, far * far});
     light.shadowProjection = PEL_SHADOW_CUBE_RADIAL;
     light.shadowDepthRange = far;
-    std::fill_n(light.color, 3, float(far * far));
     for (int k = 0; k < 4; ++k) light.worldToShadow[5 * k] = 1;
-    shading.shader.set(std::vector<PelLight>{light});
+    shading.shader.set(light);
     shading.setMap(PEL_LIGHT_SHADOW_MAP, depth, side, 6 * side);
     shading.shader.commit();
     const auto radiance = shading.execute();

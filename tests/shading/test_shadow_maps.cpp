@@ -16,13 +16,13 @@ const Vec3 aims[] = {{0, 0, 1}, {1, 0, 1}, {-1, 1, 1}};
 double bumps(Vec3 d, int texel) {
     const double ground = d.z < -1e-3 ? (lamp.z + 8) / -d.z : 500;
     const int cell = texel / 7 * 31;
-    return std::min(ground, 500.0) - (cell % 3 ? 9 + cell % 23 : 0) / reference::length(d);
+    return std::min(ground, 500.0) - (cell % 3 ? 9 + cell % 23 : 0) / length(d);
 }
 
 struct Check {
     double wide = tolerance::wideShadow, thickness = tolerance::mapThickness;
     bool atlas = false;
-    std::function<bool(const PelMaterial&, Vec3, Vec3)> counts = {};
+    std::function<bool(const SurfacePlace&)> counts = {};
 };
 constexpr double any = INFINITY;
 
@@ -44,7 +44,7 @@ Compared expectOracle(const std::string& what, Frame f, const From& from, const 
     if (f.options.disableSkipping) {
         EXPECT_EQ(all.stats.pixelsShadowTexels, all.stats.pixelsWideShadow);
     }
-    const Worst worst = worstOf(f, seen, truthOf(from), check.counts);
+    const Worst worst = worstOf(f, seen, from, check.counts);
     EXPECT_LE(worst.wide, check.wide);
     EXPECT_LE(worst.thickness, check.thickness);
     for (const float t : seen.thickness) EXPECT_TRUE(std::isfinite(t));
@@ -158,11 +158,12 @@ TEST(ShadowMaps, CascadesMatchTheOracle) {
                 };
                 size_t taken[5] = {};  // none, and each
                 Check check{.thickness = corrupt ? any : tolerance::mapThickness, .atlas = atlas};
-                check.counts = [&](const PelMaterial& m, Vec3 p, Vec3 n) {
-                    const double half = m.shadowFilterWidth / 2;
-                    if (!sure(p, half) || !sure(insetOf(m, p, n), m.thicknessFilterRadius * perUv))
+                check.counts = [&](const SurfacePlace& at) {
+                    const double half = at.material.shadowFilterWidth / 2;
+                    if (!sure(at.position, half) ||
+                        !sure(at.inset(), at.material.thicknessFilterRadius * perUv))
                         return false;
-                    ++taken[1 + reference::cascadeOf(matrices, p, half)];
+                    ++taken[1 + reference::cascadeOf(matrices, at.position, half)];
                     return true;
                 };
                 const Compared seen =
@@ -257,12 +258,13 @@ TEST(ShadowFilter, TexelsAreReadAcrossAnEdgeAlone) {
         const Frame f = flattened(filterFrame(2));
         uint64_t skin = 0, across = 0, doubtful = 0;
         for (size_t i = 0; i < f.pixels(); ++i) {
-            const PelMaterial* m = materialAt(f, i);
-            if (!m) continue;
+            const auto at = placeAt(f, i);
+            if (!at) continue;
             ++skin;
-            const Vec3 offset = f.slots[PEL_SLOT_POSITION].vec(i) - from.view.origin;
-            const double x = reference::dot(from.view.right, offset) / from.view.extent * 128 + 63.5;
-            const double radius = std::max(0.5 * m->shadowFilterWidth, 2.0);  // texels, at least two
+            const double x =
+                dot(from.view.right, at->position - from.view.origin) / from.view.extent * 128 + 63.5;
+            const double radius =
+                std::max(0.5 * at->material.shadowFilterWidth, 2.0);  // texels, at least two
             across += x - radius <= 63 && x + radius >= 64;
             doubtful += std::abs(x - radius - 63) < 1e-3 || std::abs(x + radius - 64) < 1e-3;
         }
@@ -285,8 +287,7 @@ TEST(ShadowFilter, AStraightEdgeHasTheTablesProfile) {
     f.slots[PEL_SLOT_MATERIAL].values.assign(f.pixels(), 1.0f);
     const Seen seen = shadeForms(f, {from.light});
     for (size_t i = 0; i < f.pixels(); ++i) {
-        const double across =
-            reference::dot(f.slots[PEL_SLOT_POSITION].vec(i) - Vec3{24, 10, 0}, from.view.right);
+        const double across = dot(f.slots[PEL_SLOT_POSITION].vec(i) - Vec3{24, 10, 0}, from.view.right);
         const double q = std::clamp(across / 4, -1.0, 1.0);
         EXPECT_NEAR(seen.wide[i], (1 + q * std::sqrt(2 - q * q)) / 2, tolerance::wideShadowEdge) << across;
     }
@@ -311,14 +312,9 @@ TEST(ShadowFilter, AMapOfIntegersIsTheMapOfItsFloats) {
             shader.set(0, PEL_LIGHT_SHADOW_MAP, imageDesc(map, PEL_FORMAT_R16_UNORM, 200, 200));
         });
         EXPECT_GT(*std::max_element(shown.begin(), shown.end()), 0.1f);
-        const FormTruth truth = truthOf(from);
         for (size_t i = 0; i < f.pixels(); ++i)
-            if (const PelMaterial* m = materialAt(f, i)) {
-                ASSERT_NEAR(shown[3 * i],
-                            truth.wide(*m, f.slots[PEL_SLOT_POSITION].vec(i),
-                                       f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i)),
-                            tolerance::wideShadow)
-                    << i;
+            if (const auto at = placeAt(f, i)) {
+                ASSERT_NEAR(shown[3 * i], wideOf(from, *at), tolerance::wideShadow) << i;
             }
     }
 }
@@ -327,7 +323,7 @@ TEST(ShadowFilter, AMapOfIntegersIsTheMapOfItsFloats) {
 
 Frame litFrame() {
     Frame f = formFrame();
-    f.lights = {mapLight(3, false, false, slanted, {24, 10, 5}, 70, 61).light};
+    f.lights = {mapLight(3).light};
     for (auto& [id, m] : f.materials) std::fill_n(m.deepScatterColor, 3, 0.0f);
     showWideShadow(f);
     return f;
@@ -401,7 +397,7 @@ TEST(ShadowForms, CubesHoldAllContents) {
             const Seen as = shadeForms(f, {other});
             double wide = 0;
             for (size_t i = 0; i < f.pixels(); ++i) {
-                if (!materialAt(f, i)) continue;
+                if (!placeAt(f, i)) continue;
                 EXPECT_NEAR(as.thickness[i], depth.thickness[i],
                             tolerance::contentInCubeThickness + 0.02 * depth.thickness[i])
                     << i << " radial " << radial;
@@ -414,7 +410,7 @@ TEST(ShadowForms, CubesHoldAllContents) {
             constexpr double deviation = 0.02;
             for (size_t i = 0; i < cube.map.depth.size(); ++i) {
                 const int size = cube.map.size, at = int(i) % (size * size);
-                const double axis = reference::length(
+                const double axis = length(
                     reference::shadowCubeDirection(int(i) / (size * size), at % size, at / size, size));
                 const double z = cube.map.depth[i], range = cube.light.params.shadowDepthRange;
                 const double slope = radial ? -axis / (z * z * range) : cube.light.params.shadowDepthA;
@@ -423,7 +419,7 @@ TEST(ShadowForms, CubesHoldAllContents) {
             uneven[radial] = shadeForms(f, {other}).wide;
             double more = 0;
             for (size_t i = 0; i < f.pixels(); ++i)
-                if (materialAt(f, i)) more += (uneven[radial][i] - as.wide[i]) / double(f.pixels());
+                if (placeAt(f, i)) more += (uneven[radial][i] - as.wide[i]) / double(f.pixels());
             EXPECT_GT(more, 0.15);
         }
     }
@@ -473,8 +469,7 @@ TEST(ShadowForms, TexelsOfOneSizeHaveTheirOwnFormat) {
 
 // Positions that are NaN, far away or at the light only affect their own pixel.
 TEST(ShadowForms, BadPlaces) {
-    const Light lights[] = {mapLight(3, true, false, slanted, {24, 10, 5}, 70, 61).light,
-                            cascadeLight({24, 70}).light,
+    const Light lights[] = {mapLight(3, true).light, cascadeLight({24, 70}).light,
                             contentLight(PEL_SHADOW_CONTENT_EXPONENTIAL, true, false, 61).light,
                             cubeLight(64, false, turnTo(down, aims[2]), lamp, bumps).light};
     for (const Light& light : lights) {
@@ -499,7 +494,7 @@ TEST(ShadowForms, BadPlaces) {
 }
 
 TEST(ShadowForms, WhatIsRefused) {
-    const Light plain = mapLight(3, false, false, slanted, {24, 10, 5}, 70, 31).light,
+    const Light plain = mapLight(3).light,
                 cube = cubeLight(16, false, turnTo(down, aims[0]), lamp, bumps).light,
                 cascades = cascadeLight({24, 70}).light,
                 moments = contentLight(PEL_SHADOW_CONTENT_MOMENTS, false, false, 31).light,

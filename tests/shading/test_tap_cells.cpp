@@ -45,13 +45,12 @@ struct FormErrors {
     }
     std::vector<std::pair<size_t, double>> truth;
 };
-FormErrors errorsOf(const Frame& f, const FormTruth& truth) {
+template <class From>
+FormErrors errorsOf(const Frame& f, const From& from) {
     FormErrors errors;
     const auto taps = spiral(1024);
     for (size_t i = 0; i < f.pixels(); i += 37)
-        if (const PelMaterial* m = materialAt(f, i))
-            errors.truth.emplace_back(i, truth.thickness(*m, f.slots[PEL_SLOT_POSITION].vec(i),
-                                                         f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i), taps));
+        if (const auto at = placeAt(f, i)) errors.truth.emplace_back(i, thicknessOf(from, *at, taps));
     return errors;
 }
 
@@ -63,7 +62,7 @@ uint64_t cellLaunches(const Seen& cells, const Seen& taps) {
 // Against a disk of very many taps, on a map for which few taps are inaccurate.
 template <class From>
 void expectNearer(const Frame& f, const From& from, uint64_t launches, const std::string& what) {
-    const FormErrors errors = errorsOf(f, truthOf(from));
+    const FormErrors errors = errorsOf(f, from);
     ASSERT_GT(errors.truth.size(), sized(1000u, 20u));
     const Seen taps = shadeForms(f, {from.light}), cells = shadeForms(interpolated(f), {from.light});
     EXPECT_EQ(cellLaunches(cells, taps), launches) << what;

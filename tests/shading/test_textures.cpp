@@ -10,18 +10,15 @@ using namespace shade_test;
 
 namespace {
 
-constexpr cl_channel_order orders[] = {0, CL_R, CL_RG, CL_RGBA, CL_RGBA};
-constexpr PelFormat formatOf[] = {PEL_FORMAT_UNDEFINED, PEL_FORMAT_R32F, PEL_FORMAT_RG32F, PEL_FORMAT_RGBA32F,
-                                  PEL_FORMAT_RGBA32F};
-
 // A texture of floats, whose texels hold `components` values of an image; three are four with a 7.
 class Texture {
   public:
     Texture(const std::vector<float>& values, uint32_t components, uint32_t width, uint32_t height)
-        : components_(components), format_(formatOf[components]), width_(width), height_(height) {
+        : components_(components), across_(components == 3 ? 4 : components), width_(width), height_(height) {
         void *context = nullptr, *id = nullptr;
         pellucid::check(pelDeviceGetCl(device().get(), &context, &id, &queue_));
-        const cl_image_format format{orders[components], CL_FLOAT};
+        const cl_channel_order order = across_ == 1 ? CL_R : across_ == 2 ? CL_RG : CL_RGBA;
+        const cl_image_format format{order, CL_FLOAT};
         cl_image_desc desc{};
         desc.image_type = CL_MEM_OBJECT_IMAGE2D;
         desc.image_width = width, desc.image_height = height;
@@ -36,16 +33,15 @@ class Texture {
     Texture(const Texture&) = delete;
     Texture& operator=(const Texture&) = delete;
 
-    PelImageDesc desc() const { return imageDesc(buffer_, format_, width_, height_); }
+    PelImageDesc desc() const { return imageDesc(buffer_, floatFormats[across_], width_, height_); }
     void write(const std::vector<float>& values) {
-        const uint32_t across = components_ == 3 ? 4 : components_;
-        std::vector<float> texels(size_t(width_) * height_ * across, 7);
+        std::vector<float> texels(size_t(width_) * height_ * across_, 7);
         for (size_t i = 0; i < values.size(); ++i)
-            texels[i / components_ * across + i % components_] = values[i];
+            texels[i / components_ * across_ + i % components_] = values[i];
         transfer(clEnqueueWriteImage, texels.data());
     }
     std::vector<float> texels() const {
-        std::vector<float> values(size_t(width_) * height_ * (components_ == 3 ? 4 : components_));
+        std::vector<float> values(size_t(width_) * height_ * across_);
         transfer(clEnqueueReadImage, values.data());
         return values;
     }
@@ -58,9 +54,7 @@ class Texture {
                        nullptr, nullptr),
                   CL_SUCCESS);
     }
-    uint32_t components_;
-    PelFormat format_;
-    uint32_t width_, height_;
+    uint32_t components_, across_, width_, height_;  // across: floats of a texel
     void* queue_ = nullptr;
     cl_mem image_ = nullptr;
     Buffer buffer_;
