@@ -5,12 +5,17 @@
 #include "measure/report.h"
 #include "measure/scenes.h"
 #include "measure/temporary_folder.h"
+#include "variable.h"
 
 using Json = nlohmann::ordered_json;
 
 namespace {
 
-class BenchCommand : public CommandTest {};
+class BenchCommand : public CommandTest {
+  protected:
+    Json reportIn(const std::string& folder) const { return Json::parse(read(path(folder + "/bench.json"))); }
+    Json deviceIn(const std::string& folder) const { return reportIn(folder).at("devices").at(0); }
+};
 
 // A report of one device with one operation.
 struct Made {
@@ -125,9 +130,8 @@ TEST_F(BenchCommand, MeasuresTimeShareAndError) {
     EXPECT_EQ(std::distance(begin(left), end(left)), 1);
     expectReport(said);
     EXPECT_EQ(said.at("report"), path("out") + "/bench.json");
-    const auto report = nlohmann::json::parse(read(path("out/bench.json")));
-    EXPECT_EQ(report.at("quick"), true);
-    const auto& device = report.at("devices").at(0);
+    EXPECT_EQ(reportIn("out").at("quick"), true);
+    const Json device = deviceIn("out");
     EXPECT_GT(device.at("copy_bytes_per_second").get<double>(), 1e8);
     EXPECT_GT(device.at("operations_per_second").get<double>(), 1e8);
     for (const char* key : {"name", "platform", "version", "driver"}) EXPECT_NE(device.at(key), "");
@@ -162,23 +166,14 @@ TEST_F(BenchCommand, MeasuresTimeShareAndError) {
 }
 
 TEST(BenchTemporaryFolder, IsForThisUserAndRemoved) {
-    std::string path;
-    {
+    const auto made = [] {
         const pellucid::bench::TemporaryFolder folder("pellucid-test-");
-        path = folder.path();
-        EXPECT_EQ(std::filesystem::status(path).permissions(), std::filesystem::perms::owner_all);
-    }
-    EXPECT_FALSE(std::filesystem::exists(path));
-    const char* const before = std::getenv("TMPDIR");
-    const std::string kept = before ? before : "";
-    ::setenv("TMPDIR", "/none", 1);
-    try {
-        const pellucid::bench::TemporaryFolder folder("pellucid-test-");
-        FAIL() << folder.path();
-    } catch (const std::runtime_error& e) {
-        EXPECT_TRUE(std::string(e.what()).find("TMPDIR") != std::string::npos) << e.what();
-    }
-    before ? ::setenv("TMPDIR", kept.c_str(), 1) : ::unsetenv("TMPDIR");
+        EXPECT_EQ(std::filesystem::status(folder.path()).permissions(), std::filesystem::perms::owner_all);
+        return std::string(folder.path());
+    };
+    EXPECT_FALSE(std::filesystem::exists(made()));
+    const Variable nowhere("TMPDIR", "/none");
+    EXPECT_TRUE(contains(messageOf<std::runtime_error>(made), "TMPDIR"));
 }
 
 // The scene, its truth, the methods on it, and what follows of them.
@@ -196,7 +191,7 @@ TEST_F(BenchCommand, MeasuresMethodsAgainstLight) {
             "bench --quick --limit 600 --only 'ball-4: auto' --only 'ball-4: light' --budget 1e6ms --error "
             "1e-9 --powercap @cap -o @out");
     }
-    const auto device = nlohmann::json::parse(read(path("out/bench.json"))).at("devices").at(0);
+    const Json device = deviceIn("out");
     EXPECT_EQ(device.at("scenes").at(0).at("name"), "ball-4");
     std::map<std::string, double> errors, flips;
     int budgets = 0;
@@ -219,18 +214,16 @@ TEST_F(BenchCommand, MeasuresMethodsAgainstLight) {
         errors[e.at("method")] = e.at("error_rms");
         flips[e.at("method")] = e.at("flip");
         EXPECT_GT(e.at("flip").get<double>(), 1.5 * e.at("flip_noise").get<double>());
-        EXPECT_GT(e.at("flip_noise").get<double>(), 0);
-        EXPECT_GT(e.at("median_ms").get<double>(), 0);
-        EXPECT_GT(e.at("memory_bytes").get<double>(), 0);
+        for (const char* key : {"flip_noise", "median_ms", "memory_bytes"}) EXPECT_GT(e.at(key), 0) << key;
         EXPECT_GT(e.at("subsets").at("terminator").at("pixels").get<int>(), 20);
     }
     EXPECT_EQ(budgets, 2);
     EXPECT_EQ(device.at("budgets").at("frames"), 2);
     ASSERT_EQ(errors.size(), 3u) << "Lambert too, for the times beyond it";
-    EXPECT_LT(errors["auto"], 0.7 * errors["Lambert"]);
-    EXPECT_LT(errors["light"], 0.7 * errors["Lambert"]);
-    EXPECT_LT(flips["auto"], 0.3 * flips["Lambert"]);
-    EXPECT_LT(flips["light"], 0.3 * flips["Lambert"]);
+    for (const char* method : {"auto", "light"}) {
+        EXPECT_LT(errors[method], 0.7 * errors["Lambert"]) << method;
+        EXPECT_LT(flips[method], 0.3 * flips["Lambert"]) << method;
+    }
     EXPECT_GT(errors["light"], 1e-4) << "not the truth itself";
     const auto& answers = device.at("answers");
     EXPECT_LE(answers.at(0).at("take").at("error").get<double>(),
@@ -243,8 +236,8 @@ TEST_F(BenchCommand, MeasuresMethodsAgainstLight) {
     // The record predicts the method's measured time: with one scene, the 90th percentile is that scene.
     done("bench --quick --limit 600 --only 'ball-4: auto, budget' -o @again",
          "PELLUCID_TUNING=" + path("out/tuning.txt"));
-    const auto again = nlohmann::json::parse(read(path("again/bench.json"))).at("devices").at(0);
-    for (const auto& e : again.at("operations"))
+    const Json again = deviceIn("again");
+    for (const Json& e : again.at("operations"))
         if (e.at("group") == "budgets") {
             EXPECT_NEAR(e.at("expected_error"),
                         errors[e.at("took") == "none" ? "Lambert" : e.at("took").get<std::string>()],
@@ -254,8 +247,7 @@ TEST_F(BenchCommand, MeasuresMethodsAgainstLight) {
 
 TEST_F(BenchCommand, StabilityNeedsNothingButTheCommand) {
     done("bench -o @out --only 'stability: normals' --stability-share 1e-3");
-    const auto found =
-        nlohmann::json::parse(read(path("out/bench.json"))).at("devices").at(0).at("stability");
+    const Json found = deviceIn("out").at("stability");
     ASSERT_EQ(found.at("operations").size(), 1u);
     const auto& normals = found.at("operations").at(0);
     EXPECT_GT(normals.at("points").get<int>(), 0);
@@ -327,10 +319,10 @@ TEST_F(BenchCommand, ADriverThatHangsOrCrashesCostsOneOperation) {
             done("bench --quick --only table-shadow --only table-specular -o @out --limit " + row.limit,
                  "LD_PRELOAD='" BAD_DRIVER "' BAD_KERNEL=shadow_texels BAD_ENDING=" + row.ending)
                 .out;
-        const auto report = nlohmann::json::parse(read(path("out/bench.json")));
-        EXPECT_EQ(report.at("limit_s").get<double>(), std::stod(row.limit));
+        EXPECT_EQ(reportIn("out").at("limit_s").get<double>(), std::stod(row.limit));
         std::string names;
-        for (const auto& e : report.at("devices")[0].at("operations")) {
+        const Json device = deviceIn("out");
+        for (const Json& e : device.at("operations")) {
             const std::string name = e.at("name");
             names += name + " ";
             ASSERT_EQ(e.contains("failed"), name == "table-shadow") << e;
@@ -395,22 +387,21 @@ TEST_F(BenchCommand, LimitsTheRegistersOfNvidiasCompiler) {
 // The kept pictures were made by PoCL with one lane, which this test uses too.
 TEST_F(BenchCommand, TheFirstTimeOnAGpuJudgesWhatItMakes) {
     const std::string command =
-        "bench --first-gpu --quick --limit 600 --only table-arc --only 'ball-4: disk' --only 'ball-4: auto' "
-        "--only '270p: disk, 32' -o @out";
+        "bench --first-gpu --quick --limit 600 -o @out --only table-arc --only 'ball-4: disk' ";
     const auto rows = [&] {
         std::map<std::string, Json> found;
-        const Json device = Json::parse(read(path("out/bench.json"))).at("devices").at(0);
+        const Json device = deviceIn("out");
         EXPECT_EQ(device.at("math_width"), 1);
         for (const Json& e : device.at("operations")) found[e.at("name")] = e;
         found["all"] = device.at("first_gpu");
         return found;
     };
     const std::string disk = "ball-4: disk, 32 taps", frame = "270p: disk, 32 taps",
-                      other = "ball-4: auto, error 0.002 of white";
-    EXPECT_TRUE(contains(done(command).out, path("out") + "/bench.html"));
+                      more = "--only 'ball-4: auto' --only '270p: disk, 32'";
+    EXPECT_TRUE(contains(done(command + more).out, path("out") + "/bench.html"));
     std::map<std::string, Json> of = rows();
     EXPECT_EQ(of["all"], (Json{{"checked", 3}, {"out", Json::array()}}));
-    for (const std::string& name : {disk, other, std::string("table-arc")})
+    for (const std::string name : {disk.c_str(), "ball-4: auto, error 0.002 of white", "table-arc"})
         EXPECT_EQ(of[name]["within"], true);
     for (const Json& pass : of[frame]["passes"]) {
         EXPECT_GT(pass.at("ms").get<double>(), 0) << pass;
@@ -424,12 +415,12 @@ TEST_F(BenchCommand, TheFirstTimeOnAGpuJudgesWhatItMakes) {
     EXPECT_TRUE(contains(skips.err, "out of tolerance, or not done:\n  " + disk)) << skips.err;
     of = rows();
     EXPECT_EQ(of[disk]["within"], false);
-    EXPECT_EQ(of[other]["within"], true);
+    EXPECT_EQ(of["table-arc"]["within"], true);
     EXPECT_EQ(cli(command, bad + "crash").exitCode, 1);
     of = rows();
-    EXPECT_EQ(of["all"]["out"], (Json{disk, frame, frame + ", half rate"}));
+    EXPECT_EQ(of["all"]["out"], Json::array({disk}));
     EXPECT_TRUE(contains(of[disk]["failed"].get<std::string>(), "ended by signal 6"));
-    EXPECT_EQ(of[other]["within"], true);
+    EXPECT_EQ(of["table-arc"]["within"], true);
 #endif
     refused("bench --first-gpu --stability -o @none", 2, "leave --stability out");
     refused("bench --first-gpus -o @none", 2, "--first-gpu");
@@ -499,37 +490,32 @@ TEST_F(BenchCommand, VerdictsSurviveNoise) {
             << row.what;
         EXPECT_EQ(result.at("devices")[0].at("operations")[0].at("verdict"), row.verdict) << row.what;
     }
-    Json broken = report();
-    for (auto& e : broken["devices"][0]["operations"])
-        e = {{"name", e["name"]}, {"group", e["group"]}, {"failed", "out of memory"}};
-    write("broken.json", broken.dump());
-    write("old.json", report().dump());
-    write("new.json", report({.median = 12}).dump());
-    EXPECT_EQ(cli("bench compare @broken.json @broken.json").exitCode, 3) << "it fails as before";
-    for (const auto& [name, said] : {std::pair{"broken", "1 fail,"}, {"new", "1 slower"}}) {
-        const std::string command = std::string("bench compare @old.json @") + name + ".json";
-        const Result result = cli(command);
-        EXPECT_EQ(result.exitCode, 0);
-        EXPECT_TRUE(contains(result.out, said));
-        EXPECT_EQ(cli(command + " --fail-if-slower 10%").exitCode, 1);
-        EXPECT_EQ(cli(command + " --fail-if-less-accurate 50%").exitCode, name == std::string("broken"));
-    }
 }
 
 TEST_F(BenchCommand, FailsOnlyWhereItIsAskedTo) {
+    Json broken = report();
+    Json& only = broken["devices"][0]["operations"][0];
+    only = {{"name", only["name"]}, {"group", only["group"]}, {"failed", "out of memory"}};
+    write("broken.json", broken.dump());
     write("old.json", report().dump());
     write("slow.json", report({.median = 12}).dump());
     write("bad.json", report({.error = 2e-6}).dump());
-    const struct {
-        const char* more;
-        int exitCode;
-    } rows[] = {
-        {"@slow.json --fail-if-slower 10%", 1},        {"@slow.json --fail-if-slower 30%", 0},
-        {"@bad.json --fail-if-slower 10%", 0},         {"@bad.json --fail-if-less-accurate 50%", 1},
-        {"@bad.json --fail-if-less-accurate 150%", 0}, {"@old.json @slow.json --fail-if-slower 10%", 1},
-        {"@slow.json @bad.json -o @all.html", 0}};
-    for (const auto& row : rows)
-        EXPECT_EQ(cli(std::string("bench compare @old.json ") + row.more).exitCode, row.exitCode) << row.more;
+    EXPECT_EQ(cli("bench compare @broken.json @broken.json").exitCode, 3) << "it fails as before";
+    for (const auto& [more, exitCode, said] : {std::tuple{"@slow.json", 0, "1 slower"},
+                                               {"@slow.json --fail-if-slower 10%", 1, ""},
+                                               {"@slow.json --fail-if-slower 30%", 0, ""},
+                                               {"@bad.json --fail-if-slower 10%", 0, ""},
+                                               {"@bad.json --fail-if-less-accurate 50%", 1, ""},
+                                               {"@bad.json --fail-if-less-accurate 150%", 0, ""},
+                                               {"@broken.json", 0, "1 fail,"},
+                                               {"@broken.json --fail-if-slower 10%", 1, ""},
+                                               {"@broken.json --fail-if-less-accurate 50%", 1, ""},
+                                               {"@old.json @slow.json --fail-if-slower 10%", 1, ""},
+                                               {"@slow.json @bad.json -o @all.html", 0, ""}}) {
+        const Result result = cli(std::string("bench compare @old.json ") + more);
+        EXPECT_EQ(result.exitCode, exitCode) << more;
+        EXPECT_TRUE(contains(result.out, said)) << more;
+    }
     EXPECT_TRUE(contains(read(path("all.html")), "table-arc"));
     refused("bench compare @old.json", 2, "two or more reports");
     refused("bench compare @old.json @slow.json --fail-if-slower 10", 2, "a number and %");

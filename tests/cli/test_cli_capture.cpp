@@ -1,8 +1,7 @@
 // PELLUCID_CAPTURE: `pellucid shade` makes the same bits of a captured frame as the program it comes from.
-#include "cli_run.h"
+#include "cli_shade.h"
 #include "diffusion/scatter_scene.h"
 #include "eye/eye_frame.h"
-#include "io/image/image_file.h"
 #include "shading/scattering_frame.h"
 #include "variable.h"
 
@@ -37,10 +36,15 @@ class Capture : public CommandTest {
             shader.execute();
         });
     }
-    std::vector<float> radianceOf(const std::string& file) const {
-        const pellucid::io::Image image = pellucid::io::readImage(file);
-        const std::vector<std::string> names{"R", "G", "B"};
-        return image.interleaved(names);
+    void expectBits(const std::string& file, const std::vector<float>& expected) const {
+        const pellucid::io::Image image = pellucid::io::readImage(path(file));
+        const std::vector<float> is = image.channels.size() == 1 ? image.channels[0].pixels
+                                                                 : image.interleaved(shade_files::colorNames);
+        ASSERT_EQ(is.size(), expected.size());
+        EXPECT_EQ(std::memcmp(is.data(), expected.data(), 4 * is.size()), 0) << file;
+    }
+    static void expectSomeLight(const std::vector<float>& values) {
+        EXPECT_TRUE(std::ranges::any_of(values, [](float v) { return v > 0; }));
     }
     // Captures an execution, and compares what the command makes of it.
     void expectRepeats(Shader& shader, const Buffer& target) {
@@ -49,23 +53,15 @@ class Capture : public CommandTest {
     }
     void expectRepeats(const std::string& name, const std::vector<float>& expected) {
         EXPECT_EQ(said_, "");
-        EXPECT_TRUE(std::ranges::any_of(expected, [](float v) { return v > 0; }));
+        expectSomeLight(expected);
         done("shade @captures/" + name + "/scene.toml -o @again.exr");
-        EXPECT_TRUE(sameBits(radianceOf(path("again.exr")), expected));
+        expectBits("again.exr", expected);
         fs::rename(path("captures"), path("captures-" + std::to_string(++number_)));
     }
     void expectRepeats(const Frame& f, const std::function<void(Shader&)>& change = {}) {
         auto [shader, target] = shaderOf(f);
         if (change) change(shader);
         expectRepeats(shader, target);
-    }
-    static ::testing::AssertionResult sameBits(const std::vector<float>& a, const std::vector<float>& b) {
-        if (a.size() != b.size()) return ::testing::AssertionFailure() << a.size() << " and " << b.size();
-        size_t others = 0;
-        for (size_t i = 0; i < a.size(); ++i)
-            others += std::bit_cast<uint32_t>(a[i]) != std::bit_cast<uint32_t>(b[i]);
-        if (!others) return ::testing::AssertionSuccess();
-        return ::testing::AssertionFailure() << others << " of " << a.size() << " values differ";
     }
 
     std::string said_;
@@ -94,10 +90,8 @@ TEST_F(Capture, RepeatsLightsAndTables) {
     const Buffer diffuse = setTarget(device(), shader, f, PEL_SLOT_OUT_DIFFUSE),
                  thickness = setTarget(device(), shader, f, PEL_SLOT_OUT_THICKNESS);
     expectRepeats(shader, target);
-    const std::string folder = path("captures-1/shader-1/");
-    EXPECT_TRUE(sameBits(radianceOf(folder + "diffuse.exr"), diffuse.readAll<float>()));
-    EXPECT_TRUE(sameBits(pellucid::io::readImage(folder + "thickness.exr").channels[0].pixels,
-                         thickness.readAll<float>()));
+    expectBits("captures-1/shader-1/diffuse.exr", diffuse.readAll<float>());
+    expectBits("captures-1/shader-1/thickness.exr", thickness.readAll<float>());
     // Textures that nothing reads need no coordinates.
     expectRepeats(randomFrame(7, 32, 16, 1), [](Shader& unread) {
         const Buffer values(device(), std::vector<float>(12, 0.5f));
@@ -175,13 +169,8 @@ TEST_F(Capture, RepeatsEveryMethodAndProfile) {
             for (auto& [id, m] : f.materials) m.scatterTaps = 16, m.albedoBefore = 0.5f;
         }
         f.lights.resize(3);
-        for (int i = 1; i < 3; ++i) {
-            PelLight& lamp = f.lights[size_t(i)].params;
-            lamp.type = i == 1 ? PEL_LIGHT_SPHERE : PEL_LIGHT_RECTANGLE;
-            lamp.position[0] = 20, lamp.position[2] = 40;
-            lamp.radius = 7, lamp.halfWidth[0] = 5, lamp.halfHeight[1] = -3;
-            std::fill_n(lamp.color, 3, 800.0f);
-        }
+        f.lights[1].params = pellucid::sphereLight({20, 0, 40}, 7, {800, 800, 800});
+        f.lights[2].params = pellucid::rectangleLight({20, 0, 40}, {5, 0, 0}, {0, -3, 0}, {800, 800, 800});
         f.lights[0].params.shadowMapVersion = 1;
         const Buffer map(device(), f.lights[0].map.values);
         for (const float side : {-5.0f, 5.0f}) {
@@ -231,8 +220,7 @@ TEST_F(Capture, RepeatsFormsOfShadowMaps) {
         light.maps = {map(PEL_LIGHT_SHADOW_MAP, 32, 32), map(PEL_LIGHT_CASCADE_1, 24, 40),
                       map(PEL_LIGHT_CASCADE_2, 16, 16)};
         Light lamp;
-        lamp.params.type = PEL_LIGHT_POINT;
-        lamp.params.position[0] = 20, lamp.params.position[1] = 10, lamp.params.position[2] = 40;
+        lamp.params = pellucid::pointLight({20, 10, 40}, {800, 800, 800});
         for (int r = 0; r < 3; ++r)
             lamp.params.worldToShadow[5 * r] = 1,
                                           lamp.params.worldToShadow[4 * r + 3] = -lamp.params.position[r];
@@ -241,7 +229,6 @@ TEST_F(Capture, RepeatsFormsOfShadowMaps) {
         lamp.params.shadowExponent = 80;
         lamp.params.shadowDepthRange = 100;
         lamp.params.shadowFilterTexels = 8;
-        std::fill_n(lamp.params.color, 3, 800.0f);
         lamp.maps = {map(PEL_LIGHT_SHADOW_MAP, 12, 72)};
         f.lights = {light, lamp};
         expectRepeats(f);
@@ -314,7 +301,7 @@ TEST_F(Capture, RepeatsScatteringAlone) {
     EXPECT_FALSE(fs::exists(path("captures/head-2")));
     const std::string file = "@captures/head-1/scene.toml";
     done("shade " + file + " -o @light.exr --picture @light.png");
-    EXPECT_TRUE(sameBits(radianceOf(path("light.exr")), sum));
+    expectBits("light.exr", sum);
     EXPECT_TRUE(fs::exists(path("light.png")));
     refused("shade " + file + " -o @o.exr --stats", 2, "[scatter] table, whose result is one image");
     refused("warm-up " + file, 3, "nothing to shade: `pellucid shade` alone");
@@ -425,16 +412,14 @@ TEST_F(Capture, SaysWhatIsLeftOut) {
          {"PelShaderOptions.scratchBudget: --scratch-mib 64", "PelShaderOptions.invalidColor",
           "PelLight 0.toLight", "PelLight 8.spotDirection", "lights' 18 images share buffers"})
         EXPECT_TRUE(contains(said_, words));
-    const std::vector<float> expected = target.readAll<float>();
-    EXPECT_TRUE(std::ranges::any_of(expected, [](float v) { return v > 0; }));
+    expectSomeLight(target.readAll<float>());
 
     write("a_file", "");
     const Frame plain = randomFrame(1, 32, 16, 1);
     for (const char* folder : {"captures", "a_file"}) {
         auto [other, kept] = shaderOf(plain);
         capture(other, folder);
-        const std::vector<float> shaded = kept.readAll<float>();
-        EXPECT_TRUE(std::ranges::any_of(shaded, [](float v) { return v > 0; }));
+        expectSomeLight(kept.readAll<float>());
     }
     EXPECT_TRUE(contains(said_, "PELLUCID_CAPTURE: "));
     const Result heard =

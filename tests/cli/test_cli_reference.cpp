@@ -1,7 +1,11 @@
 // `pellucid reference` and `pellucid compare` as users run them: a ball whose reference has a closed form.
 #include "cli_shade.h"
 #include "io/image/flip.h"
+#include "reference/shade.h"
 #include "sample/mesh.h"
+
+using namespace pellucid;
+using namespace shade_files;
 
 namespace {
 
@@ -26,25 +30,23 @@ class CliReference : public CommandTest {
             const double n[3] = {u, v, std::sqrt(std::max(0.0, 1 - u * u - v * v))};
             return inside(u, v) ? n[c] : 0;
         };
-        const shade_files::Names normals{"N.X", "N.Y", "N.Z"};
-        shade_files::addChannels(gbuffer_, shade_files::positionNames,
-                                 [&](int x, int y, size_t c) { return radius * normal(x, y, c); });
-        shade_files::addChannels(gbuffer_, normals, normal);
-        shade_files::addChannels(gbuffer_, {"Id.X"},
-                                 [&](int x, int y, size_t) { return normal(x, y, 2) > 0; });
-        pellucid::io::writeExr(path("g.exr"), gbuffer_);
-        scene_.channels[PEL_SLOT_POSITION] = shade_files::positionNames;
+        const Names normals{"N.X", "N.Y", "N.Z"};
+        addChannels(gbuffer_, positionNames,
+                    [&](int x, int y, size_t c) { return radius * normal(x, y, c); });
+        addChannels(gbuffer_, normals, normal);
+        addChannels(gbuffer_, {"Id.X"}, [&](int x, int y, size_t) { return normal(x, y, 2) > 0; });
+        io::writeExr(path("g.exr"), gbuffer_);
+        scene_.channels[PEL_SLOT_POSITION] = positionNames;
         scene_.channels[PEL_SLOT_NORMAL_SHADING] = normals;
         scene_.channels[PEL_SLOT_MATERIAL] = {"Id.X"};
         scene_.materials.resize(1);
         scene_.materials[0].profile = "skin";
         scene_.lights.resize(1);
-        const float toLight[3] = {1, 0, 0};
-        std::copy(toLight, toLight + 3, scene_.lights[0].light.toLight);
-        pellucid::io::writeScene(path("s.toml"), scene_);
+        scene_.lights[0].light = directionalLight({1, 0, 0}, {1, 1, 1});
+        writeScene();
     }
     void writeBall(int rings) const {
-        const auto ball = pellucid::sample::makeSphere(radius, rings, 2 * rings);
+        const auto ball = sample::makeSphere(radius, rings, 2 * rings);
         std::ostringstream off;
         off << "OFF\n" << ball.positions.size() / 3 << ' ' << ball.triangles.size() / 3 << " 0";
         for (size_t i = 0; i < ball.positions.size(); ++i) off << (i % 3 ? " " : "\n") << ball.positions[i];
@@ -53,10 +55,13 @@ class CliReference : public CommandTest {
     }
     const std::vector<float>& given(const char* name) const { return gbuffer_.channel(name).pixels; }
     void npy(const std::string& name, const Shape& shape, const std::vector<float>& values) const {
-        pellucid::io::writeNpy(path(name), shape, values);
+        io::writeNpy(path(name), shape, values);
     }
-    pellucid::io::Image gbuffer_;
-    pellucid::io::SceneFile scene_;
+    void writeScene() const { io::writeScene(path("s.toml"), scene_); }
+    io::Image image(const std::string& file) const { return io::readImage(path(file)); }
+    auto array(const std::string& file) const { return io::readNpy(path(file)); }
+    io::Image gbuffer_;
+    io::SceneFile scene_;
 };
 
 const std::string ofBall = "reference @ball.off --scene @s.toml ", picture = "--gbuffer @g.exr ",
@@ -70,7 +75,7 @@ TEST_F(CliReference, PixelsOfABall) {
     expectReport(report);
     EXPECT_LT(report["points_off_mesh"].get<double>(), 1);
     EXPECT_EQ(report["points"], std::ranges::count(given("Id.X"), 1.0f));
-    const pellucid::io::Image out = pellucid::io::readImage(path("o.exr"));
+    const io::Image out = image("o.exr");
     for (size_t i = 0; i < out.pixelCount(); ++i) {
         const float light = out.channel("Irradiance.R").pixels[i];
         EXPECT_NEAR(light, std::max(0.0f, given("P.X")[i] / float(radius)), given("Id.X")[i] ? 0.1 : 0);
@@ -83,12 +88,12 @@ TEST_F(CliReference, PixelsOfABall) {
 
 TEST_F(CliReference, VerticesUnitAndProfile) {
     done(ofBall + fine + "-o @v.npy");
-    const auto values = pellucid::io::readNpy(path("v.npy"));
+    const auto values = array("v.npy");
     ASSERT_EQ(values.shape.size(), 2u);
     EXPECT_EQ(values.shape[1], 3u);
     // A ball of 10 cm hardly scatters.
     done(ofBall + picture + fine + "--unit-mm 10 -o @o.exr");
-    const pellucid::io::Image wide = pellucid::io::readImage(path("o.exr"));
+    const io::Image wide = image("o.exr");
     for (size_t i = 0; i < wide.pixelCount(); ++i) {
         if (given("P.X")[i] < 2) continue;
         EXPECT_NEAR(wide.channel("Surface.B").pixels[i], wide.channel("Irradiance.B").pixels[i],
@@ -97,28 +102,27 @@ TEST_F(CliReference, VerticesUnitAndProfile) {
     // The material's profile, unless another is named.
     done(ofBall + "--finest 0.5 --coarsest 2 --profile marble -o @named.npy");
     scene_.materials[0].profile = "marble";
-    pellucid::io::writeScene(path("s.toml"), scene_);
+    writeScene();
     done(ofBall + "--finest 0.5 --coarsest 2 -o @own.npy");
     EXPECT_TRUE(read(path("own.npy")) == read(path("named.npy")));
 }
 
 TEST_F(CliReference, AmbientLightIsThatOfItsHarmonics) {
     scene_.lights.clear();
-    PelAmbient& ambient = scene_.ambient;
-    ambient.constant[0] = 2;
-    for (int i = 0; i < 9; ++i) ambient.sh[i][0] = 0.1f * float(i + 1), ambient.sh[i][1] = i == 1;
-    pellucid::io::writeScene(path("s.toml"), scene_);
+    reference::Ambient truth{{2, 0, 0}, {}};
+    scene_.ambient.constant[0] = 2;
+    for (size_t i = 0; i < 9; ++i) {
+        truth.harmonics[i] = {0.1 * double(i + 1), double(i == 1), 0};
+        for (int c = 0; c < 3; ++c) scene_.ambient.sh[i][c] = float(truth.harmonics[i][c]);
+    }
+    writeScene();
     done(ofBall + picture + fine + "-o @o.exr");
-    const pellucid::io::Image out = pellucid::io::readImage(path("o.exr"));
+    const io::Image out = image("o.exr");
     for (size_t i = 0; i < out.pixelCount(); ++i) {
         if (!given("Id.X")[i]) continue;
-        const double x = given("N.X")[i], y = given("N.Y")[i], z = given("N.Z")[i], pi = std::numbers::pi,
-                     linear = std::sqrt(3 / (4 * pi)), square = std::sqrt(15 / (4 * pi)),
-                     sum = 0.1 / std::sqrt(4 * pi) + linear * (0.2 * y + 0.3 * z + 0.4 * x) +
-                           square * (0.5 * x * y + 0.6 * y * z + 0.7 * std::sqrt(1 / 12.0) * (3 * z * z - 1) +
-                                     0.8 * x * z + 0.45 * (x * x - y * y));
-        EXPECT_NEAR(out.channel("Irradiance.R").pixels[i], 2 + sum, 0.02) << x << ' ' << y << ' ' << z;
-        EXPECT_NEAR(out.channel("Irradiance.G").pixels[i], std::max(0.0, linear * y), 0.02);
+        const auto light = reference::irradiance(truth, {given("N.X")[i], given("N.Y")[i], given("N.Z")[i]});
+        EXPECT_NEAR(out.channel("Irradiance.R").pixels[i], light.x, 0.02) << i;
+        EXPECT_NEAR(out.channel("Irradiance.G").pixels[i], light.y, 0.02) << i;
     }
 }
 
@@ -128,9 +132,9 @@ TEST_F(CliReference, LampsEndAtTheirRangeAndCone) {
     lamp.position[0] = 20, lamp.spotDirection[0] = -1, lamp.spotDirection[2] = 0;
     const auto lit = [&](PelLightType type, float range) {
         lamp.type = type, lamp.range = range;
-        pellucid::io::writeScene(path("s.toml"), scene_);
+        writeScene();
         done(ofBall + picture + "--finest 2 --coarsest 4 -o @o.exr");
-        return pellucid::io::readImage(path("o.exr")).channel("Irradiance.R").pixels;
+        return image("o.exr").channel("Irradiance.R").pixels;
     };
     lamp.spotCosInner = 0.92f, lamp.spotCosOuter = 0.88f;
     const auto whole = lit(PEL_LIGHT_POINT, 0), ended = lit(PEL_LIGHT_POINT, 14),
@@ -161,7 +165,7 @@ TEST_F(CliReference, WalkWritesHalvesForCompare) {
     const auto medium = reportOf(walk + "@w.exr", "OMP_NUM_THREADS=3")["media"][0];
     EXPECT_NEAR(medium["mean_free_path"][1].get<double>(), 1.087 * 0.5, 0.01);
     EXPECT_NEAR(medium["single_scattering_albedo"][2].get<double>(), 0.99055, 1e-4);
-    const pellucid::io::Image out = pellucid::io::readImage(path("w.exr"));
+    const io::Image out = image("w.exr");
     double difference = 0;
     int count = 0;
     for (size_t i = 0; i < out.pixelCount(); ++i) {
@@ -182,25 +186,25 @@ TEST_F(CliReference, WalkWritesHalvesForCompare) {
     EXPECT_EQ(report["subsets"]["thin"]["pixels"].get<size_t>(), 0u);
     EXPECT_NEAR(report["all"]["noise"][0].get<double>(), std::sqrt(difference / count) / 2, 1e-5);
     // As A, a walk is its mean.
-    pellucid::io::Image mean;
+    io::Image mean;
     mean.width = mean.height = side;
-    mean.addInterleaved(shade_files::colorNames, out.interleaved(shade_files::colorNames));
-    pellucid::io::writeExr(path("mean.exr"), mean);
+    mean.addInterleaved(colorNames, out.interleaved(colorNames));
+    io::writeExr(path("mean.exr"), mean);
     EXPECT_LT(reportOf("compare @w.exr @mean.exr")["all"]["rmse_all"].get<double>(), 1e-6);
 }
 
 // In a walk too, and at vertices.
 TEST_F(CliReference, MaterialsWithoutAProfileReflectWhatArrives) {
     scene_.materials[0].profile = "";
-    pellucid::io::writeScene(path("s.toml"), scene_);
+    writeScene();
     done(ofBall + picture + "-o @o.exr");
     done(ofBall + picture + "--walk -o @w.exr");
-    const pellucid::io::Image plain = pellucid::io::readImage(path("o.exr"));
+    const io::Image plain = image("o.exr");
     EXPECT_EQ(plain.channel("Surface.R").pixels, plain.channel("Irradiance.R").pixels);
-    EXPECT_EQ(pellucid::io::readImage(path("w.exr")).channel("Second.R").pixels, plain.channel("R").pixels);
+    EXPECT_EQ(image("w.exr").channel("Second.R").pixels, plain.channel("R").pixels);
     done(ofBall + "-o @v.npy");
     done(ofBall + "--walk -o @w.npy");
-    const auto once = pellucid::io::readNpy(path("v.npy")), twice = pellucid::io::readNpy(path("w.npy"));
+    const auto once = array("v.npy"), twice = array("w.npy");
     EXPECT_EQ(twice.shape, (Shape{2, once.shape[0], 3}));
     EXPECT_GT(*std::max_element(once.values.begin(), once.values.end()), 0.8f);
     EXPECT_TRUE(std::equal(once.values.begin(), once.values.end(),
@@ -210,12 +214,12 @@ TEST_F(CliReference, MaterialsWithoutAProfileReflectWhatArrives) {
 // The corners of a flat square have normals that lean away from the light.
 TEST_F(CliReference, PartsKeepTheNormalsOfTheirFile) {
     scene_.materials[0].profile = "";
-    pellucid::io::writeScene(path("s.toml"), scene_);
+    writeScene();
     write("leaning.obj",
           "v 0 0 0\nv 0 9 0\nv 0 9 9\nv 0 0 9\nvn .6 .8 0\ng one\nf 1//1 2//1 3//1 4//1\ng two\nf 4 3 2\n");
     for (const char* part : {"", "--part one ", "--part 1=one --part 2=two "}) {
         done("reference @leaning.obj --scene @s.toml -o @v.npy " + std::string(part));
-        const auto light = pellucid::io::readNpy(path("v.npy")).values;
+        const auto light = array("v.npy").values;
         for (size_t i = 0; i < 12; ++i) EXPECT_NEAR(light[i], 0.6, 1e-5) << part;
     }
 }
@@ -230,7 +234,7 @@ TEST_F(CliReference, SkinIsWalkedInItsLayers) {
     EXPECT_NEAR(medium["epidermis"].get<double>(), 0.01, 1e-6) << "cm";
     refused(walk + "--reflectance 0.5 0.5 0.5", 3, "follows from its pigments");
     scene_.channels[PEL_SLOT_SKIN] = {"Melanin.V", "Blood.V"};
-    pellucid::io::writeScene(path("s.toml"), scene_);
+    writeScene();
     refused(walk + "--strict", 3, "maps of pigments are left out");
 }
 
@@ -243,7 +247,7 @@ TEST_F(CliReference, WalkOfTheVerticesAndBodies) {
     const std::string two = "reference @two.obj --scene @s.toml -o @v.npy ",
                       walk = two + "--walk --samples 4 --profile @burley.toml ";
     done(walk + "--part 1=one --part 2=two");
-    EXPECT_EQ(pellucid::io::readNpy(path("v.npy")).shape, (Shape{2, 8, 3}));
+    EXPECT_EQ(array("v.npy").shape, (Shape{2, 8, 3}));
     std::filesystem::remove(path("v.npy"));
     refused(walk + "--part one --part two", 2, "ID=GROUP");
     refused(walk + "--part 1=three", 3, "has no part 'three'");
@@ -296,13 +300,13 @@ TEST_F(CliReference, WrongUseIsRefused) {
 }
 
 TEST_F(CliReference, Compare) {
-    pellucid::io::Image a;
+    io::Image a;
     a.width = a.height = side;
     std::vector<float> values(3 * side * side, 0.5f);
-    a.addInterleaved(shade_files::colorNames, values);
-    pellucid::io::writeExr(path("a.exr"), a);
+    a.addInterleaved(colorNames, values);
+    io::writeExr(path("a.exr"), a);
     for (float& v : a.channels[1].pixels) v += 0.1f;
-    pellucid::io::writeExr(path("b.exr"), a);
+    io::writeExr(path("b.exr"), a);
     const std::string compare = "compare @b.exr @a.exr --gbuffer @g.exr --scene @s.toml";
     const auto report = reportOf(compare + " --picture @d.png");
     EXPECT_EQ(report["a"], path("b.exr"));
@@ -310,8 +314,7 @@ TEST_F(CliReference, Compare) {
     EXPECT_EQ(report["width"], side);
     EXPECT_NEAR(report["all"]["rmse"][1].get<double>(), 0.1, 1e-6);
     EXPECT_EQ(report["all"]["rmse"][0].get<double>(), 0);
-    size_t covered = 0;
-    for (float id : given("Id.X")) covered += id > 0;
+    const auto covered = size_t(std::ranges::count(given("Id.X"), 1.0f));
     EXPECT_EQ(report["all"]["pixels"].get<size_t>(), covered);
     EXPECT_GT(report["subsets"]["unlit"]["pixels"].get<size_t>(), covered / 3);
     EXPECT_GT(report["subsets"]["rest"]["pixels"].get<size_t>(), covered / 4);
@@ -324,7 +327,7 @@ TEST_F(CliReference, Compare) {
     EXPECT_TRUE(contains(done(compare).err, "without ambient light, or of the light's wide_shadow"));
     EXPECT_FALSE(report["all"].contains("flip")) << "the background does not count";
     EXPECT_NEAR(reportOf("compare @b.exr @a.exr")["all"]["flip"].get<double>(),
-                pellucid::io::flip(values, a.interleaved(shade_files::colorNames), side), 1e-6);
+                io::flip(values, a.interleaved(colorNames), side), 1e-6);
     expectKept("d.png", "compare.png", "0.0003");
     // In other formats; exit codes.
     npy("a.npy", {side, side, 3}, values);
@@ -373,7 +376,7 @@ TEST_F(CliReference, ComparePaintsTheLargestChannel) {
         for (size_t i = 0; i < size * size / 2; ++i) values[3 * i + c] += 0.1f;
         npy("other.npy", {size, size, 3}, values);
         done("compare @grey.npy @other.npy --picture @d.png");
-        const pellucid::io::Image sheet = pellucid::io::readImage(path("d.png"));
+        const io::Image sheet = image("d.png");
         std::vector<float> column;
         for (size_t y = 0; y < size_t(sheet.height); ++y)
             for (const auto& channel : sheet.channels)

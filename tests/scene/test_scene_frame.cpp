@@ -220,8 +220,6 @@ TEST_F(SceneFrames, UpdateSetsWhatChanged) {
     s.eyes[0].eye.gaze[0] = 0.2f;
     s.materials[0].material.specular = 0.4f;
     const auto moved = updated();
-    std::printf("steady: %lu launches, %lu fills; after a move %lu, %lu\n", steady[0], steady[1], moved[0],
-                moved[1]);
     EXPECT_EQ(moved, steady);
     EXPECT_EQ(steady[2], 0u) << "buffers";
     const auto expectAsNew = [&](const char* what) {
