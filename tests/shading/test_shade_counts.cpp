@@ -76,22 +76,24 @@ TEST_P(ShadeCounts, PixelsAreTheHostsOwn) {
         Frame f = countedFrame(seed, 97 + 8 * seed, 41);
         const Counts c = countsOf(f, tables);
         EXPECT_LE(c.doubtful, 3u);
-        for (const bool skip : {true, false})
-            for (const PelTileLists lists : allLists) {
-                SCOPED_TRACE(testing::Message() << "seed " << seed << " skip " << skip << " lists " << lists);
-                f.options.disableSkipping = !skip;
-                f.options.tileLists = lists;
-                shade(device, f, tables, &stats);
-                EXPECT_EQ(stats.pixelsTotal, f.pixels());
-                EXPECT_EQ(stats.pixelsShaded, c.shaded);
-                EXPECT_EQ(stats.pixelsInvalid, c.invalid);
-                EXPECT_NEAR(double(stats.pixelsShadowLut), double(c.shadowLut), double(c.doubtful));
-                EXPECT_NEAR(double(stats.pixelsSpecular), double(c.specular), double(c.doubtful));
-                const uint64_t thick = skip ? c.thickness : (c.shaded - c.invalid) * f.lights.size();
-                EXPECT_NEAR(double(stats.pixelsThickness), double(thick), double(skip * c.doubtful));
-                EXPECT_EQ(stats.pixelsWideShadow, 0u);
-                EXPECT_EQ(stats.pixelsShadowTexels, 0u);
-            }
+        for (const auto& [lists, skip] : {std::pair{PEL_TILES_ONE_LIST, true},
+                                          {PEL_TILES_PER_VARIANT, true},
+                                          {PEL_TILES_NO_LIST, true},
+                                          {PEL_TILES_ONE_LIST, false}}) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed << " skip " << skip << " lists " << lists);
+            f.options.disableSkipping = !skip;
+            f.options.tileLists = lists;
+            shade(device, f, tables, &stats);
+            EXPECT_EQ(stats.pixelsTotal, f.pixels());
+            EXPECT_EQ(stats.pixelsShaded, c.shaded);
+            EXPECT_EQ(stats.pixelsInvalid, c.invalid);
+            EXPECT_NEAR(double(stats.pixelsShadowLut), double(c.shadowLut), double(c.doubtful));
+            EXPECT_NEAR(double(stats.pixelsSpecular), double(c.specular), double(c.doubtful));
+            const uint64_t thick = skip ? c.thickness : (c.shaded - c.invalid) * f.lights.size();
+            EXPECT_NEAR(double(stats.pixelsThickness), double(thick), double(skip * c.doubtful));
+            EXPECT_EQ(stats.pixelsWideShadow, 0u);
+            EXPECT_EQ(stats.pixelsShadowTexels, 0u);
+        }
     }
 }
 
