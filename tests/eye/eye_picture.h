@@ -15,7 +15,7 @@ struct EyeScene {
     PelAmbient ambient = pelAmbientDefaults();
     double unit = 10;  // mm
     Vec3 camera{5.2, 1.1, 9.3};
-    int size = 128, textureSize = 0;
+    int size = 80, textureSize = 0;
     std::vector<float> texture;                    // RGB
     std::vector<float> wetness, shadow, indirect;  // per pixel; empty: none
     bool skipping = true;

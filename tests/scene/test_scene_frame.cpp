@@ -4,6 +4,7 @@
 #include "cl/cl_spy.h"
 #include "fields/field_ranges.h"
 #include "io/io_files.h"
+#include "io/lut/lut_file.h"
 
 using namespace pellucid;
 
@@ -336,6 +337,7 @@ TEST_F(FieldBounds, OfMaterials) {
     for (const PelScattering scattering : {PEL_SCATTERING_AUTO, PEL_SCATTERING_PREINTEGRATED,
                                            PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_SCREEN}) {
         io::SceneFile s = scene();
+        s.eyes.clear();  // whose tables take time, and which are of another material
         PelMaterial& m = s.materials[0].material;
         m.scattering = scattering;
         m.specular = 1;
@@ -346,7 +348,11 @@ TEST_F(FieldBounds, OfMaterials) {
 }
 
 TEST_F(FieldBounds, OfLights) {
-    const io::SceneFile sun = scene();
+    PelEyeLutDesc small = pelEyeLutDescDefaults();
+    small.width = small.height = small.depth = 8;
+    io::writeLut(path("caustics.exr"), Lut(device_, small));
+    io::SceneFile sun = scene();
+    sun.eyes[0].caustics = path("caustics.exr");
     io::SceneFile moments = sun, spot = sun;
     moments.lights[0].light.shadowContent = PEL_SHADOW_CONTENT_MOMENTS;
     moments.lights[0].secondChannel = "Z";
