@@ -91,7 +91,7 @@ std::vector<std::pair<std::string, reference::Mesh>> meshes() {
     orient(all.back().second);
     addNoise(all.back().second, 0.05, 6);
     // So far away that rounding of positions shows.
-    const FlatMesh refined = redGreen(delaunay(uniformPoints(sized(400, 120), 5)), 0.3, 2);
+    const FlatMesh refined = poked(delaunay(uniformPoints(sized(400, 120), 5)), 0.3, 2, 2);
     all.emplace_back("refined ellipsoid, far away", lifted(refined, ellipsoidCap(1, 1.5, 2)).mesh);
     for (Vec3& p : all.back().second.positions) p = p + Vec3{30, 40, -20};
     return all;

@@ -5,13 +5,6 @@
 #include <random>
 
 namespace reference {
-namespace {
-
-Vec2 middle(Vec2 a, Vec2 b) {
-    return {(a.x + b.x) / 2, (a.y + b.y) / 2};
-}
-
-}  // namespace
 
 std::vector<Vec2> uniformPoints(int count, uint32_t seed) {
     std::mt19937 random(seed);
@@ -70,53 +63,6 @@ FlatMesh poked(const FlatMesh& mesh, double part, int rounds, uint32_t seed) {
         open = std::move(next);
     }
     out.triangles.insert(out.triangles.end(), open.begin(), open.end());
-    return out;
-}
-
-FlatMesh redGreen(const FlatMesh& mesh, double part, uint32_t seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> unit(0, 1);
-    FlatMesh out{mesh.points, {}};
-    std::map<std::pair<int, int>, int> middles;
-    const auto middleOf = [&](int a, int b) {
-        const auto found = middles.find(std::minmax(a, b));
-        return found == middles.end() ? -1 : found->second;
-    };
-    const auto cut = [&](int a, int b) {
-        const auto [found, added] = middles.try_emplace(std::minmax(a, b), int(out.points.size()));
-        if (added) out.points.push_back(middle(out.points[size_t(a)], out.points[size_t(b)]));
-    };
-    for (const Triangle& t : mesh.triangles)
-        if (unit(random) < part)
-            for (int i = 0; i < 3; ++i) cut(t[i], t[(i + 1) % 3]);
-    // Two cut edges make it three.
-    for (bool more = true; more;) {
-        more = false;
-        for (const Triangle& t : mesh.triangles) {
-            int edges = 0;
-            for (int i = 0; i < 3; ++i) edges += middleOf(t[i], t[(i + 1) % 3]) >= 0;
-            if (edges != 2) continue;
-            more = true;
-            for (int i = 0; i < 3; ++i) cut(t[i], t[(i + 1) % 3]);
-        }
-    }
-    for (const Triangle& t : mesh.triangles) {
-        const int m[3] = {middleOf(t[0], t[1]), middleOf(t[1], t[2]), middleOf(t[2], t[0])};
-        if (m[0] >= 0 && m[1] >= 0) {
-            for (const Triangle& s :
-                 {Triangle{t[0], m[0], m[2]}, {t[1], m[1], m[0]}, {t[2], m[2], m[1]}, {m[0], m[1], m[2]}})
-                out.triangles.push_back(s);
-            continue;
-        }
-        int i = 0;
-        while (i < 3 && m[i] < 0) ++i;
-        if (i == 3) {
-            out.triangles.push_back(t);
-            continue;
-        }
-        out.triangles.push_back({t[i], m[i], t[(i + 2) % 3]});
-        out.triangles.push_back({m[i], t[(i + 1) % 3], t[(i + 2) % 3]});
-    }
     return out;
 }
 

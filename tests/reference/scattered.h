@@ -21,9 +21,6 @@ FlatMesh flatGrid(int columns, int rows);
 // Splits `part` of the triangles at their centroids, then `part` of what these became, and so on, `rounds`
 // times.
 FlatMesh poked(const FlatMesh& mesh, double part, int rounds, uint32_t seed);
-// Cuts `part` of the triangles into four and halves those beside them (red-green refinement [Bank, Sherman &
-// Weiser 1983]).
-FlatMesh redGreen(const FlatMesh& mesh, double part, uint32_t seed);
 
 // The unit square on a surface's rectangle of parameters; normals are the surface's, no UVs.
 AnalyticMesh lifted(const FlatMesh& mesh, const Surface& surface);

@@ -16,15 +16,6 @@ Vec3 direction(double longitude, double latitude) {
             std::sin(latitude)};
 }
 
-// Of the graph z(x, y) with this gradient and (zxx, zxy, zyy). Minus: one that curves up curves towards
-// its upward normal.
-SurfacePoint graphPoint(double x, double y, double z, Vec2 g, Vec3 h) {
-    const double w2 = 1 + g.x * g.x + g.y * g.y, w = std::sqrt(w2);
-    const double gaussian = (h.x * h.z - h.y * h.y) / (w2 * w2);
-    const double mean = -((1 + g.y * g.y) * h.x - 2 * g.x * g.y * h.y + (1 + g.x * g.x) * h.z) / (2 * w2 * w);
-    return {{x, y, z}, Vec3{-g.x, -g.y, 1} / w, fromMeanAndGaussian(mean, gaussian)};
-}
-
 void appendFacing(AnalyticMesh& out, int a, int b, int c) {
     const auto& p = out.mesh.positions;
     const Vec3 across = cross(p[b] - p[a], p[c] - p[a]);
@@ -42,9 +33,6 @@ using At = std::function<SurfacePoint(double, double)>;
 // u goes round an axis.
 Surface around(At at, double vBegin, double vEnd, bool wrapsV = false) {
     return {std::move(at), 0, 2 * pi, vBegin, vEnd, true, wrapsV};
-}
-Surface square(At at, double side) {
-    return {std::move(at), -side / 2, side / 2, -side / 2, side / 2};
 }
 
 }  // namespace
@@ -100,29 +88,15 @@ Surface ellipsoidSurface(double a, double b, double c) {
 
 Surface monkeySaddle(double side) {
     const auto at = [](double x, double y) {
-        return graphPoint(x, y, x * x * x - 3 * x * y * y, {3 * (x * x - y * y), -6 * x * y},
-                          {6 * x, -6 * y, -6 * x});
+        const double gx = 3 * (x * x - y * y), gy = -6 * x * y, hxx = 6 * x, hxy = -6 * y, hyy = -6 * x;
+        const double w2 = 1 + gx * gx + gy * gy, w = std::sqrt(w2);
+        const double gaussian = (hxx * hyy - hxy * hxy) / (w2 * w2);
+        // Minus: a graph that curves up curves towards its upward normal.
+        const double mean = -((1 + gy * gy) * hxx - 2 * gx * gy * hxy + (1 + gx * gx) * hyy) / (2 * w2 * w);
+        return SurfacePoint{
+            {x, y, x * x * x - 3 * x * y * y}, Vec3{-gx, -gy, 1} / w, fromMeanAndGaussian(mean, gaussian)};
     };
-    return square(at, side);
-}
-
-Surface gaussianBump(double height, double width, double side) {
-    const auto at = [=](double x, double y) {
-        const double w2 = width * width, z = height * std::exp(-(x * x + y * y) / (2 * w2));
-        return graphPoint(x, y, z, {-x * z / w2, -y * z / w2},
-                          {(x * x / w2 - 1) * z / w2, x * y * z / (w2 * w2), (y * y / w2 - 1) * z / w2});
-    };
-    return square(at, side);
-}
-
-Surface catenoid(double waist) {
-    return {[=](double u, double v) {
-                const double c = std::cosh(v), k = 1 / (waist * c * c);
-                return SurfacePoint{{waist * c * std::cos(u), waist * c * std::sin(u), waist * v},
-                                    Vec3{std::cos(u), std::sin(u), -std::sinh(v)} / c,
-                                    {k, -k}};
-            },
-            0, 2, -1, 1};
+    return {at, -side / 2, side / 2, -side / 2, side / 2};
 }
 
 Surface ellipsoidCap(double a, double b, double c) {

@@ -27,10 +27,9 @@ Surface coneSurface(double halfAngle, double slantBegin, double slantEnd);  // s
 Surface torusSurface(double majorRadius, double minorRadius);
 Surface ellipsoidSurface(double a, double b, double c);  // semi-axes; a belt of +-60 degrees
 Surface monkeySaddle(double side);                       // z = x³ - 3 x y² over a square round the origin
-Surface gaussianBump(double height, double width, double side);  // width: its standard deviation
-// By maps that keep angles: triangulations of scattered points stay what they are.
-Surface ellipsoidCap(double a, double b, double c);  // half of it and some more
-Surface catenoid(double waist);                      // a third of a turn
+// Half of it and some more, by a map that keeps angles: triangulations of scattered points stay what they
+// are.
+Surface ellipsoidCap(double a, double b, double c);
 
 SurfacePoint ellipsoidPoint(Vec3 onUnitSphere, double a, double b, double c);
 
