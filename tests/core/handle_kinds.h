@@ -26,18 +26,16 @@ inline const pellucid::MeshTopology& triangle() {
     return mesh;
 }
 
-// A new one of the C handle's type that only the caller holds.
-template <class Wrapper, class H>
-Handle taken(const Wrapper& made, void (*retain)(H)) {
-    retain(made.get());
-    return made.get();
-}
-
-template <class H>
-Kind kind(const char* name, void (*retain)(H), void (*release)(H), std::function<Handle()> create,
-          std::function<PelError(H)> use, std::function<std::function<bool()>(H)> hold) {
+// `make`: an object of C++, of which the handle is taken.
+template <class H, class Make>
+Kind kind(const char* name, void (*retain)(H), void (*release)(H), Make make, std::function<PelError(H)> use,
+          std::function<std::function<bool()>(H)> hold) {
     return {name,
-            std::move(create),
+            [=]() -> Handle {
+                const auto made = make();
+                retain(made.get());
+                return made.get();
+            },
             [retain](Handle h) { retain(static_cast<H>(h)); },
             [release](Handle h) { release(static_cast<H>(h)); },
             [use](Handle h) { return use(static_cast<H>(h)); },
@@ -69,8 +67,7 @@ inline const std::vector<Kind>& kinds() {
     using namespace pellucid;
     static const std::vector<Kind> all{
         kind<PelDevice>(
-            "PelDevice", pelDeviceRetain, pelDeviceRelease, [] { return taken(Device(""), pelDeviceRetain); },
-            pelDeviceFinish,
+            "PelDevice", pelDeviceRetain, pelDeviceRelease, [] { return Device(""); }, pelDeviceFinish,
             [](PelDevice h) {
                 PelBuffer made = nullptr;
                 const int value = 7;
@@ -84,7 +81,7 @@ inline const std::vector<Kind>& kinds() {
                 const PelSubmit submit{nullptr, 0, &done};
                 static const Buffer buffer(device(), 16);
                 buffer.read(nullptr, 0, 0, &submit);
-                return done;
+                return Event(done);
             },
             pelEventWait,
             [](PelEvent h) {  // only the driver holds events
@@ -98,8 +95,7 @@ inline const std::vector<Kind>& kinds() {
                 };
             }),
         kind<PelBuffer>(
-            "PelBuffer", pelBufferRetain, pelBufferRelease,
-            [] { return taken(Buffer(device(), 64), pelBufferRetain); },
+            "PelBuffer", pelBufferRetain, pelBufferRelease, [] { return Buffer(device(), 64); },
             [](PelBuffer h) {
                 size_t bytes = 0;
                 return pelBufferGetSize(h, &bytes);
@@ -118,7 +114,7 @@ inline const std::vector<Kind>& kinds() {
             "PelMeshTopology", pelMeshTopologyRetain, pelMeshTopologyRelease,
             [] {
                 const std::vector<char> saved = triangle().save();
-                return taken(MeshTopology::load(device(), saved.data(), saved.size()), pelMeshTopologyRetain);
+                return MeshTopology::load(device(), saved.data(), saved.size());
             },
             [](PelMeshTopology h) {
                 size_t size = 0;
@@ -137,10 +133,10 @@ inline const std::vector<Kind>& kinds() {
             }),
         kind<PelLiveMesh>(
             "PelLiveMesh", pelLiveMeshRetain, pelLiveMeshRelease,
-            [] { return taken(LiveMesh(triangle(), pelCurvatureParamsDefaults()), pelLiveMeshRetain); },
+            [] { return LiveMesh(triangle(), pelCurvatureParamsDefaults()); },
             reading(pelLiveMeshStatsDefaults, pelLiveMeshGetStats), held),
         kind<PelLut>(
-            "PelLut", pelLutRetain, pelLutRelease, [] { return taken(smallTable(), pelLutRetain); },
+            "PelLut", pelLutRetain, pelLutRelease, [] { return smallTable(); },
             reading(pelLutInfoDefaults, pelLutGetInfo),
             [](PelLut h) {
                 Shader shader(device());
@@ -152,24 +148,21 @@ inline const std::vector<Kind>& kinds() {
                 };
             }),
         kind<PelShader>(
-            "PelShader", pelShaderRetain, pelShaderRelease,
-            [] { return taken(Shader(device()), pelShaderRetain); },
+            "PelShader", pelShaderRetain, pelShaderRelease, [] { return Shader(device()); },
             reading(pelShaderStatsDefaults, pelShaderGetStats), held),
         kind<PelScatter>(
-            "PelScatter", pelScatterRetain, pelScatterRelease,
-            [] { return taken(Scatter(device()), pelScatterRetain); },
+            "PelScatter", pelScatterRetain, pelScatterRelease, [] { return Scatter(device()); },
             reading(pelScatterStatsDefaults, pelScatterGetStats), held),
         kind<PelTextureScatter>(
             "PelTextureScatter", pelTextureScatterRetain, pelTextureScatterRelease,
             [] {
                 PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
                 desc.width = desc.height = 1;
-                return taken(TextureScatter(device(), desc), pelTextureScatterRetain);
+                return TextureScatter(device(), desc);
             },
             reading(pelTextureScatterStatsDefaults, pelTextureScatterGetStats), held),
         kind<PelProfile>(
-            "PelProfile", pelProfileRetain, pelProfileRelease,
-            [] { return taken(Profile::skin(), pelProfileRetain); },
+            "PelProfile", pelProfileRetain, pelProfileRelease, [] { return Profile::skin(); },
             reading(pelProfileInfoDefaults, pelProfileGetInfo),
             [](PelProfile h) {
                 return [table = smallTable(h)] { return table.read<float>(PEL_LUT_FLOAT).size() == 48; };

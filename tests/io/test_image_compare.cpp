@@ -186,6 +186,10 @@ TEST_F(NpyRead, WhatWasWritten) {
         EXPECT_EQ(io::readNpy(path(name)).shape, (std::vector<size_t>{2, 3}));
     }
     EXPECT_EQ(io::readNpy(path("b.npy")).values, (std::vector<float>{0, 1, 2, 3, 254, 255}));
+    const std::string file = read(path("f.npy"));
+    EXPECT_EQ(file.size() % 64, values.size() * 4) << "data start on a multiple of 64";
+    EXPECT_TRUE(contains(file, "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, ), }"));
+    EXPECT_THROW(io::writeNpy(path("c.npy"), shape, std::vector<float>(3)), std::invalid_argument);
 }
 
 TEST_F(NpyRead, DamagedFilesAreRefused) {

@@ -1,5 +1,5 @@
 // host/io/image/image_file.h: EXR round trips to the bit, parts and data windows, look-up by name, 8-bit
-// files, NPY. The two ways of reading OpenEXR files give the same values: scan lines without compression,
+// files. The two ways of reading OpenEXR files give the same values: scan lines without compression,
 // with RLE and with ZIP by the C library, all others by the C++ one.
 #include <OpenImageIO/imageio.h>
 
@@ -215,23 +215,6 @@ TEST_F(ImageFile, EightBitFilesKeepTheirBytes) {
             EXPECT_EQ(again, bytes) << name << ' ' << channels;
         }
     }
-}
-
-TEST_F(ImageFile, NpyHoldsShapeTypeAndBytes) {
-    const size_t shape[] = {2, 1, 2};
-    const std::vector<float> values = {0.1f, -2.0f, 1e10f, std::nanf("")};
-    writeNpy(path("a.npy"), shape, values);
-    const std::string file = read(path("a.npy"));
-    ASSERT_EQ(file.size() % 64, values.size() * 4 % 64);  // data starts on a multiple of 64
-    EXPECT_EQ(file.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
-    EXPECT_TRUE(contains(file, "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 1, 2, ), }"));
-    EXPECT_EQ(std::memcmp(file.data() + file.size() - 16, values.data(), 16), 0);
-    writeNpy(path("h.npy"), shape, values, ChannelType::Half);
-    const std::string halves = read(path("h.npy"));
-    uint16_t second;
-    std::memcpy(&second, halves.data() + halves.size() - 6, 2);
-    EXPECT_EQ(second, 0xc000);  // -2
-    EXPECT_THROW(writeNpy(path("b.npy"), shape, std::vector<float>(3)), std::invalid_argument);
 }
 
 TEST_F(ExrLines, GiveTheSameBitsAsTheOtherLibrary) {
