@@ -42,12 +42,6 @@ Picture scene(bool two = true) {
     return p;
 }
 
-double rms(const std::vector<float>& a, const std::vector<float>& b) {
-    double sum = 0;
-    for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-    return std::sqrt(sum / double(a.size()));
-}
-
 }  // namespace
 
 TEST(Scatter, EqualsTheSumOverEveryPixel) {
@@ -272,8 +266,9 @@ TEST(Scatter, NothingFlowsBetweenIdsUnlessAsked) {
         Picture one = p;
         for (uint8_t& id : one.ids) id = id ? 1 : 0;
         const auto joined = scatterBy(one, 1, controlsOf(method, taps)).scattered;
-        EXPECT_LT(rms(open, joined), 2e-3);  // sizes of pixels next to the border are measured on one side
-        EXPECT_GT(rms(open, apart), 0.02);
+        // Sizes of pixels next to the border are measured on one side.
+        EXPECT_LT(difference(p, open, joined).rms, 2e-3);
+        EXPECT_GT(difference(p, open, apart).rms, 0.02);
         // Teeth, eyes, clothes: no light flows to or from an id that does not scatter.
         for (uint8_t& id : p.ids) id = id == 2 ? 9 : id;
         EXPECT_EQ(scatterBy(p, 1, controlsOf(method, taps, 1)).scattered, p.irradiance);
@@ -297,7 +292,8 @@ TEST(Scatter, WeightAndRadiusPerPixel) {
         EXPECT_LT(some.stats.pixelsTapped, p.pixels() / 3);  // the others cost nothing
         // Half of the radius is a profile of half the size.
         const auto thin = scatterBy(p, 1, controlsOf(method, taps), halves).scattered;
-        EXPECT_LT(rms(thin, scatterBy(p, 0.5f, controlsOf(method, taps)).scattered), 1e-4);
+        const auto half = scatterBy(p, 0.5f, controlsOf(method, taps)).scattered;
+        EXPECT_LT(difference(p, thin, half).rms, 1e-4);
         // A radius below a pixel: no taps, and no bit changes.
         const Result small = scatterBy(p, 1e-3f, controlsOf(method, taps));
         EXPECT_EQ(small.stats.taps, 0u);

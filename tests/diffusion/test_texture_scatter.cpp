@@ -60,39 +60,9 @@ struct Texture {
     }
 };
 
-Profile oneGaussian(double sigma) {
-    return Profile::gaussians({{float(sigma * sigma), {1, 1, 1}}});
-}
-
 }  // namespace
 
-// A step on a plane whose texture is stretched three times as far along u: an error function of true lengths.
-TEST(TextureScatter, WidthsAreLengthsOnTheSurface) {
-    const TexturedMesh m = plate(36, 12);
-    Texture t(m, 120, 120);
-    const auto positions = t.draw(m.positions);
-    for (int axis : {0, 1})
-        for (double sigma : {0.15, 0.5, 1.2}) {
-            std::vector<float> e;
-            const double edge = axis ? 6 : 18;
-            for (size_t i = 0; i < t.texels(); ++i)
-                e.insert(e.end(), 3, positions[3 * i + axis] < edge ? 0.0f : 1.0f);
-            const auto s = t.run(e, oneGaussian(sigma));
-            double worst = 0;
-            const double texel = axis ? 0.1 : 0.3;
-            for (size_t i = 0; i < t.texels(); ++i) {
-                const double d = positions[3 * i + axis] - edge;
-                if (std::abs(d) > (axis ? 2 : 12)) continue;  // borders of the plate
-                // Of a step that is a texel wide.
-                const double wide = std::sqrt(sigma * sigma + texel * texel / 12);
-                worst = std::max(worst, std::abs(s[3 * i] - 0.5 * std::erfc(-d / (wide * std::sqrt(2.0)))));
-            }
-            EXPECT_LT(worst, sigma < texel ? 0.15 : tolerance::textureEdge)
-                << "axis " << axis << ", sigma " << sigma;
-        }
-}
-
-// The same at a place where texels become three times as long, along either axis.
+// A step, where texels become three times as long: error functions of lengths on the surface.
 TEST(TextureScatter, TexelsOfSeveralLengthsInOneIsland) {
     const double variances[] = {0.05, 0.5, 4};
     std::vector<PelGaussian> gaussians;

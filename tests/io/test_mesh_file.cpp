@@ -219,12 +219,15 @@ TEST_F(MeshFile, LengthsOfListsAreChecked) {
             for (const double x : all) out.add(type, x);
             return out.bytes;
         };
-        const auto file = [&](const std::string& type, const std::string& rest) {
+        const auto of = [&](const std::vector<double>& vertices, const std::string& types,
+                            const std::string& rest) {
             return std::string("ply\nformat binary_") + (big ? "big" : "little") +
-                   "_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                   "element face 1\nproperty list " +
-                   type + " int vertex_indices\nend_header\n" + values("float", {0, 0, 0, 1, 0, 0, 0, 1, 0}) +
-                   rest;
+                   "_endian 1.0\nelement vertex " + std::to_string(vertices.size() / 3) +
+                   "\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list " +
+                   types + " vertex_indices\nend_header\n" + values("float", vertices) + rest;
+        };
+        const auto file = [&](const std::string& type, const std::string& rest) {
+            return of({0, 0, 0, 1, 0, 0, 0, 1, 0}, type + " int", rest);
         };
         const std::string indices = values("int", {0, 1, 2}), many(4 * 65535, '\0');
         const std::string whole = file("short", values("short", {3}) + indices);
@@ -240,10 +243,7 @@ TEST_F(MeshFile, LengthsOfListsAreChecked) {
             EXPECT_TRUE(contains(loadError("a.ply", text), message)) << big;
         // An index of -1 is no 255.
         const auto chars = [&](double last) {
-            return std::string("ply\nformat binary_") + (big ? "big" : "little") +
-                   "_endian 1.0\nelement vertex 256\nproperty float x\nproperty float y\nproperty float z\n"
-                   "element face 1\nproperty list char char vertex_indices\nend_header\n" +
-                   values("float", std::vector<double>(3 * 256)) + values("char", {3, 0, 1, last});
+            return of(std::vector<double>(3 * 256), "char char", values("char", {3, 0, 1, last}));
         };
         EXPECT_EQ(loadError("good.ply", chars(2)), "");
         EXPECT_TRUE(contains(loadError("a.ply", chars(-1)), "refers to vertex"));
