@@ -150,30 +150,6 @@ WalkMedium mediumOf(const WalkArguments& walk, const Diffusion& d, const RgbValu
     return {medium, medium};
 }
 
-// Walks from `points`, with progress and an entry `media` in the report.
-sample::WalkedLight walk(Run& run, const WalkArguments& walk, const sample::WalkBody& body,
-                         const sample::Lighting& lighting, const std::vector<sample::SurfacePoint>& points,
-                         const WalkMedium& medium, const RgbValues& reflectance,
-                         const std::string& material) {
-    sample::WalkOptions options{walk.samples, walk.noise, walk.seed,
-                                [&](double part) { run.progress(part, "random walk"); }};
-    const sample::WalkedLight light = walkLight(body, lighting, points, medium.layers, options);
-    run.report["media"].push_back({{"material", material},
-                                   {"epidermis", medium.layers.thickness},
-                                   {"mean_free_path", medium.mean.meanFreePath},
-                                   {"single_scattering_albedo", medium.mean.albedo},
-                                   {"reflectance", reflectance},
-                                   {"samples", light.samples},
-                                   {"noise", light.noise}});
-    const double walks = 6.0 * double(points.size()) * light.samples;
-    if (double(light.lost) > 0.001 * walks)
-        run.warn(
-            io::concat(io::printed("%.2g", 100 * double(light.lost) / walks), " % of the walks in ", material,
-                       " did not meet the mesh from inside and count as dark: it has holes, or triangles "
-                       "whose corners run clockwise seen from outside"));
-    return light;
-}
-
 // Signed mean curvature at each point, 1/unit of positions.
 std::vector<float> meanCurvatureAt(Run& run, const io::MeshData& mesh,
                                    const std::vector<sample::SurfacePoint>& points) {
@@ -470,11 +446,29 @@ class Reference {
             for (size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) radiance[i] = surface[i] * albedo(i);
     }
 
+    // Walks, with progress and an entry `media` in the report.
     sample::WalkedLight walked(const sample::WalkBody& body, const Diffusion& d, const Points& points,
                                const RgbValues& reflectance, const io::SceneMaterial* material) {
         const std::string name = io::concat("material ", material ? material->id : 1);
         medium_ = mediumOf(a_.walk, d, reflectance, name);
-        return walk(run_, a_.walk, body, lighting_, points.places, medium_, reflectance, name);
+        const sample::WalkedLight light =
+            walkLight(body, lighting_, points.places, medium_.layers,
+                      {a_.walk.samples, a_.walk.noise, a_.walk.seed,
+                       [&](double part) { run_.progress(part, "random walk"); }});
+        run_.report["media"].push_back({{"material", name},
+                                        {"epidermis", medium_.layers.thickness},
+                                        {"mean_free_path", medium_.mean.meanFreePath},
+                                        {"single_scattering_albedo", medium_.mean.albedo},
+                                        {"reflectance", reflectance},
+                                        {"samples", light.samples},
+                                        {"noise", light.noise}});
+        const double lost = double(light.lost) / (6.0 * double(points.places.size()) * light.samples);
+        if (lost > 0.001)
+            run_.warn(
+                io::concat(io::printed("%.2g", 100 * lost), " % of the walks in ", name,
+                           " did not meet the mesh from inside and count as dark: it has holes, or triangles "
+                           "whose corners run clockwise seen from outside"));
+        return light;
     }
 
     // The reflectance of a large plane of the medium. An albedo texture does not change the medium.

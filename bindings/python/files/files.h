@@ -17,6 +17,8 @@ py::bytes bytesOf(const T& value) {
     return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
+using Pixels = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
 // A copy.
 template <class T>
 py::array_t<T> array(const std::vector<T>& values, std::vector<py::ssize_t> shape) {

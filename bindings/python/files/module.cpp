@@ -12,7 +12,7 @@ namespace py = pybind11;
 namespace {
 
 using namespace pellucid;
-using python::array, python::rows, python::toDict;
+using python::array, python::Pixels, python::rows, python::toDict;
 
 std::vector<double> list(sample::Vec3 v) {
     return {v.x, v.y, v.z};
@@ -103,7 +103,6 @@ py::dict readImage(const std::string& path) {
     return channels;
 }
 
-using Pixels = py::array_t<float, py::array::c_style | py::array::forcecast>;
 using Bytes = py::array_t<uint8_t, py::array::c_style>;
 
 void writeExr(const std::string& path, const std::vector<std::string>& names, const Pixels& pixels,

@@ -10,8 +10,6 @@
 namespace pellucid::python {
 namespace {
 
-using Pixels = py::array_t<float, py::array::c_style | py::array::forcecast>;
-
 template <class T>
 T structOf(const std::string& bytes) {
     if (bytes.size() != sizeof(T)) throw py::value_error("a structure of another version of the library");

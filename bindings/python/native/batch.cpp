@@ -32,14 +32,7 @@ const pellucid::io::BatchEntry& entryOf(const BatchManifest& m, size_t index) {
 py::bytes made(const BatchManifest& m, const Device& device, size_t index) {
     const pellucid::io::BatchEntry& entry = entryOf(m, index);
     std::string bytes;
-    call([&] {
-        try {
-            bytes = pellucid::io::makeEntryFile(device.handle, entry);
-            return PEL_SUCCESS;
-        } catch (const pellucid::Error& e) {
-            return e.code();
-        }
-    });
+    callThrowing([&] { bytes = pellucid::io::makeEntryFile(device.handle, entry); });
     return py::bytes(bytes);
 }
 }  // namespace

@@ -26,14 +26,7 @@ template <class Create>
 std::unique_ptr<Device> created(Create create) {
     opensDevices();
     pellucid::Device device(nullptr);
-    call([&] {
-        try {
-            device = create();
-            return PEL_SUCCESS;
-        } catch (const pellucid::Error& e) {
-            return e.code();
-        }
-    });
+    callThrowing([&] { device = create(); });
     return std::make_unique<Device>(std::move(device));
 }
 }  // namespace

@@ -41,14 +41,9 @@ void bindMesh(py::module_& module) {
             })
         .def("save",
              [](const MeshTopology& t) {
-                 std::string bytes;
-                 call([&] {
-                     size_t size = 0;
-                     const PelError error = pelMeshTopologySave(t.get(), nullptr, &size);
-                     bytes.resize(size);
-                     return error ? error : pelMeshTopologySave(t.get(), bytes.data(), &size);
-                 });
-                 return py::bytes(bytes);
+                 std::vector<char> bytes;
+                 callThrowing([&] { bytes = t.save(); });
+                 return py::bytes(bytes.data(), bytes.size());
              })
         .def("normals", function(pelMeshNormals))
         .def("curvature", function(pelMeshCurvature))

@@ -57,6 +57,19 @@ void refuseForked();
 // KeyboardInterrupt, takes precedence: long work in the library reports its progress.
 void call(const std::function<PelError()>& body);
 
+// The same for a body that throws the C++ interface's errors.
+template <class Body>
+void callThrowing(Body&& body) {
+    call([&] {
+        try {
+            body();
+            return PEL_SUCCESS;
+        } catch (const pellucid::Error& e) {
+            return e.code();
+        }
+    });
+}
+
 // Waits without the GIL and checks for Ctrl-C, which ends the wait but not the work.
 void waitInterruptibly(const pellucid::Event& event);
 

@@ -14,7 +14,8 @@ HEADER = (ROOT / "host/include/pellucid/pellucid.h").read_text()
 OTHERWISE = {"pelDeviceCreate": "pellucid::Device(", "pelDeviceCreateFromCl": "pellucid::Device::fromCl(",
              "pelDeviceCreateWith": "pellucid::Device(desc)", "pelSetName": "named<Shader>(",
              "pelErrorName": "PellucidError", "pelEventWait": "pelEventIsDone(",
-             "pelLutGetSize": "pelLutRead", "pelProfileLibraryName": "Profile::libraryNames"}
+             "pelLutGetSize": "pelLutRead", "pelProfileLibraryName": "Profile::libraryNames",
+             "pelMeshTopologySave": "t.save()"}
 # Structures of pointers and handles, and what stands for them.
 ARRAYS = {"PelImageDesc": pel.Image, "PelVertexView": pel.Vertices, "PelMeshTopologyDesc": pel.MeshTopology,
           "PelSubmit": pel.Event, "PelGaussian": pel.Profile.gaussians, "PelVertexRange": pel.LiveMesh.update,
