@@ -50,12 +50,6 @@ Json summary(const Running& r) {
 }  // namespace
 
 Json measureCases(const Request& request) {
-    const auto tell = [&](const Json& event) {
-        if (request.event) request.event(event);
-    };
-    const auto begin = [&](const Json& entry) {
-        tell({{"begin", entry["name"]}, {"group", entry["group"]}});
-    };
     findTaps(request);
     const Device device(request.device);
     std::vector<Factory> factories;
@@ -70,8 +64,8 @@ Json measureCases(const Request& request) {
         if (std::ranges::find(request.without, f.name) != request.without.end()) continue;
         Running r;
         r.entry = {{"name", f.name}, {"group", f.group}};
-        tell({{"say", f.name + ": prepared, compared with the truth"}});
-        begin(r.entry);
+        request.say(f.name + ": prepared, compared with the truth");
+        request.begin(f.name, f.group);
         try {
             r.work = f.make();
             r.entry["what"] = r.work.what;
@@ -99,17 +93,17 @@ Json measureCases(const Request& request) {
     std::vector<size_t> order(running.size());
     std::iota(order.begin(), order.end(), size_t(0));
     for (int round = 0; round < rounds && !running.empty(); ++round) {
-        tell({{"say", "round " + std::to_string(round + 1) + " of " + std::to_string(rounds)}});
+        request.say("round " + std::to_string(round + 1) + " of " + std::to_string(rounds));
         std::shuffle(order.begin(), order.end(), random);
         for (const size_t i : order) {
             if (round >= running[i].rounds) continue;
-            begin(running[i].entry);
+            request.begin(running[i].entry["name"], running[i].entry["group"]);
             sample(device, running[i]);
         }
     }
     const EnergyMeter joules = energyOf(device, request.powercap);
     for (Running& r : running) {
-        begin(r.entry);
+        request.begin(r.entry["name"], r.entry["group"]);
         r.watts = meanWatts(joules, r.work.run);
     }
     double bandwidth = NAN, peak = NAN;

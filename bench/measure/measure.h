@@ -73,6 +73,10 @@ struct Request {
     std::function<void(const nlohmann::ordered_json&)> event;
     std::function<bool()> cancelled;
 
+    void begin(const std::string& name, const std::string& group) const {
+        event({{"begin", name}, {"group", group}});
+    }
+    void say(const std::string& text) const { event({{"say", text}}); }
     bool wants(const std::string& name) const {
         return (only.empty() ||
                 std::ranges::any_of(

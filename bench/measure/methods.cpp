@@ -216,7 +216,7 @@ class Methods {
             const std::string name = of + ("-" + std::to_string(int(scale)));
             if (!anyLeft(name)) continue;
             attempt(name, "pictures", [&, of = of, scale = scale] {
-                say(name + ": the scene is made");
+                request_.say(name + ": the scene is made");
                 const FrozenScene& scene = sceneOf(of);
                 const LitScene s = lookAt(scene, scale);
                 const std::vector<Setting> methods = keptSettings(s);
@@ -255,7 +255,7 @@ class Methods {
         for (const auto& [name, width, height, fill] : frames) {
             if (!anyLeft(name)) continue;
             attempt(name, "frames", [&, name = name, width = width, height = height, fill = fill] {
-                say(std::string(name) + ": the scene is made");
+                request_.say(std::string(name) + ": the scene is made");
                 if (!stage) stage.emplace(device_, scene.body(headFile()), 1);
                 SceneRequest request = scene.request;
                 request.width = width, request.size = height, request.fill = fill;
@@ -313,7 +313,7 @@ class Methods {
     void attemptAlone(const std::string& scene, const Setting& setting, const char* group, const Work& work) {
         const std::string name = scene + ": " + setting.name();
         if (!request_.wants(name)) return;
-        say(name);
+        request_.say(name);
         attempt(name, group, work);
         sendRows();
     }
@@ -380,13 +380,12 @@ class Methods {
     bool wanted(const std::string& scene) const {
         return std::ranges::any_of(settings(), [&](const Setting& s) { return wanted(scene, s); });
     }
-    void say(const std::string& text) const { request_.event({{"say", text}}); }
 
     // Runs `work` as a case that may fail alone, or be left out.
     template <class Work>
     void attempt(const std::string& name, const char* group, const Work& work) {
         if (std::ranges::find(request_.without, name) != request_.without.end()) return;
-        request_.event({{"begin", name}, {"group", group}});
+        request_.begin(name, group);
         try {
             work();
         } catch (const std::exception& e) {
@@ -402,7 +401,7 @@ class Methods {
             std::ranges::shuffle(contenders, random);
             for (Contender& c : contenders) {
                 if (round > 0 && c.wall.front() * (round + 1) > 2000) continue;
-                request_.event({{"begin", scene + ": " + c.setting.name()}, {"group", group}});
+                request_.begin(scene + ": " + c.setting.name(), group);
                 const double start = milliseconds(), before = c.frame();
                 c.wall.push_back(milliseconds() - start);
                 const double own = before + c.shot.shader.stats().deviceMilliseconds;
@@ -415,7 +414,7 @@ class Methods {
         if (group == std::string("shares")) return;
         for (Contender& c : contenders) {
             if (!c.setting.shown || !joules_) continue;
-            request_.event({{"begin", scene + ": " + c.setting.name()}, {"group", group}});
+            request_.begin(scene + ": " + c.setting.name(), group);
             c.watts = meanWatts(joules_, [&c] { c.frame(); });
         }
     }
@@ -479,7 +478,7 @@ class Methods {
             const std::string name = scene.name + ("-" + std::to_string(int(scale)));
             if (!wanted(name)) continue;
             attempt(name, "methods", [&] {
-                say(name + ": " + scene.title);
+                request_.say(name + ": " + scene.title);
                 if (!stage) stage.emplace(device_, scene.body(headFile()), 1);
                 measureLook(scene, *stage, name, scale);
             });
@@ -571,7 +570,7 @@ class Methods {
                     for (int k = int(frames.size()); k < clipFrames; ++k)
                         frames.push_back(stage->look(clipRequest(clip, k), profile_));
                     if (!truth) truth = readClip(request_.data + "/bench", clip, frames);
-                    say(std::string(clip.name) + ": " + setting.name());
+                    request_.say(std::string(clip.name) + ": " + setting.name());
                     measureClip(clip, setting, frames, *truth);
                 });
             }

@@ -303,8 +303,7 @@ void makeTruth(const Device& device, const std::string& folder, const std::strin
     std::filesystem::create_directories(folder);
     const auto progress = [&](const std::string& name) {
         return [&, name, told = -1](double fraction) mutable {
-            if (cancelled && cancelled())
-                throw pellucid::Error(PEL_ERROR_CANCELLED, "the truth was not made whole");
+            if (cancelled()) throw pellucid::Error(PEL_ERROR_CANCELLED, "the truth was not made whole");
             if (int(10 * fraction) > told) say(name + ": " + std::to_string(10 * ++told) + " %");
         };
     };

@@ -65,7 +65,7 @@ class Again {
                 heard_.erase(0, at + 1);
                 return line;
             }
-            if (request_.cancelled && request_.cancelled())
+            if (request_.cancelled())
                 throw pellucid::Error(PEL_ERROR_CANCELLED, "the benchmark was cancelled");
             const double left = end - milliseconds();
             why_ = io::printed("no result within %g s", request_.limitSeconds);
@@ -115,7 +115,7 @@ Json runApart(const Request& request, const char* part, const std::set<std::stri
                                                       : request.limitSeconds)) {
         if (!event->is_object()) continue;
         if (event->contains("begin")) at = *event;
-        if (event->contains("say") && request.progress) request.progress((*event)["say"]);
+        if (event->contains("say")) request.progress((*event)["say"]);
         if (event->contains("row")) done.push_back((*event)["row"]);
         if (event->contains("report")) report = (*event)["report"];
     }
@@ -141,7 +141,7 @@ Json measureApart(const Request& request, const char* part) {
         for (const Json& e : done) without.insert(e.at("name").get<std::string>());
         if (at.is_null()) at = {{"begin", "start"}, {"group", "device"}};
         const std::string name = at.at("begin");
-        if (request.progress) request.progress(name + ": " + why);
+        request.progress(name + ": " + why);
         done.push_back({{"name", name}, {"group", at.at("group")}, {"failed", why}});
         // The process did not reach any case, or reached one that was left out.
         if (name == "start" || !without.insert(name).second) return {{"operations", done}};
@@ -183,7 +183,7 @@ Json measureDevice(const Request& request) {
                    {"compute_units", info.computeUnits},
                    {"clock_mhz", info.clockMhz},
                    {"math_width", info.mathWidth}};
-    if (request.progress) request.progress("first use and warm start");
+    request.progress("first use and warm start");
     measureFirstUse(request, report);
     report.update({{"copy_bytes_per_second", Json()}, {"operations_per_second", Json()}});
     report["operations"] = Json::array();

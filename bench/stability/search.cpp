@@ -185,8 +185,8 @@ Json measureStability(const Request& request) {
         for (const Operation& o : some) {
             const std::string name = "stability: " + o.header.name;
             if (!request.wants(name)) continue;
-            request.event({{"begin", name}, {"group", "stability"}});
-            request.event({{"say", name}});
+            request.begin(name, "stability");
+            request.say(name);
             records.push_back(record(o, search(o, request.stability, seconds)));
         }
     return {{"stability", {{"share", request.stability}, {"operations", records}}}};
