@@ -7,6 +7,7 @@ OUT_INC: for the native module, the defaults and field offsets of the same struc
 them. Structures that hold pointers or handles are left out: the native module has functions for those. A
 handle in HANDLES is an attribute that takes the Python object, or its name.
 """
+import os
 import re
 import sys
 import textwrap
@@ -51,11 +52,8 @@ def parse_enums(text):
         if not entries or len(names) != len(re.findall(r"PEL_\w+ =", match.group(2))):
             raise SystemExit(f"{match.group(1)}: an enumerator was not understood")
         parts = [name.split("_") for name in names]
-        common = 0
-        while all(len(p) > common + 1 and p[common] == parts[0][common] for p in parts):
-            common += 1
-        if len(parts) == 1:
-            common = 2
+        shared = os.path.commonprefix(parts)
+        common = 2 if len(parts) == 1 else min(len(shared), min(map(len, parts)) - 1)
         members = [("_".join(p[common:]).removeprefix("ERROR_"), value, tidy(doc), name)
                    for p, (name, value, doc) in zip(parts, entries) if p[-1] != "COUNT"]
         enums[match.group(1)] = (comment_before(text, match.start()), members)
@@ -69,8 +67,8 @@ def parse_structs(text, enums):
         if not body.strip().startswith("uint32_t structSize"):
             continue
         fields = []
-        for declaration, doc in re.findall(r"([\w][\w \*\[\],]*);[ ]*(?:/\*(.*?)\*/)?",
-                                           COMMENT_ON_OWN_LINE.sub("", comments_behind(body)), re.S):
+        body = re.sub(r"^\s*/\*.*?\*/\s*$", "", comments_behind(body), flags=re.S | re.M)
+        for declaration, doc in re.findall(r"([\w][\w \*\[\],]*);[ ]*(?:/\*(.*?)\*/)?", body, re.S):
             pointer = re.match(r"(?:const )?(\w+)\s*(\*?)\s*(\w+)((?:\[\w+\])*)$", declaration.strip())
             if not pointer:
                 raise SystemExit(f"{name}: the field '{declaration}' was not understood")
@@ -84,29 +82,23 @@ def parse_structs(text, enums):
     return structs
 
 
-COMMENT_ON_OWN_LINE = re.compile(r"^\s*/\*.*?\*/\s*$", re.S | re.M)
+def python_name(name):
+    return "ErrorCode" if name == "PelError" else name[3:]
 
 
-class Translator:
-    """Rewrites the C names inside a comment into the Python ones."""
+def translator(enums, structs):
+    """A function that rewrites the C names inside a comment into the Python ones."""
+    words = {full: f"{python_name(name)}.{short}"
+             for name, (_, members) in enums.items() for short, _, _, full in members}
+    words |= {field: snake(field) for _, fields in structs.values() for field, _, _, _ in fields}
 
-    def __init__(self, enums, structs):
-        self.words = {}
-        for name, (_, members) in enums.items():
-            for short, _, _, full in members:
-                self.words[full] = f"{name[3:]}.{short}"
-        for _, fields in structs.values():
-            for field, _, _, _ in fields:
-                self.words[field] = snake(field)
-        self.pattern = re.compile(r"\b(\w+)\b")
+    def word(match):
+        w = match[0]
+        if w in words and (w.isupper() or w != w.lower()):
+            return words[w]
+        return w[3:] if re.match(r"Pel[A-Z]", w) else w
 
-    def __call__(self, text):
-        def word(match):
-            w = match.group(1)
-            if w in self.words and (w.isupper() or w != w.lower()):
-                return self.words[w]
-            return w[3:] if re.match(r"Pel[A-Z]", w) else w
-        return self.pattern.sub(word, text).replace("\\", "\\\\").replace('"""', "'''")
+    return lambda text: re.sub(r"\b\w+\b", word, text).replace("\\", "\\\\").replace('"""', "'''")
 
 
 def wrapped(text, indent, width=110):
@@ -159,7 +151,7 @@ def python_struct(name, doc, fields, enums, structs, say):
 
 
 def python_module(enums, structs):
-    say = Translator(enums, structs)
+    say = translator(enums, structs)
     out = ['"""Enumerations and plain structures of pellucid.h. Written by generate_types.py: do not '
            'edit."""',
            "from __future__ import annotations\n", "from dataclasses import dataclass\n",
@@ -169,8 +161,7 @@ def python_module(enums, structs):
            "from typing import TYPE_CHECKING, Any\n", "if TYPE_CHECKING:\n    from .profile import Profile\n"]
     exported = []
     for name, (doc, members) in enums.items():
-        python = {"PelError": "ErrorCode"}.get(name, name[3:])
-        say.words.update({full: f"{python}.{short}" for short, _, _, full in members})
+        python = python_name(name)
         exported.append(python)
         base = "Flags" if any("<<" in value for _, value, _, _ in members) else "Enumeration"
         out.append(f"\nclass {python}({base}):")
