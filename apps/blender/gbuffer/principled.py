@@ -1,6 +1,7 @@
 """Reads scattering and gloss from a material's shader, as keys of [[material]] and a profile."""
 
 import math
+from collections import namedtuple
 
 from .fault import Fault, warn
 
@@ -15,12 +16,9 @@ def custom_keys(material, prefix):
     return {key: own if isinstance(own, (int, float, str)) else tuple(own) for key, own in owns.items()}
 
 
-class Scattering:
-    """How far light goes under a surface. `radius`: Blender units, red, green, blue; `weight`: 0 to 1."""
-
-    def __init__(self, radius, weight, tint=None):
-        # tint: (colour, share) mixed into the albedo
-        self.radius, self.weight, self.tint = radius, weight, tint
+# How far light goes under a surface. radius: Blender units, red, green, blue; weight: 0 to 1; tint: (colour,
+# share) mixed into the albedo.
+Scattering = namedtuple("Scattering", "radius weight tint", defaults=[None])
 
 
 class Surface:

@@ -109,10 +109,12 @@ class Preferences(bpy.types.AddonPreferences):
                               icon="ERROR")
 
 
+register_classes, unregister_classes = bpy.utils.register_classes_factory(
+    (PELLUCID_OT_own_value, Settings, Preferences))
+
+
 def register():
-    bpy.utils.register_class(PELLUCID_OT_own_value)
-    bpy.utils.register_class(Settings)
-    bpy.utils.register_class(Preferences)
+    register_classes()
     bpy.types.Scene.pellucid = bpy.props.PointerProperty(type=Settings)
     bpy.types.Material.pellucid = bpy.props.EnumProperty(name="Pellucid",
                                                          description="How light scatters in this material",
@@ -122,6 +124,4 @@ def register():
 def unregister():
     del bpy.types.Material.pellucid
     del bpy.types.Scene.pellucid
-    bpy.utils.unregister_class(Preferences)
-    bpy.utils.unregister_class(Settings)
-    bpy.utils.unregister_class(PELLUCID_OT_own_value)
+    unregister_classes()

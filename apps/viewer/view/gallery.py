@@ -10,9 +10,10 @@ from __future__ import annotations
 import argparse
 import sys
 import textwrap
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -29,42 +30,27 @@ FRONT = [Lamp("Key", 20.0, 30.0)]
 
 @dataclass
 class Entry:
-    """One picture: what differs from the standard look, and the words below it."""
+    """One picture, the words below it, and what differs from the standard look and view."""
 
     name: str
     words: str
-    change: Callable[[Session], None]
+    look: dict[str, Any]
+    azimuth: float = 20.0
+    zoom: float = 1.0
+    to: tuple[float, float] = (0.0, 0.0)  # where the camera points, right and up, in heights of the mesh
+    mm: float = 1.0
 
 
-def _set(**values: object) -> Callable[[Session], None]:
-    def change(session: Session) -> None:
-        for name, value in values.items():
-            setattr(session.look, name, value)
-
-    return change
+STANDARD = Entry("standard", "", {})
 
 
-def _at(azimuth: float, change: Callable[[Session], None], zoom: float = 1.0, mm: float = 1.0,
-        to: tuple[float, float] = (0.0, 0.0)) -> Callable[[Session], None]:
-    """`to`: where the camera points, to the right and up, in heights of the mesh."""
-    def both(session: Session) -> None:
-        session.orbit.azimuth = azimuth
-        tall = session.mesh.high[1] - session.mesh.low[1]
-        session.orbit.pan = (to[0] * tall, to[1] * tall)
-        session.orbit.distance *= zoom
-        session.mm = mm
-        change(session)
-
-    return both
-
-
-def _side(mm: float = 1.0, **look: object) -> Callable[[Session], None]:
+def _side(name: str, words: str, mm: float = 1.0, **look: object) -> Entry:
     """Near, and lit from the side."""
-    return _at(25, _set(lamps=SIDE, ambient=0.02, **look), 0.5, mm)
+    return Entry(name, words, {"lamps": SIDE, "ambient": 0.02, **look}, 25, 0.5, mm=mm)
 
 
 def _material(name: str, words: str, **look: object) -> Entry:
-    return Entry(name, words, _set(ambient=0.08, **{"specular": 0.35, **look}))
+    return Entry(name, words, {"ambient": 0.08, "specular": 0.35, **look})
 
 
 GALLERY: dict[str, list[Entry]] = {
@@ -79,7 +65,7 @@ GALLERY: dict[str, list[Entry]] = {
                   pores=0.0, roughness=0.35),
     ],
     "Methods": [
-        Entry(f"method-{method}", words, _side(method=method, **more))
+        _side(f"method-{method}", words, method=method, **more)
         for method, words, more in [
             ("none", "None: Lambert. Shadows are hard and grey.", {"transmission": 0.0}),
             ("preintegrated", "Pre-integrated: tables, no neighbours.", {}),
@@ -91,29 +77,32 @@ GALLERY: dict[str, list[Entry]] = {
     ],
     "Lights": [
         Entry("light-front", "From the front: hardly anything to scatter, and hardly any work.",
-              _set(lamps=FRONT)),
-        Entry("light-side", "From the side: the terminator turns red.", _set(lamps=SIDE)),
+              {"lamps": FRONT}),
+        Entry("light-side", "From the side: the terminator turns red.", {"lamps": SIDE}),
         Entry("light-back", "From behind: ears let light through.",
-              _at(10, _set(lamps=BACK, ambient=0.1, pores=0.0, specular=0.1), 0.4, to=(0.22, -0.03))),
+              {"lamps": BACK, "ambient": 0.1, "pores": 0.0, "specular": 0.1}, 10, 0.4, (0.22, -0.03)),
     ],
     "Mistakes": [
-        Entry("wrong-unit",
+        _side("wrong-unit",
               "The mesh is in mm, and unit_mm said 10: light reaches a tenth as far as it should, and the "
-              "picture is nearly Lambert's. The shader warns of it.", _side(mm=10.0)),
-        Entry("too-soft", "unit_mm said 0.1: skin turns to wax.", _side(mm=0.1)),
-        Entry("orange-rim",
+              "picture is nearly Lambert's. The shader warns of it.", 10.0),
+        _side("too-soft", "unit_mm said 0.1: skin turns to wax.", 0.1),
+        _side("orange-rim",
               "deep_scatter_color (FaceWorks' term) with a strong colour: a rim along nose, lips and ears "
-              "that real skin does not have.", _side(method="preintegrated", deep_scatter=(2.0, 0.6, 0.2))),
-        Entry("coarse-shadow-map",
+              "that real skin does not have.", method="preintegrated", deep_scatter=(2.0, 0.6, 0.2)),
+        _side("coarse-shadow-map",
               "A shadow map of 128 texels: its texels are wider than the profile reaches, and edges of "
-              "shadows are steps.", _side(shadow_size=128)),
+              "shadows are steps.", shadow_size=128),
     ],
 }
 
 
-def view(session: Session) -> None:
-    session.orbit.azimuth, session.orbit.elevation, session.orbit.pan = 20.0, 2.0, (0.0, 0.0)
+def view(session: Session, entry: Entry = STANDARD) -> None:
+    tall = session.mesh.high[1] - session.mesh.low[1]
     session.orbit.frame(session.mesh.low, session.mesh.high, 1.0)
+    session.orbit.azimuth, session.orbit.elevation = entry.azimuth, 2.0
+    session.orbit.pan = (entry.to[0] * tall, entry.to[1] * tall)
+    session.orbit.distance *= entry.zoom
 
 
 def skins(session: Session, out: Path, size: int) -> list[str]:
@@ -166,9 +155,8 @@ def make(out: Path, pictures_only: bool, sections: Iterable[str], size: int = 48
             lines[-2:-2] = modes(session, out, size // 2)
         for entry in GALLERY[section]:
             print(f"{section}: {entry.name}", file=sys.stderr, flush=True)
-            session.look, session.mm = Look(), 1.0
-            view(session)
-            entry.change(session)
+            session.look, session.mm = Look(**entry.look), entry.mm
+            view(session, entry)
             export(session, out / entry.name, size, size, pictures_only)
             lines += [f"![{entry.words}]({entry.name}/picture.png)", "",
                       f"{entry.words} [scene]({entry.name}/scene.toml)", ""]
