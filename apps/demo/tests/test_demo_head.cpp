@@ -27,14 +27,18 @@ const sample::Camera camera{.eye = {0, 0, 100},
                             .verticalFov = 2 * std::atan(0.1) * 180 / std::numbers::pi,
                             .nearPlane = 1};
 
-double pixelsCovered(const Strand& strand, float depthOfAll) {
+sample::Image drawn(const Strand& strand, const demo::StrandLight& light, float depthOfAll) {
     sample::GBuffer g;
     g.width = g.height = size;
     g.viewDepth = sample::Image(size, size, 1, depthOfAll);
-    const sample::Image drawn = demo::drawStrands({strand}, {}, camera, g);
+    return demo::drawStrands({strand}, light, camera, g);
+}
+
+double pixelsCovered(const Strand& strand, float depthOfAll) {
+    const sample::Image image = drawn(strand, {}, depthOfAll);
     double sum = 0;
-    for (size_t i = 0; i < drawn.planeSize(); ++i) {
-        const float share = drawn.plane(3)[i];
+    for (size_t i = 0; i < image.planeSize(); ++i) {
+        const float share = image.plane(3)[i];
         EXPECT_GE(share, 0);
         EXPECT_LE(share, 1);
         sum += share;
@@ -44,12 +48,8 @@ double pixelsCovered(const Strand& strand, float depthOfAll) {
 
 // The red light of a hair that runs to the right, over what it covers.
 double lightOn(const demo::StrandLight& light) {
-    sample::GBuffer g;
-    g.width = g.height = size;
-    g.viewDepth = sample::Image(size, size, 1, 1e10f);
-    const sample::Image drawn =
-        demo::drawStrands({{{{-5, 0, 0}, {0, 0, 0}, {5, 0, 0}}, 0.2}}, light, camera, g);
-    return drawn.at(0, 120, 99) / drawn.at(3, 120, 99);
+    const sample::Image image = drawn({{{-5, 0, 0}, {0, 0, 0}, {5, 0, 0}}, 0.2}, light, 1e10f);
+    return image.at(0, 120, 99) / image.at(3, 120, 99);
 }
 
 }  // namespace

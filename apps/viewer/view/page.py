@@ -132,10 +132,8 @@ class MeshPanel(Panel):
             return await self.change(lambda: session.paint_skin(kind, path), f"{e.file.name}: ")
 
         for which in ("female", "male"):
-            async def head(which: str = which) -> None:
-                await self.load(files.standard_head(which))
-
-            self.button(f"Head, {which}", head, f"head-{which}")
+            self.button(f"Head, {which}", functools.partial(self.load, files.standard_head(which)),
+                        f"head-{which}")
         self.upload("Drop an OFF, OBJ, PLY, STL or GLB file here", dropped, "upload")
         for kind, name in (("albedo", "Drop an albedo map of skin here"),
                            ("normal", "Drop a normal map of skin here")):
@@ -144,12 +142,10 @@ class MeshPanel(Panel):
             self.button("Remove all pictures", lambda: self.change(lambda: session.show_bare()),
                         "bare", flat=True)
 
-        async def unit(e: events.ValueChangeEventArguments) -> None:
-            await self.change(lambda: session.set_unit(e.value))
-
         names = UNITS if session.mm in UNITS else {session.mm: f"{session.mm:g} mm", **UNITS}
-        ui.select(names, label="Unit of the mesh", value=session.mm, on_change=unit).props(
-            "dense options-dense data-pel=unit").classes("w-full")
+        ui.select(names, label="Unit of the mesh", value=session.mm,
+                  on_change=lambda e: self.change(lambda: session.set_unit(e.value))).props(
+                      "dense options-dense data-pel=unit").classes("w-full")
         ui.label(session.size_text()).classes("text-xs")
 
         async def restart() -> None:
@@ -186,10 +182,7 @@ class ExportPanel(Panel):
                 ("Scene, G-buffer, pictures (.zip)", pack, "pellucid-look.zip", "export"),
                 ("Picture (.png, 1920 x 1080)", draw, "pellucid.png", "picture"),
                 ("Look (.json)", look, "look.json", "look")):
-            async def give(make: Callable[[], bytes] = make, name: str = name) -> None:
-                await self.deliver(make, name)
-
-            self.button(label, give, marker)
+            self.button(label, functools.partial(self.deliver, make, name), marker)
 
         async def read(e: events.UploadEventArguments) -> bool:
             try:

@@ -1,6 +1,7 @@
 """Panels for a scene file."""
 from __future__ import annotations
 
+import functools
 import tempfile
 from dataclasses import fields
 from pathlib import Path
@@ -63,7 +64,4 @@ class SceneExportPanel(Panel):
                 self.viewer.session.save(file.name)
                 return Path(file.name).read_bytes()
 
-        async def scene() -> None:
-            await self.deliver(make, "scene.toml")
-
-        self.button("Scene (.toml)", scene, "export-scene")
+        self.button("Scene (.toml)", functools.partial(self.deliver, make, "scene.toml"), "export-scene")
