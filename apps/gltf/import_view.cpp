@@ -13,7 +13,8 @@ namespace {
 
 constexpr int importedShadowMapSize = 1024;
 
-sample::Vec3 vec(const io::Triple& t) {
+template <class Triple>
+sample::Vec3 vec(const Triple& t) {
     return {t[0], t[1], t[2]};
 }
 
@@ -94,16 +95,13 @@ void addShadowMap(const std::string& folder, const sample::Scene& scene, size_t 
     const double diagonal = bounds.empty() ? 0 : length(bounds.high - bounds.low);  // mm
     sample::ShadowMap map;
     if (p.type == PEL_LIGHT_DIRECTIONAL) {
-        map = sample::renderShadowMap(scene,
-                                      sample::DirectionalLight{{p.toLight[0], p.toLight[1], p.toLight[2]}},
-                                      importedShadowMapSize, std::min(0.01 * diagonal, 1.0));
+        map = sample::renderShadowMap(scene, sample::DirectionalLight{vec(p.toLight)}, importedShadowMapSize,
+                                      std::min(0.01 * diagonal, 1.0));
         p.shadowProjection = PEL_SHADOW_PARALLEL;
         p.shadowDepthRange = float(map.depthRange);
     } else if (p.type == PEL_LIGHT_SPOT) {
-        const sample::SpotLight spot{
-            {p.position[0], p.position[1], p.position[2]},
-            {p.spotDirection[0], p.spotDirection[1], p.spotDirection[2]},
-            std::min(std::acos(double(p.spotCosOuter)) * 180 / std::numbers::pi, 80.0)};
+        const double angle = std::acos(double(p.spotCosOuter)) * 180 / std::numbers::pi;
+        const sample::SpotLight spot{vec(p.position), vec(p.spotDirection), std::min(angle, 80.0)};
         map = sample::renderShadowMap(scene, spot, importedShadowMapSize);
         p.shadowProjection = PEL_SHADOW_PERSPECTIVE;
         p.shadowDepthA = float(map.depthA), p.shadowDepthB = float(map.depthB);

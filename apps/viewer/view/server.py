@@ -339,13 +339,12 @@ class Viewer:
                         await asyncio.wait_for(news.wait(), 5)
                     except asyncio.TimeoutError:
                         taken = sent
-                if made is not None and made[0].stands_in:
+                stands_in = made is not None and made[0].stands_in
+                if stands_in:
                     sample = 0  # until the kernels are ready, one picture is as good as eight
                 elif made is not None and not small and sample >= self.session.samples and not event.is_set():
                     await self._prepare(width, height)
-                if made is not None and made[0].stands_in and not event.is_set():
-                    asyncio.get_running_loop().call_later(SETTLED, event.set)
-                elif small and not event.is_set():
+                if (stands_in or small) and not event.is_set():
                     asyncio.get_running_loop().call_later(SETTLED, event.set)
 
         async def report_busy() -> None:
