@@ -70,10 +70,8 @@ def chosen_method(p: Pass, look: Look) -> str:
 def _spread(mask: NDArray[Any]) -> NDArray[Any]:
     """Padded to whole tiles."""
     height, width = mask.shape
-    rows, columns = -(-height // _TILE), -(-width // _TILE)
-    whole = np.zeros((rows * _TILE, columns * _TILE), bool)
-    whole[:height, :width] = mask
-    any_in = whole.reshape(rows, _TILE, columns, _TILE).any((1, 3))
+    whole = np.pad(mask, ((0, -height % _TILE), (0, -width % _TILE)))
+    any_in = whole.reshape(len(whole) // _TILE, _TILE, -1, _TILE).any((1, 3))
     return any_in.repeat(_TILE, 0).repeat(_TILE, 1)[:height, :width]
 
 
