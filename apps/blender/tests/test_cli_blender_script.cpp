@@ -27,6 +27,11 @@ class BlenderScript : public CommandTest {
     }
     // Without a .blend file.
     int render(const std::string& arguments) const { return render("", arguments); }
+    // The same, which must succeed.
+    void rendered(const std::string& before, const std::string& arguments,
+                  const std::string& scene = "") const {
+        ASSERT_EQ(render(before, arguments, scene), 0) << said();
+    }
     static int run(const std::string& line) {
         const int status = std::system(line.c_str());
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -35,11 +40,12 @@ class BlenderScript : public CommandTest {
 
     std::vector<float> shade(const std::string& gbuffer, const std::string& scene) const {
         done("shade '" + gbuffer + "' --scene '" + scene + "' -o @out.exr");
-        return rgb(io::readImage(path("out.exr")), "R", "G", "B");
+        return rgb(io::readImage(path("out.exr")));
     }
-    static std::vector<float> rgb(const io::Image& image, const std::string& r, const std::string& g,
-                                  const std::string& b) {
-        const std::vector<std::string> names{r, g, b};
+    static std::vector<float> rgb(const io::Image& image, const std::string& pass = "",
+                                  const std::string& letters = "RGB") {
+        std::vector<std::string> names;
+        for (const char letter : letters) names.push_back(pass + letter);
         return image.interleaved(names);
     }
 };
@@ -64,10 +70,8 @@ Depths look(const PelLight& light, const io::Image& map, const float* p) {
 TEST_F(BlenderScript, ABlendFileGivesBlendersLambertPicture) {
     for (const std::string light : {"SUN", "SPOT"}) {
         const std::string folder = path(light);
-        ASSERT_EQ(render("PELLUCID_SCENE='" + path("scene.blend") + " " + light + "'",
-                         "-o '" + folder + "' --shadow-size 512", "blender_scene.py"),
-                  0)
-            << said();
+        rendered("PELLUCID_SCENE='" + path("scene.blend") + " " + light + "'",
+                 "-o '" + folder + "' --shadow-size 512", "blender_scene.py");
         io::SceneFile scene = io::readScene(folder + "/scene.toml");
         ASSERT_EQ(scene.lights.size(), 1u);
         ASSERT_EQ(scene.materials.size(), 2u);
@@ -93,9 +97,9 @@ TEST_F(BlenderScript, ABlendFileGivesBlendersLambertPicture) {
         const io::Image g = io::readImage(folder + "/gbuffer.exr");
         EXPECT_EQ(g.width, 160);
         EXPECT_EQ(g.height, 120);
-        const std::vector<float> blender = rgb(g, "Combined.R", "Combined.G", "Combined.B");
-        const std::vector<float> n = rgb(g, "NShading.R", "NShading.G", "NShading.B");
-        const std::vector<float> p = rgb(g, "Position.X", "Position.Y", "Position.Z");
+        const std::vector<float> blender = rgb(g, "Combined.");
+        const std::vector<float> n = rgb(g, "NShading.");
+        const std::vector<float> p = rgb(g, "Position.", "XYZ");
         const std::vector<float> id = blender::pass(g, "Material Index", "IndexMA"),
                                  depth = g.channel("Depth.Z").pixels,
                                  object = blender::pass(g, "Object Index", "IndexOB"),
@@ -164,10 +168,8 @@ TEST_F(BlenderScript, ABlendFileGivesBlendersLambertPicture) {
 
 // Blender takes one point of the light for each pixel: single pixels differ, sums do not.
 TEST_F(BlenderScript, AnAreaLightIsARectangle) {
-    ASSERT_EQ(render("PELLUCID_SCENE='" + path("scene.blend") + " AREA'", "-o '" + path("out") + "'",
-                     "blender_scene.py"),
-              0)
-        << said();
+    rendered("PELLUCID_SCENE='" + path("scene.blend") + " AREA'", "-o '" + path("out") + "'",
+             "blender_scene.py");
     EXPECT_TRUE(contains(said(), "shines to all sides")) << said();
     io::SceneFile scene = io::readScene(path("out/scene.toml"));
     ASSERT_EQ(scene.lights.size(), 1u);
@@ -180,7 +182,7 @@ TEST_F(BlenderScript, AnAreaLightIsARectangle) {
     io::writeScene(path("lambert.toml"), scene);
     const std::vector<float> out = shade(path("out/gbuffer.exr"), path("lambert.toml"));
     const io::Image g = io::readImage(path("out/gbuffer.exr"));
-    const std::vector<float> blender = rgb(g, "Combined.R", "Combined.G", "Combined.B"),
+    const std::vector<float> blender = rgb(g, "Combined."),
                              id = blender::pass(g, "Material Index", "IndexMA");
     double ours = 0, theirs = 0, both = 0, squares = 0;
     for (size_t i = 0; i < id.size(); ++i)
@@ -208,13 +210,11 @@ TEST_F(BlenderScript, AMeshFileScatters) {
         }
     const std::string mesh = write("ball.off", io::concat("OFF\n", (rings + 1) * segments, " ",
                                                           rings * segments, " 0\n", vertices, faces));
-    ASSERT_EQ(render("'" + mesh + "' -o '" + path("out") +
-                     "' --size 96x64 --up y --height 19.4 --half --shadow-size 256"),
-              0)
-        << said();
+    rendered("", "'" + mesh + "' -o '" + path("out") +
+                     "' --size 96x64 --up y --height 19.4 --half --shadow-size 256");
     const io::Image g = io::readImage(path("out/gbuffer.exr"));
     ASSERT_EQ(g.width, 96);
-    const std::vector<float> p = rgb(g, "Position.X", "Position.Y", "Position.Z");
+    const std::vector<float> p = rgb(g, "Position.", "XYZ");
     const std::vector<float> id = blender::pass(g, "Material Index", "IndexMA");
     const std::vector<float>& albedo = g.channel("Albedo.R").pixels;
     float low = 1e9f, high = -1e9f;
@@ -244,7 +244,7 @@ TEST_F(BlenderScript, AMeshFileScatters) {
     for (const char* feature : {"direct_scatter", "deep_scatter", "thickness_taps", "specular"})
         EXPECT_NE(std::find(features.begin(), features.end(), feature), features.end()) << feature;
     EXPECT_EQ(stats.at("pixels_invalid"), 0);
-    const std::vector<float> out = rgb(io::readImage(path("out/p.exr")), "R", "G", "B");
+    const std::vector<float> out = rgb(io::readImage(path("out/p.exr")));
     // Past the terminator, to the right in the back, there is red light but no blue light.
     float red = 0;
     for (size_t i = 0; i < id.size(); ++i)
@@ -262,11 +262,8 @@ TEST_F(BlenderScript, OddThings) {
     }
     obj += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
     const std::string mesh = write("box ü.1.obj", obj), folder = path("out \"ü\" 1.2");
-    ASSERT_EQ(render("PELLUCID_SCENE='" + path("scene.blend") + "'",
-                     "'" + mesh + "' -o '" + folder + "' --up y --no-curvature --shadow-size 64",
-                     "blender_names.py"),
-              0)
-        << said();
+    rendered("PELLUCID_SCENE='" + path("scene.blend") + "'",
+             "'" + mesh + "' -o '" + folder + "' --up y --no-curvature --shadow-size 64", "blender_names.py");
     for (const char* warning : {"the camera sees none of the 2 objects", "its Alpha is left out",
                                 "files are missing, which are pink: Bild", "curves: hair of Haar"})
         EXPECT_TRUE(contains(said(), warning)) << warning << "\n" << said();
