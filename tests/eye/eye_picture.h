@@ -48,8 +48,8 @@ struct EyeScene {
 
 struct EyePixel {
     reference::EyeHit hit;
-    Vec3 position, normal, toCamera;  // world
-    Vec3 eyeToCamera;                 // in the eye's space
+    Vec3 position, normal;  // world
+    Vec3 eyeToCamera;       // in the eye's space
     bool shown = false;
 };
 
@@ -142,8 +142,7 @@ class EyePicture {
         if (!p.shown) return p;
         p.position = vec(s_.eye.center) + fromEye(p.hit.point) / s_.unit;
         p.normal = fromEye(p.hit.normal);
-        p.toCamera = normalized(s_.camera - p.position);
-        p.eyeToCamera = toEye(p.toCamera);
+        p.eyeToCamera = toEye(normalized(s_.camera - p.position));
         return p;
     }
 

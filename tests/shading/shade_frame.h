@@ -182,7 +182,7 @@ inline Frame randomFrame(uint32_t seed, uint32_t width, uint32_t height, uint32_
         if (l.type == PEL_LIGHT_POINT) l.range = 280;
         l.spotCosInner = 0.8f;
         l.spotCosOuter = 0.2f;
-        fill(light.wide, 1, [&] { return std::fmin(1.0f, std::fmax(0.0f, random.uniform(-0.6f, 1.6f))); });
+        fill(light.wide, 1, [&] { return std::clamp(random.uniform(-0.6f, 1.6f), 0.0f, 1.0f); });
         light.mapSize = 61;
         light.map.components = 1;
         light.map.values.resize(61 * 61);

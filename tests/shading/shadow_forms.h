@@ -343,26 +343,4 @@ inline double thicknessOf(const ContentLight& from, const SurfacePlace& at, cons
                                                  decoding);
 }
 
-// The worst difference from the oracle, and how many pixels are lit, dark and in between, or thick.
-struct Worst {
-    double wide = 0, thickness = 0;
-    size_t lit = 0, dark = 0, between = 0, thick = 0;
-};
-// Leaves out places for which `counts`, if given, is false.
-template <class From>
-Worst worstOf(const Frame& f, const Seen& seen, const From& from,
-              const std::function<bool(const SurfacePlace&)>& counts) {
-    Worst worst;
-    for (size_t i = 0; i < f.pixels(); ++i) {
-        const auto at = placeAt(f, i);
-        if (!at || (counts && !counts(*at))) continue;
-        const double wide = wideOf(from, *at), thickness = thicknessOf(from, *at, tapsOf(f, at->material, i));
-        worst.wide = std::max(worst.wide, std::abs(wide - seen.wide[i]));
-        worst.thickness = std::max(worst.thickness, std::abs(thickness - seen.thickness[i]));
-        ++(wide < 0.01 ? worst.dark : wide > 0.99 ? worst.lit : worst.between);
-        worst.thick += thickness > 1;
-    }
-    return worst;
-}
-
 }  // namespace shade_test

@@ -35,6 +35,48 @@ void blacken(float (&color)[3]) {
     std::fill_n(color, 3, 0.0f);
 }
 
+constexpr uint32_t tapped = PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS;
+const Term terms[] = {
+    {"Lambert", 0, 0},
+    {"Direct", PEL_FEATURE_DIRECT_SCATTER, CURVATURE},
+    {"PlainShadow", PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SHADOW, CURVATURE | WIDE},
+    {"ShadowLut", PEL_FEATURE_SHADOW | PEL_FEATURE_SHADOW_LUT, WIDE | LUT},
+    {"Ambient", PEL_FEATURE_AMBIENT, AMBIENT},
+    {"Indirect", PEL_FEATURE_AMBIENT, AMBIENT,
+     [](Frame& f) { f.slots[PEL_SLOT_INDIRECT] = f.slots[PEL_SLOT_ALBEDO]; }},
+    {"IndirectAlone", PEL_FEATURE_AMBIENT, AMBIENT,
+     [](Frame& f) {
+         f.ambient = pelAmbientDefaults();
+         f.slots[PEL_SLOT_INDIRECT] = f.slots[PEL_SLOT_ALBEDO];
+     }},
+    {"AmbientConstantWithoutIds", PEL_FEATURE_AMBIENT, AMBIENT,
+     [](Frame& f) {
+         std::memset(f.ambient.sh, 0, sizeof f.ambient.sh);
+         f.slots[PEL_SLOT_MATERIAL] = {};
+     }},
+    {"DeepScatterTaps", tapped, DEEP},
+    {"DeepScatterTurnedTaps", tapped, DEEP, [](Frame& f) { f.options.rotateTaps = 1; }},
+    {"DeepScatterImage", PEL_FEATURE_DEEP_SCATTER, DEEP | THICKNESS},
+    {"DeepScatterAmbient", PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_SCATTER, AMBIENT | DEEP | THICKNESS,
+     [](Frame& f) {
+         for (auto& [id, m] : f.materials) m.deepScatterAmbient = 0.1f * float(id);
+     }},
+    // There are shadow maps and taps, but they measure along the lights.
+    {"NoAmbientScatterWithoutAThicknessImage", PEL_FEATURE_AMBIENT | tapped, DEEP,
+     [](Frame& f) {
+         f.ambient.constant[0] = 0.3f;
+         for (auto& [id, m] : f.materials) m.deepScatterAmbient = 0.7f;
+     }},
+    {"SpecularGgx", PEL_FEATURE_SPECULAR | PEL_FEATURE_SHADOW | PEL_FEATURE_GGX, SPECULAR | WIDE,
+     [](Frame& f) {
+         for (auto& [id, m] : f.materials) {
+             if (id == 2) continue;  // one material of the other model
+             m.specularModel = PEL_SPECULAR_GGX;
+             m.roughness2 = 0.1f * float(id);
+         }
+     }},
+    {"Specular", PEL_FEATURE_SPECULAR | PEL_FEATURE_SHADOW, SPECULAR | WIDE}};
+
 class ShadeTerm : public testing::TestWithParam<Term> {};
 
 TEST_P(ShadeTerm, MatchesTheOracle) {
@@ -61,51 +103,8 @@ TEST_P(ShadeTerm, MatchesTheOracle) {
     EXPECT_GT(*std::max_element(result.begin(), result.end()), 0.01f) << "the term is there at all";
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Terms, ShadeTerm,
-    testing::Values(Term{"Lambert", 0, 0}, Term{"Direct", PEL_FEATURE_DIRECT_SCATTER, CURVATURE},
-                    Term{"PlainShadow", PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SHADOW, CURVATURE | WIDE},
-                    Term{"ShadowLut", PEL_FEATURE_SHADOW | PEL_FEATURE_SHADOW_LUT, WIDE | LUT},
-                    Term{"Ambient", PEL_FEATURE_AMBIENT, AMBIENT},
-                    Term{"Indirect", PEL_FEATURE_AMBIENT, AMBIENT,
-                         [](Frame& f) { f.slots[PEL_SLOT_INDIRECT] = f.slots[PEL_SLOT_ALBEDO]; }},
-                    Term{"IndirectAlone", PEL_FEATURE_AMBIENT, AMBIENT,
-                         [](Frame& f) {
-                             f.ambient = pelAmbientDefaults();
-                             f.slots[PEL_SLOT_INDIRECT] = f.slots[PEL_SLOT_ALBEDO];
-                         }},
-                    Term{"AmbientConstantWithoutIds", PEL_FEATURE_AMBIENT, AMBIENT,
-                         [](Frame& f) {
-                             std::memset(f.ambient.sh, 0, sizeof f.ambient.sh);
-                             f.slots[PEL_SLOT_MATERIAL] = {};
-                         }},
-                    Term{"DeepScatterTaps", PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS, DEEP},
-                    Term{"DeepScatterTurnedTaps", PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS, DEEP,
-                         [](Frame& f) { f.options.rotateTaps = 1; }},
-                    Term{"DeepScatterImage", PEL_FEATURE_DEEP_SCATTER, DEEP | THICKNESS},
-                    Term{"DeepScatterAmbient", PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_SCATTER,
-                         AMBIENT | DEEP | THICKNESS,
-                         [](Frame& f) {
-                             for (auto& [id, m] : f.materials) m.deepScatterAmbient = 0.1f * float(id);
-                         }},
-                    // There are shadow maps and taps, but they measure along the lights.
-                    Term{"NoAmbientScatterWithoutAThicknessImage",
-                         PEL_FEATURE_AMBIENT | PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS, DEEP,
-                         [](Frame& f) {
-                             f.ambient.constant[0] = 0.3f;
-                             for (auto& [id, m] : f.materials) m.deepScatterAmbient = 0.7f;
-                         }},
-                    Term{"SpecularGgx", PEL_FEATURE_SPECULAR | PEL_FEATURE_SHADOW | PEL_FEATURE_GGX,
-                         SPECULAR | WIDE,
-                         [](Frame& f) {
-                             for (auto& [id, m] : f.materials) {
-                                 if (id == 2) continue;  // one material of the other model
-                                 m.specularModel = PEL_SPECULAR_GGX;
-                                 m.roughness2 = 0.1f * float(id);
-                             }
-                         }},
-                    Term{"Specular", PEL_FEATURE_SPECULAR | PEL_FEATURE_SHADOW, SPECULAR | WIDE}),
-    [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(Terms, ShadeTerm, testing::ValuesIn(terms),
+                         [](const auto& info) { return info.param.name; });
 
 TEST(Shade, EverythingTogether) {
     for (uint32_t seed = 1; seed <= 4; ++seed) {
