@@ -50,13 +50,12 @@ TEST_F(ProgramsOnDisk, ASecondProcessCompilesNothingAndComputesTheSameBits) {
     EXPECT_EQ(table(on), truth);
     EXPECT_EQ(int(files().size()), n) << "the table's programs were among them";
 
-    // Files with a right checksum that hold no program are compiled again and replaced.
-    for (const fs::path& file : files()) {
-        const std::string nonsense(1000, 'n');
-        const Digest sum = Digest().addPart(file.stem().string()).add(nonsense);
-        std::ofstream(file, std::ios::binary) << sum.text() << nonsense;
-    }
-    expectWarmUp(on, {n, 0, n});
+    // A file with a right checksum that holds no program is compiled again and replaced.
+    const fs::path file = files().front();
+    const std::string nonsense(1000, 'n');
+    const Digest sum = Digest().addPart(file.stem().string()).add(nonsense);
+    std::ofstream(file, std::ios::binary) << sum.text() << nonsense;
+    expectWarmUp(on, {n, n - 1, 1});
     expectWarmUp(on, {n, n, 0});
     EXPECT_EQ(table(on), truth);
     // No room: built, not kept.

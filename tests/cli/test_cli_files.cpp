@@ -238,8 +238,7 @@ TEST_F(Files, MoreJobsThanFileHandles) {
 }
 
 TEST_F(Files, WhatKilledCommandsLeftIsSwept) {
-    for (const char* line : {"lut shadow --size 8x8 -o @o.exr", "curvature @m.off -o @o.ply",
-                             "demo @m.off --size 32x24 --height 20 -o @"}) {
+    for (const char* line : {"lut shadow --size 8x8 -o @o.exr", "curvature @m.off -o @o.ply"}) {
         // Made by a process that is killed in its write.
         const std::string left = path(".old." + tag() + "-0123456789abcdef.tmp.exr");
         const pid_t child = ::fork();
