@@ -87,8 +87,6 @@ class CommandTest : public FolderTest {
         FolderTest::TearDown();
     }
 
-    // A folder whose files are not counted.
-    const std::string& scratch() const { return scratch_; }
     std::string filled(std::string line) const {
         for (size_t at; (at = line.find('@')) != std::string::npos;) line.replace(at, 1, path(""));
         return line;
