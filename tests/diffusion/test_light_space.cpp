@@ -394,7 +394,7 @@ TEST(LightSpace, SlabsReflectWhatRandomWalksDo) {
     constexpr float distance = 0.5f;  // mm
     const uint32_t side = 24, middle = 3 * (side / 2 * side + side / 2);
     const auto reflected = [](double single, double paths) {
-        return reference::walkSlab({1, single}, paths, 1, 1, sized(100000, 1000), 7).reflected;
+        return reference::walkSlab({1, single}, paths, 1, 1, sized(60000, 1000), 7).reflected;
     };
     const auto sheetOf = [&](PelScattering method, const Kind& kind) {
         Frame f = sheet(side, method);
