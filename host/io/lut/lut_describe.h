@@ -2,6 +2,7 @@
 #pragma once
 #include <pellucid/pellucid.h>
 
+#include "fields/field_ranges.h"
 #include "io/choice_keys.h"
 #include "io/image/image_file.h"
 
@@ -13,30 +14,25 @@ inline constexpr int lutFormatVersion = 1;
 std::pair<uint32_t, uint32_t> lutSize(const PelLutInfo& info);
 
 // The numbers of a description, except its size: visit(attribute name, float&).
+#define PELLUCID_NUMBER_FLOAT(name) visit("pellucid:" #name, numbers.name);
+#define PELLUCID_NUMBER_UINT(name)
+#define PELLUCID_NUMBER(type, name, ...) PELLUCID_NUMBER_##type(name)
 template <class Info, class Visit>
 void visitLutNumbers(Info& info, Visit&& visit) {
     if (info.kind == PEL_LUT_CURVATURE) {
-        visit("pellucid:diffusionRadius", info.curvature.diffusionRadius);
-        visit("pellucid:radiusMin", info.curvature.radiusMin);
-        visit("pellucid:radiusMax", info.curvature.radiusMax);
+        auto& numbers = info.curvature;
+        PEL_EACH_CURVATURE_LUT_FIELD(PELLUCID_NUMBER)
     } else if (info.kind == PEL_LUT_SHADOW) {
-        visit("pellucid:diffusionRadius", info.shadow.diffusionRadius);
-        visit("pellucid:widthMin", info.shadow.widthMin);
-        visit("pellucid:widthMax", info.shadow.widthMax);
-        visit("pellucid:sharpening", info.shadow.sharpening);
+        auto& numbers = info.shadow;
+        PEL_EACH_SHADOW_LUT_FIELD(PELLUCID_NUMBER)
     } else if (info.kind == PEL_LUT_EYE) {
-        visit("pellucid:scleraRadius", info.eye.scleraRadius);
-        visit("pellucid:corneaRadius", info.eye.corneaRadius);
-        visit("pellucid:corneaConic", info.eye.corneaConic);
-        visit("pellucid:limbusRadius", info.eye.limbusRadius);
-        visit("pellucid:chamberDepth", info.eye.chamberDepth);
-        visit("pellucid:corneaIndex", info.eye.corneaIndex);
-        visit("pellucid:aqueousIndex", info.eye.aqueousIndex);
-        visit("pellucid:irisRadius", info.eye.irisRadius);
-        visit("pellucid:irisConcavity", info.eye.irisConcavity);
-        visit("pellucid:millimetresPerUnit", info.eye.millimetresPerUnit);
+        auto& numbers = info.eye;
+        PEL_EACH_EYE_LUT_FIELD(PELLUCID_NUMBER)
     }
 }
+#undef PELLUCID_NUMBER
+#undef PELLUCID_NUMBER_UINT
+#undef PELLUCID_NUMBER_FLOAT
 
 // Everything: kind, versions, colour space, profile's name, form, axis, numbers.
 std::vector<std::pair<std::string, Attribute>> describeLut(const PelLutInfo& info);

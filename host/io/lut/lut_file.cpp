@@ -167,31 +167,25 @@ void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLut
         throw FileError(path, concat("is a table whose ", what, " is ", is, "; ", asked, " is asked for"));
     };
     if (found.kind != wanted.kind) refuse("kind", lutKinds[found.kind], lutKinds[wanted.kind]);
-    const auto [width, height] = lutSize(found);
-    const auto [askedWidth, askedHeight] = lutSize(wanted);
-    const PelCurvatureLutDesc &c = found.curvature, &askedC = wanted.curvature;
-    const PelShadowLutDesc &s = found.shadow, &askedS = wanted.shadow;
-    const bool curvature = found.kind == PEL_LUT_CURVATURE;
-    for (const std::string& key : keys) {
-        const auto same = [&](const char* name, const auto& is, const auto& asked) {
-            if (key == name && is != asked) refuse(name, is, asked);
-        };
-        const auto sameLength = [&](const char* name, float is, float asked) {
-            if (asked != 0) same(name, is, asked);  // 0: the profile's own, any value
-        };
-        same("width", width, askedWidth);
-        same("height", height, askedHeight);
-        sameLength("diffusion_radius", curvature ? c.diffusionRadius : s.diffusionRadius,
-                   curvature ? askedC.diffusionRadius : askedS.diffusionRadius);
-        same("form", curvatureForms[c.form], curvatureForms[askedC.form]);
-        same("axis", lutAxes[curvature ? c.axis : s.axis], lutAxes[curvature ? askedC.axis : askedS.axis]);
-        same("closed_ends", s.closedEnds, askedS.closedEnds);
-        sameLength("radius_min", c.radiusMin, askedC.radiusMin);
-        sameLength("radius_max", c.radiusMax, askedC.radiusMax);
-        sameLength("width_min", s.widthMin, askedS.widthMin);
-        sameLength("width_max", s.widthMax, askedS.widthMax);
-        same("sharpening", s.sharpening, askedS.sharpening);
-    }
+    const auto checkAxis = [&](PelLutAxis is, PelLutAxis asked) {
+        if (is != asked) refuse("axis", lutAxes[is], lutAxes[asked]);
+    };
+// A special value asks for the profile's own, which may be any.
+#define PELLUCID_SAME(type, name, value, least, most, special, unit, word, ...) \
+    if (key == word && is.name != asked.name && asked.name != special) refuse(word, is.name, asked.name);
+    for (const std::string& key : keys)
+        if (found.kind == PEL_LUT_CURVATURE) {
+            const PelCurvatureLutDesc &is = found.curvature, &asked = wanted.curvature;
+            PEL_EACH_CURVATURE_LUT_FIELD(PELLUCID_SAME)
+            if (key == "axis") checkAxis(is.axis, asked.axis);
+            if (key == "form" && is.form != asked.form)
+                refuse("form", curvatureForms[is.form], curvatureForms[asked.form]);
+        } else {
+            const PelShadowLutDesc &is = found.shadow, &asked = wanted.shadow;
+            PEL_EACH_SHADOW_LUT_FIELD(PELLUCID_SAME)
+            if (key == "axis") checkAxis(is.axis, asked.axis);
+        }
+#undef PELLUCID_SAME
 }
 
 LutTexels decodeLut(const std::string& path, std::string bytes) {
