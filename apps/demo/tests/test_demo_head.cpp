@@ -18,6 +18,18 @@ class DemoHeads : public testing::TestWithParam<const char*> {
         demo::loadDemoHead(PELLUCID_SOURCE_DIR "/data/heads/" + std::string(GetParam()) + ".obj", 2);
     const sample::Scene scene{sample::MeshView{
         head.mesh.positions, head.mesh.normals, {}, {}, head.mesh.triangles, head.materials}};
+
+    // The surface visible at `at` in the direction -back: its id (0 for nothing) and position.
+    std::pair<uint32_t, Vec3> seen(Vec3 at, Vec3 back) const {
+        const sample::Ray ray{at + back * 300, -back};
+        const sample::Hit hit = scene.intersect(ray);
+        if (hit.triangle == sample::Hit::none) return {0, {}};
+        return {head.materials[hit.triangle], ray.origin + ray.direction * hit.distance};
+    }
+    static Vec3 from(double azimuth) {
+        const double a = azimuth * std::numbers::pi / 180;
+        return {std::sin(a), 0, std::cos(a)};
+    }
 };
 
 // A camera that looks along -z from 100 mm, with 10 pixels a mm at z = 0.
@@ -27,18 +39,14 @@ const sample::Camera camera{.eye = {0, 0, 100},
                             .verticalFov = 2 * std::atan(0.1) * 180 / std::numbers::pi,
                             .nearPlane = 1};
 
-sample::Image drawn(const Strand& strand, const demo::StrandLight& light, float depthOfAll) {
+double pixelsCovered(const Strand& strand, float depthOfAll) {
     sample::GBuffer g;
     g.width = g.height = size;
     g.viewDepth = sample::Image(size, size, 1, depthOfAll);
-    return demo::drawStrands({strand}, light, camera, g);
-}
-
-double pixelsCovered(const Strand& strand, float depthOfAll) {
-    const sample::Image image = drawn(strand, {}, depthOfAll);
+    const sample::Image drawn = demo::drawStrands({strand}, {}, camera, g);
     double sum = 0;
-    for (size_t i = 0; i < image.planeSize(); ++i) {
-        const float share = image.plane(3)[i];
+    for (size_t i = 0; i < drawn.planeSize(); ++i) {
+        const float share = drawn.plane(3)[i];
         EXPECT_GE(share, 0);
         EXPECT_LE(share, 1);
         sum += share;
@@ -48,8 +56,12 @@ double pixelsCovered(const Strand& strand, float depthOfAll) {
 
 // The red light of a hair that runs to the right, over what it covers.
 double lightOn(const demo::StrandLight& light) {
-    const sample::Image image = drawn({{{-5, 0, 0}, {0, 0, 0}, {5, 0, 0}}, 0.2}, light, 1e10f);
-    return image.at(0, 120, 99) / image.at(3, 120, 99);
+    sample::GBuffer g;
+    g.width = g.height = size;
+    g.viewDepth = sample::Image(size, size, 1, 1e10f);
+    const sample::Image drawn =
+        demo::drawStrands({{{{-5, 0, 0}, {0, 0, 0}, {5, 0, 0}}, 0.2}}, light, camera, g);
+    return drawn.at(0, 120, 99) / drawn.at(3, 120, 99);
 }
 
 }  // namespace
@@ -59,18 +71,42 @@ TEST_P(DemoHeads, LipsAreClosed) {
     const Vec3 left = head.eyes[0].centre, right = head.eyes[1].centre;
     const double e = length(left - right);
     int count = 0;
-    for (const double azimuth : {-0.7, 0.0, 0.7})
+    for (const double azimuth : {-40.0, 0.0, 40.0})
         for (double x = -0.5 * e; x <= 0.5 * e; x += 0.2)
             for (double y = left.y - 1.4 * e; y < left.y - 0.7 * e; y += 0.2) {
-                const Vec3 back{std::sin(azimuth), 0, std::cos(azimuth)};
-                const sample::Hit hit =
-                    scene.intersect({Vec3{x, y, head.frame.high.z - 0.4 * e} + back * 300, -back});
-                if (hit.triangle == sample::Hit::none) continue;
-                ++count;
-                const uint32_t id = head.materials[hit.triangle];
+                const uint32_t id = seen({x, y, head.frame.high.z - 0.4 * e}, from(azimuth)).first;
+                if (id) ++count;
                 ASSERT_TRUE(id != demo::DEMO_TEETH && id != demo::DEMO_TONGUE) << x << ", " << y;
             }
     EXPECT_GT(count, 10000);
+}
+
+TEST_P(DemoHeads, LipsAreRedderGlossierAndSmootherThanCheeks) {
+    const sample::SkinZone& lips = head.zones[0];
+    EXPECT_LT(lips.color[1], 0.7 * lips.color[0]);
+    EXPECT_GT(lips.specular, 1);
+    EXPECT_LT(lips.roughness, 0.7);
+    EXPECT_LT(lips.relief, 0.5);
+    const auto weightAt = [&](double x, double y) {  // of what is seen from the front
+        return lips.weight(seen({x, y, 200}, {0, 0, 1}).second);
+    };
+    const Vec3 left = head.eyes[0].centre, right = head.eyes[1].centre;
+    // Where the lips meet, the surface changes from facing down to facing up.
+    const auto upwards = [&](double y) {
+        Vec3 normal;
+        scene.firstHit({{0.1, y, 500}, {0, 0, -1}}, INFINITY, normal);
+        return normal.y;
+    };
+    double meeting = 0, sharpest = 0;
+    for (double y = left.y - 1.4 * length(left - right); y < left.y - 0.7 * length(left - right); y += 0.1)
+        if (const double turn = upwards(y) - upwards(y + 0.1); turn > sharpest) sharpest = turn, meeting = y;
+    EXPECT_GT(sharpest, 1);
+    for (const double side : {-1.0, 1.0}) {
+        EXPECT_GT(weightAt(0, meeting + 5 * side), 0.9) << "upper and lower lip";
+        EXPECT_GT(weightAt(14 * side, meeting), 0.9);
+        EXPECT_EQ(weightAt(0, meeting + 12 * side), 0);
+        EXPECT_EQ(weightAt(0.66 * length(left - right) * side, left.y - 40), 0);
+    }
 }
 
 // Every length, colour and place.
@@ -161,6 +197,78 @@ TEST_P(DemoHeads, PixelsAreTheKeptOnes) {
     }
 }
 
+// Except for the caruncles, which are at the corners of the eyes.
+TEST_P(DemoHeads, ZonesAreTheSameOnBothSides) {
+    for (size_t i = 0; i + 2 < head.zones.size(); ++i) {
+        const sample::SkinZone& a = head.zones[i];
+        EXPECT_TRUE(std::ranges::any_of(head.zones,
+                                        [&](const sample::SkinZone& b) {
+                                            const Vec3 mirrored{-b.centre.x, b.centre.y, b.centre.z};
+                                            return length(a.centre - mirrored) < 0.5 &&
+                                                   length(a.radii - b.radii) < 1e-9 && a.color == b.color &&
+                                                   a.specular == b.specular && a.relief == b.relief;
+                                        }))
+            << "zone " << i << " round " << a.centre.x << ", " << a.centre.y;
+    }
+}
+
+// Seen from the front, a pink hillock of skin lies between the lids, on the eye's side next to the nose.
+TEST_P(DemoHeads, EachEyeHasACaruncle) {
+    for (size_t i = 0; i < 2; ++i) {
+        const sample::EyeLook& eye = head.eyes[i];
+        const sample::SkinZone& zone = head.zones[head.zones.size() - 2 + i];
+        EXPECT_LT(zone.color[1], 0.85 * zone.color[0]);
+        const double toNose = (eye.centre.x > 0 ? -1 : 1) * (zone.centre.x - eye.centre.x) / eye.radius;
+        EXPECT_NEAR(toNose, 0.7, 0.2);
+        double area = 0;  // mm^2 of the ellipsoid
+        for (double x = -4; x < 4; x += 0.1)
+            for (double y = -4; y < 4; y += 0.1) {
+                const Vec3 p = seen(zone.centre + Vec3{x, y, 0}, {0, 0, 1}).second - zone.centre,
+                           r = zone.radii * (1 / 1.3);
+                if (std::abs(std::hypot(p.x / r.x, p.y / r.y, p.z / r.z) - 1) < 0.03) area += 0.01;
+            }
+        EXPECT_GT(area, 2);
+        EXPECT_LT(area, 20);
+    }
+}
+
+// The filling of the eyes' outer corners lies behind the lids, and is visible between them.
+TEST_P(DemoHeads, WhitesReachTheCornersOfTheLids) {
+    for (const sample::EyeLook& eye : head.eyes)
+        for (const double azimuth : {-25.0, 0.0, 25.0}) {
+            const double outwards = eye.centre.x > 0 ? 1 : -1, r = eye.radius;
+            double furthest = 0;
+            for (double x = 0; x < 2 * r; x += 0.2)
+                for (double y = -0.5 * r; y < 0.5 * r; y += 0.2) {
+                    const auto [id, p] = seen(eye.centre + Vec3{outwards * x, y, r}, from(azimuth));
+                    if (id == demo::DEMO_EYES || id == demo::DEMO_RIGHT_EYE)
+                        furthest = std::max(furthest, outwards * (p.x - eye.centre.x) / r);
+                }
+            EXPECT_GT(furthest, 0.8) << azimuth;
+            EXPECT_LT(furthest, 1.08) << azimuth;
+        }
+}
+
+// From below one looks into the nostrils; from above, no part of the nose is dark.
+TEST_P(DemoHeads, NostrilsAreDarkInside) {
+    int nostrils = 0;
+    for (const sample::SkinZone& zone : head.zones) {
+        if (zone.color[0] > 0.2) continue;
+        ++nostrils;
+        const auto darkest = [&](Vec3 back) {
+            double weight = 0;
+            for (double x = -8; x < 8; x += 0.4)
+                for (double y = -8; y < 8; y += 0.4)
+                    weight = std::max(weight, zone.weight(seen(zone.centre + Vec3{x, y, 0}, back).second));
+            return weight;
+        };
+        const double side = std::copysign(1, zone.centre.x);
+        EXPECT_GT(darkest(normalize(Vec3{0.2 * side, -0.8, 0.6})), 0.8);
+        EXPECT_LT(darkest(normalize(Vec3{0.4 * side, 0.9, 0.6})), 0.2);
+    }
+    EXPECT_EQ(nostrils, 2);
+}
+
 // Brows grow above the eyes out of the skin, lashes from the lids' edges, short hair on the scalp; none
 // starts or ends in the head.
 TEST_P(DemoHeads, HairGrowsOutOfTheSkin) {
@@ -196,6 +304,16 @@ TEST_P(DemoHeads, HairGrowsOutOfTheSkin) {
     }
     EXPECT_GT(cap, 30000);
     EXPECT_TRUE(demo::strandsOf(scene, {}).empty());
+}
+
+TEST_P(DemoHeads, HairLeavesTheFaceAndTheEarsFree) {
+    const Vec3 middle = head.scalp.betweenEyes, crown{0, head.frame.high.y, head.frame.centre().z};
+    const double e = head.scalp.eyeDistance;
+    EXPECT_EQ(head.scalp.cover(crown), 1);
+    EXPECT_EQ(head.scalp.cover({0, middle.y, head.frame.low.z}), 1) << "the back";
+    EXPECT_EQ(head.scalp.cover({0, middle.y + 1.2 * e, head.frame.high.z - 0.5 * e}), 0) << "the forehead";
+    for (const double side : {-1.0, 1.0})
+        EXPECT_EQ(head.scalp.cover({side * head.frame.high.x, middle.y, crown.z}), 0) << "an ear";
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, DemoHeads, testing::Values("head_female", "head_male"),
@@ -235,4 +353,54 @@ TEST(Hair, IsLitByWhatReachesIt) {
     light.occluders = nullptr;
     light.lamps[0].toLight = {0, 0, -1};
     EXPECT_EQ(lightOn(light), sky) << "light from behind the skin";
+}
+
+// Pixels 0.5 mm apart, one of them in a fold; to its right an eye, and skin 5 mm deeper.
+TEST(Folds, AreDarkWithSoftEdges) {
+    sample::GBuffer g;
+    g.width = 6, g.height = 1;
+    g.material = {1, 1, 1, 1, demo::DEMO_EYES, 1};
+    g.position = sample::Image(6, 1, 3);
+    g.albedo = sample::Image(6, 1, 3, 0.5f);
+    g.specular = sample::Image(6, 1, 1, 1);
+    sample::Image occlusion(6, 1, 1, 1);
+    occlusion.at(0, 3, 0) = 0.1f;
+    for (int x = 0; x < 6; ++x) g.position.at(0, x, 0) = 0.5f * float(x);
+    g.position.at(2, 5, 0) = -5;
+    sample::GBuffer lids = g;
+    demo::darkenFolds(lids, occlusion, std::vector(6, 1.0f));
+    demo::darkenFolds(g, occlusion, std::vector(6, 0.0f));
+    const float* green = g.albedo.plane(1);
+    EXPECT_GT(lids.albedo.at(1, 3, 0), 2 * green[3]) << "the edge of a lid";
+    EXPECT_LT(green[3], 0.1f);
+    EXPECT_LT(g.specular.data[3], 0.2f);
+    EXPECT_LT(green[3], green[2]);
+    EXPECT_LT(green[2], green[1]);
+    for (const int x : {0, 4, 5}) EXPECT_EQ(green[x], 0.5f) << x;
+}
+
+// An eye above y = 0 and skin below, or the other way round, five pixels a mm.
+TEST(Eyes, LidsAreMoist) {
+    for (const bool lower : {true, false}) {
+        sample::GBuffer g;
+        g.width = 2, g.height = 40;
+        g.material.assign(80, demo::DEMO_SKIN);
+        g.position = g.albedo = sample::Image(2, 40, 3);
+        g.specular = g.roughness = sample::Image(2, 40, 1, 1);
+        std::ranges::fill(g.albedo.data, 0.5f);
+        for (int y = 0; y < 40; ++y)
+            for (int x = 0; x < 2; ++x) {
+                g.position.at(0, x, y) = 0.2f * float(x), g.position.at(1, x, y) = 0.2f * (19.5f - float(y));
+                if ((y < 20) == lower) g.material[size_t(2 * y + x)] = demo::DEMO_EYES;
+            }
+        const std::vector<float> wet = demo::dressEyes(g, {0, 1, 0});
+        const int eye = lower ? 19 : 20, skin = lower ? 20 : 19, away = lower ? -1 : 1;
+        EXPECT_GT(wet[size_t(2 * eye)], wet[size_t(2 * (eye + 2 * away))]);
+        EXPECT_EQ(wet[size_t(2 * (eye + 5 * away))], 0);
+        EXPECT_LT(g.albedo.at(1, 0, skin), g.albedo.at(0, 0, skin)) << "pink";
+        EXPECT_EQ(g.albedo.at(0, 0, skin) < 0.35f, !lower) << "roots of lashes";
+        EXPECT_GT(g.specular.at(0, 0, skin), 1);
+        EXPECT_LT(g.roughness.at(0, 0, skin), 1);
+        EXPECT_EQ(g.albedo.at(1, 0, skin - 8 * away), 0.5f);
+    }
 }
