@@ -254,14 +254,11 @@ void Device::progress(double fraction, const char* what) {
 
 double eventMilliseconds(const cl::Event& event) {
     cl_ulong start = 0, end = 0;
-    if (!event ||
-        clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_START, sizeof start, &start, nullptr) !=
-            CL_SUCCESS ||
-        clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr) !=
-            CL_SUCCESS ||
-        end < start)
-        return 0;
-    return double(end - start) * 1e-6;
+    const auto got = [&](cl_profiling_info what, cl_ulong& time) {
+        return clGetEventProfilingInfo(event.get(), what, sizeof time, &time, nullptr) == CL_SUCCESS;
+    };
+    const bool known = event && got(CL_PROFILING_COMMAND_START, start) && got(CL_PROFILING_COMMAND_END, end);
+    return known && end >= start ? double(end - start) * 1e-6 : 0;
 }
 
 }  // namespace pel

@@ -19,25 +19,17 @@ class Event final : public Object {
     cl::Event event_;
 };
 
-// Construct it before the first command of a call, and call finish() after the last. The queue is in order,
-// so commands between them need no event lists of their own.
-class Submission {
-  public:
-    Submission(Device& device, const PelSubmit* submit);
-    bool blocking() const { return submit_ == nullptr; }
-    void finish();
-
-  private:
-    Device& device_;
-    const PelSubmit* submit_;
-};
+// Before the first command of a call, and after its last. The queue is in order, so commands between them
+// need no event lists of their own.
+void beginSubmission(Device& device, const PelSubmit* submit);
+void endSubmission(Device& device, const PelSubmit* submit);
 
 // A call whose commands are those of work(blocking).
 template <class Work>
 void submitted(Device& device, const PelSubmit* submit, Work&& work) {
-    Submission submission(device, submit);
-    work(submission.blocking());
-    submission.finish();
+    beginSubmission(device, submit);
+    work(submit == nullptr);
+    endSubmission(device, submit);
 }
 
 }  // namespace pel

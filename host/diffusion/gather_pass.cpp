@@ -44,10 +44,8 @@ class GatherPass final : public Pass {
             if (!takes(material) || !(material.params.diffusionRadius > 0)) continue;
             const PelMaterial& m = material.params;
             const ScreenScatter::Material profile = profileOf(material);
-            materials_[id] = {profile.profile,
-                              profile.scale,
-                              scatterTapsOf(m.scattering, m.scatterTaps),
-                              {m.borderColor[0], m.borderColor[1], m.borderColor[2]}};
+            materials_[id] = {profile.profile, profile.scale, scatterTapsOf(m.scattering, m.scatterTaps),
+                              std::to_array(m.borderColor)};
         }
     }
     size_t bytes() const override {
@@ -60,11 +58,11 @@ class GatherPass final : public Pass {
     }
 
     size_t upload(Device&, ShaderPlan& plan) override {
-        ScatterView view;
-        std::copy_n(plan.state.camera.inverseViewProjection, 16, view.inverseViewProjection);
-        std::copy_n(plan.state.camera.position, 3, view.position);
-        view.everywhere = plan.state.options.disableSkipping != 0;
-        scatter_->prepare(materials_, sources_, images_, view, plan.state.options.frameIndex);
+        const PelCamera& camera = plan.state.camera;
+        const PelShaderOptions& options = plan.state.options;
+        scatter_->prepare(materials_, sources_, images_,
+                          {camera.inverseViewProjection, camera.position, 0, options.disableSkipping != 0},
+                          options.frameIndex);
         return 0;
     }
 

@@ -17,10 +17,8 @@ Rgb densityAt(const ProfileNodes& nodes, float distance2) {
         std::clamp(std::bit_cast<int32_t>(distance2) - int32_t(nodes.table.firstBits), 0, last);
     const size_t at = 4 * size_t(bits >> PEL_PROFILE_NODE_BITS);
     const double f = double(bits & ((1 << PEL_PROFILE_NODE_BITS) - 1)) / (1 << PEL_PROFILE_NODE_BITS);
-    Rgb density;
-    for (size_t c = 0; c < 3; ++c)
-        density[c] = nodes.values[at + c] + f * (double(nodes.values[at + 4 + c]) - nodes.values[at + c]);
-    return density;
+    const Rgb low = threeAt(&nodes.values[at]), high = threeAt(&nodes.values[at + 4]);
+    return low + f * (high - low);
 }
 
 // Replaces R by the line spread.

@@ -115,10 +115,9 @@ Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImage
         const uint32_t wanted = c.scatterTaps || lines || !perPixel ? c.scatterTaps : diskTapsForBlocks;
         const bool taps = lines || wanted > 0;
         if (taps)
-            (lines ? plan.lines : plan.disk)[id] = {material.profile,
-                                                    material.scale,
+            (lines ? plan.lines : plan.disk)[id] = {material.profile, material.scale,
                                                     scatterTapsOf(c.scattering, wanted),
-                                                    {c.borderColor[0], c.borderColor[1], c.borderColor[2]}};
+                                                    std::to_array(c.borderColor)};
         else
             plan.screen[id] = curving;
         if (c.thinThickness > 0 && !back)
@@ -130,8 +129,7 @@ Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImage
         PelBlendMaterial blend{};
         blend.before = c.albedoBefore;
         blend.after = albedo ? 1 - c.albedoBefore : 0.0f;
-        const Rgb through = throughSheet(*material.profile, material.scale, c.thinThickness);
-        for (int k = 0; k < 3; ++k) blend.through[k] = float(through[k]);
+        std::ranges::copy(throughSheet(*material.profile, material.scale, c.thinThickness), blend.through);
         blend.weighs = !taps && plan.weight;
         std::ranges::copy(curving.gain, blend.gain);
         describeGain(*material.profile, blend.gainSlope, blend.gainSaturation);
@@ -214,10 +212,9 @@ void Scatter::run(const PelScatterParams& params, const ScatterImages& images,
     if (images.depth) checkInvertible("PelScatterParams", params.inverseViewProjection);
     const Plan plan = planOf(params, images);
     if (!keys) capture(params, images);
-    ScatterView view;
-    std::copy_n(params.inverseViewProjection, 16, view.inverseViewProjection);
-    view.tolerance = params.targetError * params.white;
-    view.everywhere = params.everywhere != 0;
+    constexpr static float unknown[3] = {};
+    const ScatterView view{params.inverseViewProjection, unknown, params.targetError * params.white,
+                           params.everywhere != 0};
     events_.clear();
     counts_ = {};
     pixels_ = images.out.width * images.out.height;

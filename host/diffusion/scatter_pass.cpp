@@ -59,11 +59,10 @@ class ScatterPass final : public Pass {
     }
 
     size_t upload(Device&, ShaderPlan& plan) override {
-        ScatterView view;
-        std::copy_n(plan.state.camera.inverseViewProjection, 16, view.inverseViewProjection);
-        std::copy_n(plan.state.camera.position, 3, view.position);
-        view.tolerance = plan.state.options.targetError;  // light is in units of pi already, as white is
-        scatter_->prepare(materials_, images_, view);
+        const PelCamera& camera = plan.state.camera;
+        // Light is in units of pi already, as white is.
+        scatter_->prepare(materials_, images_,
+                          {camera.inverseViewProjection, camera.position, plan.state.options.targetError});
         return 0;
     }
 

@@ -7,10 +7,10 @@
 namespace pel {
 
 struct ScatterView {
-    float inverseViewProjection[16] = {};  // clip to world; all zero: not known, with positions
-    float position[3] = {};                // of the camera; all zero: not known
-    float tolerance = 0;                   // of irradiance
-    bool everywhere = false;               // leave nothing out
+    const float (&inverseViewProjection)[16];  // clip to world; all zero: not known, with positions
+    const float (&position)[3];                // of the camera; all zero: not known
+    float tolerance = 0;                       // of irradiance
+    bool everywhere = false;                   // leave nothing out
 };
 
 // From where, or in which direction, a picture is seen.

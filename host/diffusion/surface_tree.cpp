@@ -137,10 +137,8 @@ class Builder {
         const Three at = centre + origin_;
         for (int a = 0; a < 3; ++a) far[a] = std::max(at[a] - set.low[a], set.high[a] - at[a]);
         const double radius = length(far);
-        for (int c = 0; c < 3; ++c) {
-            node.centre[c] = float(at[c]);
-            node.weight[c] = float(m.weight[c]);
-        }
+        std::ranges::copy(at, node.centre);
+        std::ranges::copy(m.weight, node.weight);
         node.radius = float(radius);
         const double accept = acceptFrom(radius, std::max(0.0, spread), offset);
         node.accept2 = float(accept * accept);

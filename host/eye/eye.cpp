@@ -175,11 +175,10 @@ PelShadeEye describeEye(const PelEye& eye, const AmbientNodes& ambient, double m
 }
 
 // Returns false for a vector of length 0.
-static bool normalize(double (&v)[3]) {
-    const double length = std::hypot(v[0], v[1], v[2]);
-    if (!(length > 0)) return false;
-    for (double& c : v) c /= length;
-    return true;
+static bool normalize(Three& v) {
+    const double size = length(v);
+    v = v / size;
+    return size > 0;
 }
 
 static void checkFinite(const char* field, const float (&v)[3]) {
@@ -201,17 +200,15 @@ PelEye resolvedEye(const PelEye& given) {
     checkFinite("center", eye.center);
     checkFinite("gaze", eye.gaze);
     checkFinite("up", eye.up);
-    double g[3] = {eye.gaze[0], eye.gaze[1], eye.gaze[2]}, u[3] = {eye.up[0], eye.up[1], eye.up[2]};
+    Three g = threeAt(eye.gaze), u = threeAt(eye.up);
     if (!normalize(g)) invalidArgument("PelEye.gaze is (0, 0, 0); a direction is needed");
     if (!normalize(u)) invalidArgument("PelEye.up is (0, 0, 0); a direction is needed");
-    const double along = u[0] * g[0] + u[1] * g[1] + u[2] * g[2];
-    for (int i = 0; i < 3; ++i) u[i] -= along * g[i];
+    const double along = dot(u, g);
+    u = u - along * g;
     if (std::abs(along) > 0.99999 || !normalize(u))
         invalidArgument("PelEye.up is parallel to PelEye.gaze; a direction that is not would be right");
-    for (int i = 0; i < 3; ++i) {
-        eye.gaze[i] = float(g[i]);
-        eye.up[i] = float(u[i]);
-    }
+    std::ranges::copy(g, eye.gaze);
+    std::ranges::copy(u, eye.up);
     return eye;
 }
 

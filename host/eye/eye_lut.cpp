@@ -47,9 +47,8 @@ Rgb texelWeight(const ProfileShape& profile, int i, int j, double dx, double dy)
     Rgb share{};
     for (int v = 0; v < n; ++v)
         for (int u = 0; u < n; ++u) {
-            const Rgb r =
-                profile.radial(std::hypot((i + (u + 0.5) / n - 0.5) * dx, (j + (v + 0.5) / n - 0.5) * dy));
-            for (int c = 0; c < 3; ++c) share[c] += r[c] * dx * dy / (n * n);
+            const double x = (i + (u + 0.5) / n - 0.5) * dx, y = (j + (v + 0.5) / n - 0.5) * dy;
+            share += dy * (dx * profile.radial(std::hypot(x, y))) / (n * n);
         }
     return share;
 }
@@ -79,7 +78,7 @@ struct Weights {
             for (int i = 0; i <= reachX; ++i) {
                 const Rgb share = texelWeight(profile.shape(), i, j, dx, dy);
                 const int mirrors = (i ? 2 : 1) * (j ? 2 : 1);
-                for (int c = 0; c < 3 && (i || j); ++c) others[c] += mirrors * share[c];
+                if (i || j) others += mirrors * share;
                 for (const int x : {-i, i})
                     for (const int y : {-j, j})
                         at(x, y) = {{float(share[0]), float(share[1]), float(share[2]), 0}};

@@ -113,8 +113,7 @@ PelProfileInfo Profile::info() const {
     info.singular = shape_->singular();
     std::strncpy(info.name, name().c_str(), sizeof info.name - 1);
     std::strncpy(info.source, source_, sizeof info.source - 1);
-    const Rgb path = shape_->meanFreePath();
-    for (int c = 0; c < 3; ++c) info.meanFreePath[c] = float(path[c]);
+    std::ranges::copy(shape_->meanFreePath(), info.meanFreePath);
     info.reach = float(reach());
     return info;
 }

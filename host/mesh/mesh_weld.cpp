@@ -1,8 +1,9 @@
 #include "mesh/mesh_topology.h"
 
 #include <bit>
-#include <cmath>
 #include <numeric>
+
+#include "core/three.h"
 
 namespace pel {
 namespace {
@@ -70,9 +71,8 @@ uint32_t findNear(const CellTable& table, const VertexFloats& positions, const P
     for (int n = 0; n < 27; ++n) {
         const Cell cell{centre[0] + n % 3 - 1, centre[1] + n / 3 % 3 - 1, centre[2] + n / 9 - 1};
         found = std::min(found, table.find(cell, [&](uint32_t v) {
-            const Point q = positions[v];
-            const double dx = double(p[0]) - q[0], dy = double(p[1]) - q[1], dz = double(p[2]) - q[2];
-            return dx * dx + dy * dy + dz * dz <= tolerance * tolerance;
+            const Three way = threeAt(p.data()) - threeAt(positions[v].data());
+            return dot(way, way) <= tolerance * tolerance;
         }));
     }
     return found;

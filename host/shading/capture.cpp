@@ -139,9 +139,7 @@ std::string lost(const ShaderState& state) {
     if (lightImages > PEL_LIGHT_BUFFERS)
         say("which of the lights' ", lightImages,
             " images share buffers: `pellucid shade` has a buffer for each, ", PEL_LIGHT_BUFFERS, " at most");
-    const auto exact = [](const float(&v)[3]) {
-        return std::abs(std::hypot(double(v[0]), double(v[1]), double(v[2])) - 1) < 1e-6;
-    };
+    const auto exact = [](const float(&v)[3]) { return std::abs(length(threeAt(v)) - 1) < 1e-6; };
     for (size_t i = 0; i < state.lights.size(); ++i) {
         const PelLight& l = state.lights[i].params;
         const bool directional = l.type == PEL_LIGHT_DIRECTIONAL;

@@ -50,7 +50,7 @@ void checkChoice(std::string_view structure, const char* field, int value, int c
 }
 
 bool isUnit(const float (&v)[3]) {
-    const double length2 = double(v[0]) * v[0] + double(v[1]) * v[1] + double(v[2]) * v[2];
+    const double length2 = dot(threeAt(v), threeAt(v));
     return length2 > 0.998 && length2 < 1.002;
 }
 
@@ -124,15 +124,12 @@ void checkMaterial(const PelMaterial& m) {
 static void checkRectangle(const PelLight& l, const std::string& name) {
     checkFinite(name.c_str(), "halfWidth", l.halfWidth, 3);
     checkFinite(name.c_str(), "halfHeight", l.halfHeight, 3);
-    const auto dot = [](const float(&a)[3], const float(&b)[3]) {
-        return double(a[0]) * b[0] + double(a[1]) * b[1] + double(a[2]) * b[2];
-    };
-    const double width = std::sqrt(dot(l.halfWidth, l.halfWidth)),
-                 height = std::sqrt(dot(l.halfHeight, l.halfHeight));
+    const Three across = threeAt(l.halfWidth), up = threeAt(l.halfHeight);
+    const double width = length(across), height = length(up);
     if (!(std::min(width, height) >= PEL_TINY && std::max(width, height) <= PEL_HUGE))
         invalidArgument(name, ".halfWidth and halfHeight have the lengths ", width, " and ", height,
                         "; each must be at least ", PEL_TINY, " and at most ", PEL_HUGE);
-    const double cosine = dot(l.halfWidth, l.halfHeight) / (width * height);
+    const double cosine = dot(across, up) / (width * height);
     if (!(std::abs(cosine) <= 1e-3))
         invalidArgument(
             name, ".halfWidth and halfHeight must be at right angles; the cosine between them is ", cosine);
@@ -198,8 +195,7 @@ void checkEnvironment(const ImageView& image) {
 void checkAxes(const std::array<float, 9>& axes) {
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k <= i; ++k) {
-            double product = 0;
-            for (int c = 0; c < 3; ++c) product += double(axes[3 * i + c]) * axes[3 * k + c];
+            const double product = dot(threeAt(&axes[3 * i]), threeAt(&axes[3 * k]));
             if (!(std::abs(product - (i == k)) < 1e-3))
                 invalidArgument(
                     "the axes of the environment must be three unit vectors at right angles; the "
@@ -260,11 +256,10 @@ static void checkCube(const ShaderLight& light, const std::string& name) {
             invalidArgument(name, ".worldToShadow maps the light's position to a point whose component ", r,
                             " is ", at, "; the light of a cube map must be at the origin");
         for (int q = 0; q <= r; ++q) {
-            double dot = 0;
-            for (int c = 0; c < 3; ++c) dot += double(m[4 * r + c]) * m[4 * q + c];
-            if (!(std::abs(dot - (q == r)) < 1e-3))
+            const double product = dot(threeAt(m + 4 * r), threeAt(m + 4 * q));
+            if (!(std::abs(product - (q == r)) < 1e-3))
                 invalidArgument(name, ".worldToShadow stretches or shears (rows ", q, " and ", r,
-                                " have the product ", dot,
+                                " have the product ", product,
                                 "); a cube map needs a rotation, with the light at the origin");
         }
     }
@@ -295,11 +290,8 @@ static void checkCascades(const ShaderLight& light, const std::string& name) {
             invalidArgument(name, ".", range, " is ", c.depthRange,
                             ": the length that depths 0 to 1 span is needed, of one sign for all cascades");
         const float* m = *c.worldToShadow;
-        double volume = 0;  // of the image of a unit cube
-        for (int k = 0; k < 3; ++k) {
-            const int p = (k + 1) % 3, q = (k + 2) % 3;
-            volume += m[k] * (double(m[4 + p]) * m[8 + q] - double(m[4 + q]) * m[8 + p]);
-        }
+        // Of the image of a unit cube.
+        const double volume = dot(threeAt(m), cross(threeAt(m + 4), threeAt(m + 8)));
         if (!(std::abs(volume) > 0) || m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] == 0)
             invalidArgument(name, ".", matrix,
                             " is singular or no parallel projection (row 3 must be 0, 0, 0 and not 0): each "

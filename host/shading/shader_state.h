@@ -72,6 +72,10 @@ inline ShadowCascade shadowCascade(const ShaderLight& light, uint32_t index) {
     return {&l.cascadeToShadow[index - 1], l.cascadeDepthRange[index - 1],
             &light.images[PEL_LIGHT_CASCADE_1 + index - 1]};
 }
+// How much u (row 0) or v (row 1) of a parallel map grows per length.
+inline double uvPerLength(const float (&worldToShadow)[16], int row) {
+    return length(threeAt(worldToShadow + 4 * row)) / std::abs(double(worldToShadow[15]));
+}
 // How many maps a light has.
 inline uint32_t cascadesOf(const ShaderLight& light) {
     return light.params.shadowCascades ? light.params.shadowCascades : 1;

@@ -21,13 +21,6 @@ bool hasDisk(const ShaderState& state, const ShaderMaterial& material) {
     return (materialNeeds(state, material) & both) == both;
 }
 
-// How much u (row 0) or v (row 1) of a parallel map grows per length.
-double uvPerLength(const float (&m)[16], int row) {
-    const float* r = m + 4 * row;
-    return std::sqrt(double(r[0]) * r[0] + double(r[1]) * r[1] + double(r[2]) * r[2]) /
-           std::abs(double(m[15]));
-}
-
 uint64_t samplesAlong(uint32_t nodes) {
     return PEL_TAP_SAMPLES(uint64_t(nodes));
 }

@@ -19,11 +19,8 @@ MapLengths lengthsOf(const ShaderLight& light) {
         return lengths;
     for (uint32_t k = 0; k < cascadesOf(light); ++k) {
         const ShadowCascade cascade = shadowCascade(light, k);
-        const auto& m = *cascade.worldToShadow;
         for (int row = 0; row < 2; ++row) {
-            const double perLength =
-                std::hypot(double(m[4 * row]), double(m[4 * row + 1]), double(m[4 * row + 2])) /
-                std::abs(double(m[15]));
+            const double perLength = uvPerLength(*cascade.worldToShadow, row);
             lengths.span = std::max(lengths.span, 1 / perLength);
             if (k == 0)
                 lengths.texel = std::max(lengths.texel,
