@@ -20,11 +20,12 @@ using namespace pellucid;
 namespace {
 
 std::vector<Float3> normalsOf(const Device& device, const Mesh& mesh) {
+    const std::vector<uint32_t> indices = mesh.triangles();
     PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
     const auto count = uint32_t(mesh.positions.size());
     desc.numVertices = count;
-    desc.indices = mesh.triangles.data();
-    desc.numIndices = uint32_t(mesh.triangles.size());
+    desc.indices = indices.data();
+    desc.numIndices = uint32_t(indices.size());
     const MeshTopology topology(device, desc);
     const Buffer normals(device, count * sizeof(Float3));
     topology.normals(vertexView(Buffer(device, mesh.positions), count), vertexView(normals, count));
@@ -95,7 +96,7 @@ double median(std::vector<double>& values) {
 
 int main(int argc, char** argv) try {
     const Options o = parsed(argc, argv);
-    const Mesh read = readObj(o.head), head = subdivided(read, normalsOf(Device(), read));
+    const Mesh head = subdivided(readObj(o.head));
     try {
         gl::makeContext();
     } catch (const std::runtime_error& e) {

@@ -7,6 +7,33 @@
 #include <stdexcept>
 #include <utility>
 
+namespace {
+
+Float3& operator+=(Float3& a, const Float3& b) {
+    for (size_t i = 0; i < 3; ++i) a[i] += b[i];
+    return a;
+}
+
+Float3 scaled(const Float3& a, float s) {
+    return {a[0] * s, a[1] * s, a[2] * s};
+}
+
+struct Edge {
+    Float3 ends{}, faces{};  // sums
+    int count = 0;           // of faces; 1 on a border
+    uint32_t point = 0;      // the vertex that divides it
+};
+
+}  // namespace
+
+std::vector<uint32_t> Mesh::triangles() const {
+    std::vector<uint32_t> indices;
+    for (const auto& polygon : polygons)
+        for (size_t i = 2; i < polygon.size(); ++i)
+            indices.insert(indices.end(), {polygon[0], polygon[i - 1], polygon[i]});
+    return indices;
+}
+
 Mesh readObj(const std::string& path) {
     std::ifstream file(path);
     Mesh mesh;
@@ -22,9 +49,9 @@ Mesh readObj(const std::string& path) {
             mesh.ids.push_back(Skin);
         } else if (key == "g") {
             words >> word;
-            id = word.starts_with("eye")                                   ? Eyes
-                 : word.starts_with("teeth") || word.starts_with("tongue") ? Mouth
-                                                                           : Skin;
+            id = word.rfind("eye", 0) == 0                                     ? Eyes
+                 : word.rfind("teeth", 0) == 0 || word.rfind("tongue", 0) == 0 ? Mouth
+                                                                               : Skin;
         } else if (key == "f") {
             std::vector<uint32_t> polygon;
             while (words >> word) {
@@ -34,36 +61,72 @@ Mesh readObj(const std::string& path) {
                 polygon.push_back(uint32_t(vertex - 1));
                 mesh.ids[vertex - 1] = id;
             }
-            for (size_t i = 2; i < polygon.size(); ++i)
-                mesh.triangles.insert(mesh.triangles.end(), {polygon[0], polygon[i - 1], polygon[i]});
+            mesh.polygons.push_back(std::move(polygon));
         }
     }
-    if (mesh.triangles.empty()) throw std::runtime_error(path + ": no faces; an OBJ file is needed");
+    if (mesh.polygons.empty()) throw std::runtime_error(path + ": no faces; an OBJ file is needed");
     return mesh;
 }
 
-Mesh subdivided(const Mesh& mesh, const std::vector<Float3>& normals) {
+Mesh subdivided(const Mesh& mesh) {
+    const size_t count = mesh.positions.size();
     Mesh out{mesh.positions, mesh.ids, {}};
-    std::map<std::pair<uint32_t, uint32_t>, uint32_t> middles;  // of edges
-    const auto middle = [&](uint32_t a, uint32_t b) {
-        const auto [at, fresh] = middles.try_emplace(std::minmax(a, b), uint32_t(out.positions.size()));
-        if (fresh) {
-            const Float3 &from = mesh.positions[a], &to = mesh.positions[b];
-            float rise = 0, fall = 0;  // of the edge, from the tangent planes at its ends
-            for (size_t i = 0; i < 3; ++i)
-                rise += (to[i] - from[i]) * normals[a][i], fall += (to[i] - from[i]) * normals[b][i];
-            Float3 p;
-            for (size_t i = 0; i < 3; ++i)
-                p[i] = 0.5f * (from[i] + to[i]) + 0.1875f * (fall * normals[b][i] - rise * normals[a][i]);
-            out.positions.push_back(p);
-            out.ids.push_back(mesh.ids[a]);
-        }
-        return at->second;
+    std::map<std::pair<uint32_t, uint32_t>, Edge> edges;
+    std::vector<Float3> faceSums(count), edgeSums(count), borderSums(count);
+    std::vector<int> faces(count), borders(count);
+    const auto edgeOf = [&](const std::vector<uint32_t>& polygon, size_t i) -> auto& {
+        const uint32_t a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+        return edges[{std::min(a, b), std::max(a, b)}];
     };
-    for (size_t i = 0; i < mesh.triangles.size(); i += 3) {
-        const uint32_t a = mesh.triangles[i], b = mesh.triangles[i + 1], c = mesh.triangles[i + 2],
-                       ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-        out.triangles.insert(out.triangles.end(), {a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca});
+
+    std::vector<Float3> centers;
+    for (const auto& polygon : mesh.polygons) {
+        Float3 center{};
+        for (const uint32_t v : polygon) center += scaled(mesh.positions[v], 1.0f / float(polygon.size()));
+        centers.push_back(center);
+        for (size_t i = 0; i < polygon.size(); ++i) {
+            edgeOf(polygon, i).faces += center;
+            ++edgeOf(polygon, i).count;
+            faceSums[polygon[i]] += center;
+            ++faces[polygon[i]];
+        }
+    }
+    for (auto& [ends, edge] : edges) {
+        edge.ends = mesh.positions[ends.first];
+        edge.ends += mesh.positions[ends.second];
+        const Float3 middle = scaled(edge.ends, 0.5f);
+        Float3 point = middle;
+        if (edge.count == 2) point = scaled(edge.faces, 0.25f), point += scaled(edge.ends, 0.25f);
+        edge.point = uint32_t(out.positions.size());
+        out.positions.push_back(point);
+        out.ids.push_back(mesh.ids[ends.first]);
+        for (const uint32_t v : {ends.first, ends.second}) {
+            edgeSums[v] += middle;
+            if (edge.count == 1) borderSums[v] += middle, ++borders[v];
+        }
+    }
+    for (size_t v = 0; v < count; ++v) {
+        const auto n = float(faces[v]);
+        Float3& p = out.positions[v];
+        if (borders[v] == 2) {
+            p = scaled(p, 0.5f);
+            p += scaled(borderSums[v], 0.25f);
+        } else if (n > 0 && borders[v] == 0) {
+            p = scaled(p, (n - 3) / n);
+            p += scaled(faceSums[v], 1 / (n * n));
+            p += scaled(edgeSums[v], 2 / (n * n));
+        }
+    }
+    for (size_t f = 0; f < mesh.polygons.size(); ++f) {
+        const auto& polygon = mesh.polygons[f];
+        const auto center = uint32_t(out.positions.size());
+        out.positions.push_back(centers[f]);
+        out.ids.push_back(mesh.ids[polygon[0]]);
+        for (size_t i = 0; i < polygon.size(); ++i) {
+            const size_t before = (i + polygon.size() - 1) % polygon.size();
+            out.polygons.push_back(
+                {polygon[i], edgeOf(polygon, i).point, center, edgeOf(polygon, before).point});
+        }
     }
     return out;
 }

@@ -68,9 +68,8 @@ layout(location = 2) out vec4 albedo;
 void main() {
     depth = gl_FragCoord.z;
     normalId = vec4(normalize(normal), id);
-    float away = 1 - normalize(own).z;
-    vec3 iris = mix(vec3(0.01), vec3(0.13, 0.2, 0.24), smoothstep(0.01, 0.018, away));
-    vec3 eye = mix(iris, vec3(0.7, 0.66, 0.62), smoothstep(0.07, 0.085, away));
+    vec3 iris = mix(vec3(0.01), vec3(0.13, 0.2, 0.24), smoothstep(0.018, 0.03, 1 - own.z));
+    vec3 eye = mix(iris, vec3(0.7, 0.66, 0.62), smoothstep(0.12, 0.14, 1 - own.z));
     vec3 colors[5] = vec3[](vec3(0), vec3(0.64, 0.4, 0.3), eye, vec3(0.5, 0.3, 0.25), vec3(0.06, 0.07, 0.09));
     albedo = vec4(colors[int(id)], 1);
 })";
@@ -139,7 +138,7 @@ Renderer::Renderer(const Mesh& head, const std::vector<Float3>& normals, GLsizei
         for (size_t i = 0; i < 3; ++i) p[i] -= 0.5f * (low[i] + high[i]);
         add(p, normals[v], Id(head.ids[v]));
     }
-    std::vector<uint32_t> indices = head.triangles;
+    std::vector<uint32_t> indices = head.triangles();
     for (const uint32_t corner : {0, 1, 2, 2, 1, 3})
         indices.push_back(uint32_t(head.positions.size()) + corner);
     for (const float y : {-400.0f, 400.0f})
