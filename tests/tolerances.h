@@ -59,11 +59,17 @@ constexpr double quadricTurned = 1e-2;
 // relative: nearer to a threshold float may decide the other way; such vertices are not compared
 constexpr double quadricDecision = 1e-4;
 constexpr double torusExactNormals = 0.005;  // RMS, 20,000 vertices: what the estimators are chosen for
+// RMS, the same with normals from the mesh, as hosts often have them
+constexpr double torusEstimatedNormals = 0.01;
 // RMS, 10,000 vertices: the flat side of an ellipsoid, next to the apex of a cone
 constexpr double surfaceCurvature = 0.02;
 // 1/length, a plane of side 4: rounding of positions over the square of an edge
 constexpr double planeCurvature = 1e-5;
-constexpr double heatKernel = 0.02;  // of the peak, at any distance and radius from two edges on
+constexpr double orderQuadric = 1.8;          // second order, measured between two sizes
+constexpr double orderTensor = 1.8;           // second order where errors of neighbours cancel
+constexpr double orderTensorIrregular = 0.8;  // first order on irregular meshes
+constexpr double heatKernel = 0.02;           // of the peak, at any distance and radius from two edges on
+constexpr double heatMass = 1e-5;             // relative: float sums of hundreds of stages
 // relative: rounding of hundreds of stages; means never leave the range
 constexpr double diffusionRange = 1e-4;
 // float angles and cross products; slivers of irregular meshes lose a digit
@@ -79,6 +85,11 @@ constexpr double scatteredRms = 0.01;
 constexpr double scatteredWorst = 0.1;  // the largest of them: what is wanted; 0.2 to 6 % measured
 // largest, cells 1 : 25: float positions over the square of the shorter edge, 0.0039 at distance 4
 constexpr double slenderTorus = 0.02;
+// RMS, noise of 2 % of the edges, smoothed to three: what is left where the noise is as long
+constexpr double noisySphere = 0.05;
+// RMS, the same on surfaces that are flatter for their edges, whose borders spread by the radius
+constexpr double noisySurface = 0.1;
+constexpr double noisyBorder = 0.15;  // the same in the outermost two rows, whose two-rings lie on one side
 // relative to 1/(a step): differences of float normals and positions of neighbours
 constexpr double screenOracle = 2e-5;
 constexpr double screenSphere = 2e-3;  // relative: float positions at steps of 1/30 radius; normals are exact
@@ -213,6 +224,9 @@ constexpr double costOfTenth = 0.125;  // of the whole: tiles and blocks that ar
 constexpr double lightFlux = 5e-3;
 constexpr double lightPlaces = 0.024;  // as wide as the ball: blocks of texels half as wide as their distance
 constexpr double lightTails = 0.04;    // the same in the tails of narrow Gaussians
+// relative, RMS, on a ball narrower than the profile's radius: hidden weight is known if either light shows
+// it, and bounds on what a slope takes away do not add up; 0.016 measured, 0.001 on one five times wider
+constexpr double lightsAddUp = 2e-2;
 // of targetError, the worst pixel of several bodies: second differences measure, they do not bound; 1.45
 // measured
 constexpr double scatterLeftOut = 1.6;
@@ -228,6 +242,8 @@ constexpr double keptHead = 1e-5;       // the same of lengths, mm; a hundred ti
 constexpr double keptPixels = 3e-3;     // of white, means of 4 x 4 pixels: one that shows something else
 constexpr double scatterLanes = 2e-6;   // of white, one lane beside sixteen: order of additions
 constexpr double scatterSeam = 1.6;     // the same, over the borders of tiles that took different ways
+// of targetError: how much more a tile steps that begins to count; 0.03 measured
+constexpr double scatterFade = 0.1;
 // of white, in a dark gap: 0.006 in one pixel that few blocks round it are the same surface as
 constexpr double scatterBluer = 0.01;
 constexpr double scatterWideRms = 1.4e-2;  // a Gaussian of 96 pixels against its closed form; 1.2e-2 measured
@@ -246,9 +262,13 @@ constexpr double lightSeenTwice = 4e-3;  // two ways to divide a sum by its weig
 // --- against the surface integral of a head, RMSE in 1e-4 of radiance, albedo 0.8 ---
 // 102 measured; Lambert 324, 123 without a map; 65 measured; Lambert 161, 68 without; 49 measured; Lambert 99
 inline constexpr std::array lightFour{106.0, 67.0, 52.0};
-constexpr double gain = 6e-3;          // curvature by differences of float positions over a window
+constexpr double gain = 6e-3;  // curvature by differences of float positions over a window
+// against random walks: 58; 84 without directions and gain; 42; 49 without; 49; 49 without
 constexpr double parallelView = 1e-3;  // a ball of 12 at a distance of 4000 is seen 0.003 to the side
 constexpr double walkBalls[] = {123, 65, 54, 36, 19, 12};  // 1e-4 of white: 5 % above 117, 62, 52, 34, 17, 10
+constexpr double walkHead[3] = {61, 45, 51};
+// against random walks: 178; 212 without directions and gain; 75; 107 without; 50; 69 without
+constexpr double walkHeadTimesFour[3] = {187, 79, 54};
 // 6.1, 1.6 and 0.6 measured; Lambert 42, 8.7, 3.1
 inline constexpr std::array lightBall{7.0, 2.0, 1.3};
 // scattering `light`; 6.7 measured; 5.6 measured; 5.2 measured: triangles lean from the ball by up to 0.026

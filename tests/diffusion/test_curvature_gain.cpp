@@ -92,6 +92,31 @@ double gainAt(double curvature, int channel, double strength = 1) {
     return reference::curvatureGain(strength * meanFreePath[channel] * curvature, 1.087);
 }
 
+// Radiance of random walks at some pixels: of each channel two estimates.
+npy::Array<float> walk(const char* name) {
+    return npy::read<float>(std::filesystem::path(std::getenv("PELLUCID_RULER_DIR")) / name);
+}
+
+// RMSE in 1e-4 without the noise of the walk.
+std::array<double, 3> errorOfWalk(const ReferenceScene& r, const std::vector<float>& light,
+                                  const npy::Array<float>& walk) {
+    std::array<double, 3> sum{};
+    for (size_t k = 0; k < walk.shape[0]; ++k) {
+        const float* row = walk.row(k);
+        const size_t pixel = size_t(row[0]) * r.side + size_t(row[1]);
+        for (int c = 0; c < 3; ++c) {
+            const double v = albedo * light[3 * pixel + c];
+            sum[c] += (v - row[4 + 2 * c]) * (v - row[5 + 2 * c]) / double(walk.shape[0]);
+        }
+    }
+    for (double& s : sum) s = 1e4 * std::sqrt(std::max(s, 0.0));
+    return sum;
+}
+
+bool hasData() {
+    return std::getenv("PELLUCID_RULER_DIR") && std::getenv("PELLUCID_GBUFFER_DIR");
+}
+
 }  // namespace
 
 TEST(CurvatureGain, IsThatOfTheSurface) {
@@ -276,13 +301,11 @@ TEST(CurvatureGain, ParallelViewsAreLikeThoseFromAfar) {
 
 // No method is further from the random walk than Lambert, whatever the ball's radius.
 TEST(CurvatureGain, BallsAgainstRandomWalks) {
-    const char *references = std::getenv("PELLUCID_RULER_DIR"),
-               *gbuffers = std::getenv("PELLUCID_GBUFFER_DIR");
-    if (!references || !gbuffers)
-        GTEST_SKIP() << "PELLUCID_RULER_DIR or PELLUCID_GBUFFER_DIR is not set: no reference";
-    const auto walks = npy::read<double>(std::filesystem::path(references) / "ball_walks_f64.npy");
+    if (!hasData()) GTEST_SKIP() << "PELLUCID_RULER_DIR or PELLUCID_GBUFFER_DIR is not set: no reference";
+    const npy::Array<double> walks =
+        npy::read<double>(std::filesystem::path(std::getenv("PELLUCID_RULER_DIR")) / "ball_walks_f64.npy");
     constexpr double radii[] = {3.47, 8.68, 11.57, 17.35, 28.92, 57.84};  // mean free paths
-    ReferenceScene r = ball(gbuffers);
+    ReferenceScene r = ball(std::getenv("PELLUCID_GBUFFER_DIR"));
     r.gain = 1;
     for (size_t k = 0; k < 6; ++k) {
         r.profileScale = float(10 / radii[k] / meanFreePath[0]);  // of a ball of 10 mm, in red
@@ -308,6 +331,33 @@ TEST(CurvatureGain, BallsAgainstRandomWalks) {
             if (method == PEL_SCATTERING_AUTO) {
                 EXPECT_LT(rms, tolerance::walkBalls[k]) << "radius " << radii[k];
             }
+        }
+    }
+}
+
+TEST(CurvatureGain, HeadsAgainstRandomWalks) {
+    if (!hasData()) GTEST_SKIP() << "PELLUCID_RULER_DIR or PELLUCID_GBUFFER_DIR is not set: no reference";
+    const char *references = std::getenv("PELLUCID_RULER_DIR"),
+               *gbuffers = std::getenv("PELLUCID_GBUFFER_DIR");
+    ReferenceScene r = headTimesFour(references, gbuffers);
+    for (float scale : {1.0f, 4.0f}) {
+        const npy::Array<float> truth =
+            walk(scale == 1 ? "head_side_walk_f32.npy" : "head_side_x4_walk_f32.npy");
+        r.profileScale = scale;
+        const std::array<double, 3> lambert = errorOfWalk(r, r.irradiance, truth);
+        for (PelScattering method : methods) {
+            if (method == PEL_SCATTERING_PREINTEGRATED) continue;  // needs curvature and a filtered shadow
+            r.gain = 0;
+            const auto without = errorOfWalk(r, shade(device(), r, method, false).light, truth);
+            r.gain = 1;
+            const auto own = errorOfWalk(r, shade(device(), r, method, false).light, truth);
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_LT(own[c], lambert[c]) << "scale " << scale << ", method " << int(method);
+                EXPECT_LT(own[c], 1.03 * without[c] + 1) << "scale " << scale << ", method " << int(method);
+            }
+            if (method != PEL_SCATTERING_AUTO) continue;
+            for (int c = 0; c < 3; ++c)
+                EXPECT_LT(own[c], (scale == 1 ? tolerance::walkHead : tolerance::walkHeadTimesFour)[c]);
         }
     }
 }

@@ -130,6 +130,27 @@ TEST(History, EqualsTheOracle) {
         }
 }
 
+TEST(History, AtRestComesCloserToAllTaps) {
+    const uint32_t side = sized(64u, 24u);
+    const Picture p = movedBall({}, side);
+    for (const uint32_t half : {0u, 1u}) {
+        ClipFrame dense = clipFrame(p, screen, 256, 0, {});
+        dense.frame.options.halfRate = half;
+        const std::vector<float> manyTaps = alone(dense);
+        ShownImages shown(device(), 1, 1);
+        double first = 0, last = 0;
+        for (uint32_t k = 0; k < 16; ++k) {
+            ClipFrame c = clipFrame(p, screen, 8, k, {});
+            c.frame.options.halfRate = half;
+            const Shown now = shade(c, shown);
+            EXPECT_EQ(now.stats.pixelsHistory, k ? covered(p) : 0);
+            last = difference(p, now.light, manyTaps).rms;
+            if (k == 0) first = last;
+        }
+        EXPECT_LT(last, 0.45 * first);
+    }
+}
+
 // More frames than a byte counts.
 TEST(History, GoesOnForHundredsOfFrames) {
     const Picture p = movedBall({}, 16);

@@ -248,6 +248,30 @@ TEST(LightSpace, TexelsOfOtherObjectsDoNotCount) {
     }
 }
 
+// Light is additive: the result for two lights is the sum of the results for each alone.
+TEST(LightSpace, TwoLightsAreTheSumOfEachAlone) {
+    const uint32_t side = sized(64u, 20u);
+    const std::vector<LitBall> both{makeBall(Form::parallel, {0.7, 0.2, -0.5}, sized(192u, 64u)),
+                                    makeBall(Form::parallel, {-0.6, 0.5, -0.4}, sized(192u, 64u))};
+    for (const float width : {0.4f, 2.7f})
+        for (PelScattering method : {byLight, byAuto}) {
+            const auto light = [&](const std::vector<LitBall>& lights) {
+                Frame f = frameOf(lights, side, method, width);
+                f.options.targetError = 0;
+                return f.shade();
+            };
+            const Shown first = light({both[0]}), together = light(both);
+            EXPECT_GT(together.stats.scatterTaps, first.stats.scatterTaps);
+            std::vector<float> sum = first.light;
+            std::ranges::transform(sum, light({both[1]}).light, sum.begin(), std::plus());
+            const Difference d = difference(pictureOf(both, side), together.light, sum);
+            // A small picture has too few tiles to choose the same ones for two lights as for each.
+            if (!testsAreSmall() || method == byLight) {
+                EXPECT_LT(d.relative, tolerance::lightsAddUp) << int(method) << ", radius " << width;
+            }
+        }
+}
+
 // Where the ball is dark, all light has come through it: every texel counts, and no pixel does. This also
 // holds for a known medium: surface as deep as on a sphere of that curvature is not the far side of a slab.
 TEST(LightSpace, ThroughABallIsTheSurfaceIntegralForEveryFormOfMap) {

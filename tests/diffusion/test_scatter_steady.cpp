@@ -92,6 +92,30 @@ TEST(ScatterSteady, LeavesOutNoMoreThanTheTargetError) {
     }
 }
 
+// Tiles that begin to count while the light moves, or cease to.
+TEST(ScatterSteady, TilesFadeIn) {
+    const Stage stage(device(), ball(10, sized(96, 8)), 1);
+    std::vector<float> chosenBefore, allBefore;
+    size_t most = 0, least = size_t(-1);  // pixels that were left as they are
+    double odd = 0;
+    for (int f = 0; f < sized(20, 2); ++f) {
+        const LitScene s = sceneOf(stage, sized(160, 24), 140 + 0.2 * f);
+        const std::vector<float> chosen = scatteredOf(s, target), all = scatteredOf(s, 0);
+        size_t kept = 0;
+        for (size_t i = 0; i < s.covered.size(); ++i)
+            kept += s.covered[i] && std::equal(&chosen[3 * i], &chosen[3 * i] + 3, &s.irradiance[3 * i]);
+        most = std::max(most, kept), least = std::min(least, kept);
+        for (size_t k = 0; f && k < all.size(); ++k)
+            odd = std::max(odd,
+                           std::abs((double(chosen[k]) - chosenBefore[k]) - (double(all[k]) - allBefore[k])));
+        chosenBefore = chosen, allBefore = all;
+    }
+    EXPECT_LE(odd, tolerance::scatterFade * target);
+    if (!testsAreSmall()) {
+        EXPECT_LT(least, most);
+    }
+}
+
 // The contrast of a wave grows by steps of 4 %: it is left as it is, then scattered to a part, then wholly.
 TEST(ScatterSteady, TilesFadeInWithTheirContrast) {
     scatter_scene::Scatter scatter(device());

@@ -159,6 +159,34 @@ TEST(SkinMaps, EvenMapsAreAPlainMaterial) {
     }
 }
 
+TEST(SkinMaps, AStrokeChangesItsSurroundings) {
+    const uint32_t side = 160;
+    Picture p = plane(side, side, 0.3, [](double x, double y) {
+        const double e = (int(x / 4) + int(y / 4)) % 2 ? 1 : 0.2;
+        return Vec3{e, e, e};
+    });
+    Frame f(p, byAuto);
+    f.profile = Profile::skinLayers(skinOf(0.02f, 0.01f));
+    std::vector<float>& maps = f.images[PEL_SLOT_SKIN];
+    for (size_t i = 0; i < p.pixels(); ++i) maps.insert(maps.end(), {0.02f, 0.01f});
+    const std::vector<float> before = f.shade().light;
+    const auto inside = [&](size_t i, int more) {
+        const int x = int(i % side), y = int(i / side);
+        return std::abs(x - 80) < 12 + more && std::abs(y - 72) < 12 + more;
+    };
+    for (size_t i = 0; i < p.pixels(); ++i)
+        if (inside(i, 0)) maps[2 * i + 1] = 0.1f;  // a blush
+    const std::vector<float> after = f.shade().light;
+    for (size_t i = 0; i < 3 * p.pixels(); ++i) {
+        if (i % 3 == 1 && inside(i / 3, -2)) {
+            EXPECT_LT(after[i], 0.9f * before[i]);
+        }
+        if (!inside(i / 3, 4)) {
+            ASSERT_NEAR(after[i], before[i], 2e-3) << i / 3 % side << ' ' << i / 3 / side;
+        }
+    }
+}
+
 TEST(SkinMaps, WhatIsNotUsedCostsNoBit) {
     Frame f = ballFrame(byAuto, 32);
     const Shown plain = f.shade();

@@ -86,6 +86,21 @@ TEST(Skin, MorePigmentReflectsLessOverTheWholeRange) {
     }
 }
 
+// Without pigment, skin reflects most of the light that enters it (94 %), and more if it scatters more.
+TEST(Skin, NoLightIsMade) {
+    PelSkin skin = pelSkinDefaults();
+    skin.melanin = skin.blood = skin.water = 0;
+    float before = 0;
+    for (const float scattering : {2.0f, 4.0f, 7.0f, 10.0f}) {
+        skin.scattering = scattering;
+        const float r = reflectanceAt(skin, 720);
+        EXPECT_GT(r, before);
+        EXPECT_LT(r, 0.94f);
+        before = r;
+    }
+    EXPECT_GT(before, 0.6f);  // what bare tissue absorbs is missing
+}
+
 // Equal energy is white of equal coordinates, and daylight has its place in the standard's diagram.
 TEST(Skin, MatchingFunctionsAndDaylightAreTheStandards) {
     double even[3]{}, day[3]{};
@@ -109,6 +124,18 @@ TEST(Skin, SpectraAddUp) {
         for (const pel::SkinSpectrum& s : pel::skinSpectra) sum += double((&s.nanometres)[column]);
         EXPECT_NEAR(sum / sums[column], 1, 1e-7) << column;
     }
+}
+
+TEST(Skin, OxygenatedBloodShowsItsTwoBands) {
+    PelSkin skin = pelSkinDefaults();
+    skin.oxygenation = 1;
+    EXPECT_LT(reflectanceAt(skin, 540), reflectanceAt(skin, 520));
+    EXPECT_LT(reflectanceAt(skin, 540), reflectanceAt(skin, 560));
+    EXPECT_LT(reflectanceAt(skin, 575), reflectanceAt(skin, 560));
+    EXPECT_LT(reflectanceAt(skin, 575), reflectanceAt(skin, 600));
+    skin.oxygenation = 0;  // one band, at 555 nm
+    EXPECT_LT(reflectanceAt(skin, 555), reflectanceAt(skin, 540));
+    EXPECT_LT(reflectanceAt(skin, 555), reflectanceAt(skin, 575));
 }
 
 TEST(Skin, MapsComeBack) {
