@@ -1,5 +1,5 @@
 // Pictures with the shadow map of their light and the surface integral over them: computed by brute force
-// elsewhere (a head, with four times the usual radius), or in closed form (a ball).
+// elsewhere (a head), or in closed form (a ball).
 #pragma once
 #include <nlohmann/json.hpp>
 
@@ -17,7 +17,7 @@ constexpr double albedo = 0.8;  // of the pictures that errors are in
 
 // Lengths are in cm.
 struct ReferenceScene {
-    uint32_t side = 0;                                         // pixels of the picture
+    uint32_t side = 0, samples = 1;  // pixels of the picture, of which samples^2 are one of the reference
     std::vector<float> positions, normals, irradiance, truth;  // RGB
     std::vector<uint8_t> ids;
     uint32_t mapSide = 0;
@@ -54,6 +54,23 @@ inline void addMap(ReferenceScene& r, const std::string& base) {
     }
     r.light.shadowDepthRange = 1;
     for (int k = 0; k < 3; ++k) r.light.toLight[k] = float(json["light"]["direction_towards_light_world"][k]);
+}
+
+inline ReferenceScene head1536(const std::string& references, const std::string& gbuffers) {
+    const pellucid::io::Image image = pellucid::io::readImage(references + "/head_side_1536.exr");
+    ReferenceScene r;
+    r.side = 1536, r.samples = 3;
+    const std::string position[] = {"Position.X", "Position.Y", "Position.Z"},
+                      normal[] = {"NS.X", "NS.Y", "NS.Z"},
+                      surface[] = {"Surface.R", "Surface.G", "Surface.B"},
+                      light[] = {"Irradiance.Y", "Irradiance.Y", "Irradiance.Y"};
+    r.positions = image.interleaved(position);
+    r.normals = image.interleaved(normal);
+    r.truth = image.interleaved(surface);
+    r.irradiance = image.interleaved(light);
+    for (float id : image.channel("IndexOB.X").pixels) r.ids.push_back(id > 0);
+    addMap(r, gbuffers + "/head_side");
+    return r;
 }
 
 inline void readGbuffer(ReferenceScene& r, const std::string& path) {
@@ -123,14 +140,26 @@ inline Shown shade(const Device& device, const ReferenceScene& r, PelScattering 
     return f.shade(shown);
 }
 
-// Root mean square per channel over the pixels of the object, in 1e-4 of radiance.
+// Root mean square per channel over pixels of the reference that are wholly covered, in 1e-4 of radiance.
 inline std::array<double, 3> error(const ReferenceScene& r, const std::vector<float>& result) {
     std::array<double, 3> sum{};
-    for (size_t i = 0; i < r.ids.size(); ++i)
-        for (size_t c = 0; c < 3 && r.ids[i]; ++c)
-            sum[c] += std::pow(result[3 * i + c] - r.truth[3 * i + c], 2);
-    const auto count = double(r.ids.size() - size_t(std::ranges::count(r.ids, 0)));
-    for (double& s : sum) s = 1e4 * albedo * std::sqrt(s / count);
+    size_t count = 0;
+    const size_t k = r.samples, coarse = r.side / k;
+    for (size_t y = 0; y < coarse; ++y)
+        for (size_t x = 0; x < coarse; ++x) {
+            double mean[3] = {};
+            bool covered = true;
+            for (size_t j = 0; j < k * k; ++j) {
+                const size_t i = (k * y + j / k) * r.side + k * x + j % k;
+                covered &= r.ids[i] != 0;
+                for (int c = 0; c < 3; ++c)
+                    mean[c] += (result[3 * i + c] - r.truth[3 * i + c]) / double(k * k);
+            }
+            if (!covered) continue;
+            ++count;
+            for (int c = 0; c < 3; ++c) sum[c] += mean[c] * mean[c];
+        }
+    for (double& s : sum) s = 1e4 * albedo * std::sqrt(s / double(std::max<size_t>(count, 1)));
     return sum;
 }
 
