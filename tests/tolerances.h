@@ -260,6 +260,9 @@ constexpr double throughSheet = 0.18;
 constexpr double lightSeenTwice = 4e-3;  // two ways to divide a sum by its weights
 
 // --- against the surface integral of a head, RMSE in 1e-4 of radiance, albedo 0.8 ---
+inline constexpr std::array headOnScreen{40.0, 14.0, 9.0};  // Lambert with ray-traced shadows: 85, 30, 14
+// screen and maps; 25.0 measured, 31 without; 11.4 measured; 8.5 measured
+inline constexpr std::array lightHead{28.0, 12.8, 9.0};
 // 102 measured; Lambert 324, 123 without a map; 65 measured; Lambert 161, 68 without; 49 measured; Lambert 99
 inline constexpr std::array lightFour{106.0, 67.0, 52.0};
 constexpr double gain = 6e-3;  // curvature by differences of float positions over a window
@@ -273,7 +276,10 @@ constexpr double walkHeadTimesFour[3] = {187, 79, 54};
 inline constexpr std::array lightBall{7.0, 2.0, 1.3};
 // scattering `light`; 6.7 measured; 5.6 measured; 5.2 measured: triangles lean from the ball by up to 0.026
 inline constexpr std::array lightBallOfLight{8.0, 6.5, 6.0};
+// scattering `light`; 14.1 measured; 8.7 measured; 7.9 measured
+inline constexpr std::array lightHeadOfLight{16.0, 9.7, 8.7};
 inline constexpr std::array lightFourOfLight{36.0, 45.0, 44.0};  // 31 measured; 40 measured; 40 measured
+constexpr double headByMapBlue = 23;  // irradiance alone, from texels of 0.33 mm: 22
 // taps that round to another pixel, where the profile's table ends a node further out
 constexpr double scatterTapsRms = 2e-3;
 constexpr double scatterTapsMost = 4e-2;  // the same, of the worst pixel
