@@ -5,7 +5,6 @@
 #include "core/launch_policy.h"
 #include "diffusion/gather_taps.h"
 #include "shading/launch_ranges.h"
-#include "shading/shading_constants.h"
 
 namespace pel {
 namespace {
@@ -76,13 +75,9 @@ void GatherScatter::sendMaterials(const std::map<uint32_t, Material>& materials)
 void GatherScatter::prepare(const std::map<uint32_t, Material>& materials, const Ids& sources,
                             const GatherImages& images, const ScatterView& view, uint32_t frameIndex) {
     const ScatterImages& of = images.of;
-    frame_.width = of.irradiance.width, frame_.height = of.irradiance.height;
-    frame_.tilesX = (frame_.width + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE;
-    frame_.tilesY = (frame_.height + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE;
     const Sight sight = sightOf(view);
+    describePicture(of, view, sight, frame_);
     frame_.view = sight.view;
-    std::ranges::copy(sight.origin, frame_.origin);
-    std::ranges::copy(sight.direction, frame_.direction);
     const GatherImages::History& history = images.history;
     if (history.weight > 0 && frame_.view == PEL_VIEW_UNKNOWN)
         invalidArgument("PelShaderOptions.historyWeight is ", history.weight,
@@ -90,14 +85,7 @@ void GatherScatter::prepare(const std::map<uint32_t, Material>& materials, const
                         "neither an eye point nor a view direction");
     frame_.frameIndex = frameIndex;
     frame_.everywhere = view.everywhere;
-    frame_.inPlace = samePixels(of.irradiance, of.out);
-    std::copy_n(view.inverseViewProjection, 16, frame_.inverseViewProjection);
-    frame_.irradiance = describeImage(of.irradiance);
-    frame_.position = describeImage(of.positions ? of.positions : of.depth);
-    frame_.ids = describeImage(of.ids);
     frame_.weight = describeImage(images.weight);
-    frame_.radii = describeImage(of.radii);
-    frame_.out = describeImage(of.out);
     frame_.historyWeight = history.weight;
     frame_.motion = describeImage(history.motion);
     frame_.blended = describeImage(history.out);

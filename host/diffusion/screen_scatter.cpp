@@ -5,7 +5,6 @@
 #include "core/launch_policy.h"
 #include "shading/launch_ranges.h"
 #include "shading/material.h"
-#include "shading/shading_constants.h"
 
 namespace pel {
 namespace {
@@ -173,12 +172,8 @@ ScreenMemory ScreenScatter::memory(const cl::Program& program) const {
 
 void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const ScatterImages& images,
                             const ScatterView& view) {
-    frame_.width = images.irradiance.width, frame_.height = images.irradiance.height;
-    frame_.tilesX = (frame_.width + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE;
-    frame_.tilesY = (frame_.height + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE;
     frame_.levels = PEL_PYRAMID_LEVELS;
     frame_.everyTile = view.everywhere;
-    frame_.inPlace = samePixels(images.irradiance, images.out);
     Sight sight = sightOf(view);
     if (images.positions && isKnown(view.position) &&
         std::ranges::equal(view.inverseViewProjection, pelCameraDefaults().inverseViewProjection)) {
@@ -188,17 +183,10 @@ void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const
             reach = std::max(reach, material.profile->reach() * material.scale);
         sight = seenFrom(view.position, reach);
     }
-    std::ranges::copy(sight.origin, frame_.origin);
-    std::ranges::copy(sight.direction, frame_.direction);
+    describePicture(images, view, sight, frame_);
     frame_.view = sight.view == PEL_VIEW_DIRECTION && !sight.away ? PEL_VIEW_UNKNOWN : sight.view;
     frame_.tolerance = view.tolerance;
-    std::copy_n(view.inverseViewProjection, 16, frame_.inverseViewProjection);
-    frame_.irradiance = describeImage(images.irradiance);
-    frame_.position = describeImage(images.positions ? images.positions : images.depth);
-    frame_.ids = describeImage(images.ids);
-    frame_.out = describeImage(images.out);
     frame_.curvature = describeImage(images.curvature);
-    frame_.radii = describeImage(images.radii);
     sendTables(materials);
     describeLevels(frame_.width, frame_.height, bool(images.radii));
     const PelPyramidLevel& pairs = frame_.level[1];

@@ -3,6 +3,7 @@
 #pragma once
 #include "diffusion/light_space.h"
 #include "diffusion/profile_table.h"
+#include "shading/shading_constants.h"
 
 namespace pel {
 
@@ -23,6 +24,23 @@ struct Sight {
 };
 Sight sightOf(const ScatterView& view);
 bool samePixels(const ImageView& a, const ImageView& b);
+
+// The fields that PelDiffusionFrame and PelGatherFrame have in common, but for the kind of view.
+template <class Frame>
+void describePicture(const ScatterImages& images, const ScatterView& view, const Sight& sight, Frame& frame) {
+    frame.width = images.irradiance.width, frame.height = images.irradiance.height;
+    frame.tilesX = (frame.width + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE;
+    frame.tilesY = (frame.height + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE;
+    std::ranges::copy(sight.origin, frame.origin);
+    std::ranges::copy(sight.direction, frame.direction);
+    std::ranges::copy(view.inverseViewProjection, frame.inverseViewProjection);
+    frame.inPlace = samePixels(images.irradiance, images.out);
+    frame.irradiance = describeImage(images.irradiance);
+    frame.position = describeImage(images.positions ? images.positions : images.depth);
+    frame.ids = describeImage(images.ids);
+    frame.radii = describeImage(images.radii);
+    frame.out = describeImage(images.out);
+}
 
 // Lights whose shadow maps serve as lit surface.
 struct ScatterLights {

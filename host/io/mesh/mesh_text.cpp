@@ -146,13 +146,11 @@ RawMesh readOff(const std::string& path, const std::string& text) {
     const size_t prefix = header.find("OFF");
     if (prefix == std::string::npos || prefix + 3 != header.size())
         scan.fail("starts with '" + header.substr(0, 20) + "'; the first line of an OFF file is 'OFF'");
-    bool normals = false, uvs = false;
     const std::string flags = header.substr(0, prefix);
-    if (flags != "" && flags != "C" && flags != "N" && flags != "CN" && flags != "ST" && flags != "STC" &&
-        flags != "STN" && flags != "STCN")
+    constexpr std::string_view known[] = {"", "C", "N", "CN", "ST", "STC", "STN", "STCN"};
+    if (std::ranges::find(known, flags) == std::end(known))
         scan.fail("has the header '" + header + "'; OFF, NOFF, COFF, STOFF and their combinations are known");
-    normals = flags.find('N') != std::string::npos;
-    uvs = flags.find("ST") != std::string::npos;
+    const bool normals = flags.find('N') != std::string::npos, uvs = flags.find("ST") != std::string::npos;
 
     RawMesh mesh;
     size_t at = 1;
