@@ -1,5 +1,7 @@
 // Eyes: the table of a cornea's caustics against the flux that enters it, and a frame that shows an eye
 // against the tracer of tests/reference, with the same table.
+#include <random>
+
 #include "eye/reference_eye.h"
 #include "measure.h"
 

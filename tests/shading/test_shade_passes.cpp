@@ -363,6 +363,16 @@ TEST(ShadeCube, ABadTexelStaysWhereItIsRead) {
     }
 }
 
+TEST(ShadeCube, AZeroNormalGetsNothing) {
+    std::vector<Vec3> normals(16, Vec3{0, 0, 1});
+    normals[0] = {0, 0, 0};
+    Frame f = ambientFrame(normals);
+    f.cube = cubeOf(2, [](Vec3) { return Rgb{1, 1, 1}; });
+    std::vector<float> expected(48, 1.0f);
+    std::fill_n(expected.begin(), 3, 0.0f);
+    EXPECT_EQ(shade(f), expected);
+}
+
 TEST(ShadeCube, ComesInAnyColourFormatAndBothShapes) {
     const uint32_t n = 5;
     Frame f = ambientFrame(randomNormals(15, 700)), plain = f;
