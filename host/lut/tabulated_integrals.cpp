@@ -271,9 +271,9 @@ std::vector<cl_float4> tablePoints(const std::vector<cl_float4>& knots, double d
     }
     // A table may have no energy so near in some channel: then nothing scatters.
     std::vector<cl_float4> result{float4Of(threeOf([&](int c) { return all[c] > 0 ? 0.0 : 1.0; }), 0)};
-    for (const auto& [weight, d] : points) {
-        const Rgb share = threeOf([&](int c) { return all[c] > 0 ? weight[c] / all[c] : 0; });
-        result.push_back(float4Of(share, d));
+    for (const auto& point : points) {
+        const Rgb share = threeOf([&](int c) { return all[c] > 0 ? point.first[c] / all[c] : 0; });
+        result.push_back(float4Of(share, point.second));
     }
     return result;
 }

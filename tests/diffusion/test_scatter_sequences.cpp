@@ -159,7 +159,8 @@ TEST(ScatterSequences, EachTextureEqualsThatOfANewObject) {
                   {"albedo after", 10, 7, Profile::skin(), 1, 6, 2},
                   {"no texel is covered", 0, 7, Profile::skin()},
                   {"skin again", 10, 5, Profile::skin()}};
-    for (const auto& [width, height] : {std::pair{64u, 48u}, {33u, 17u}, {16u, 128u}}) {
+    for (const auto& size : {std::pair{64u, 48u}, {33u, 17u}, {16u, 128u}}) {
+        const uint32_t width = size.first, height = size.second;
         PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
         desc.width = width, desc.height = height;
         desc.numVertices = 8, desc.uvs = uvs.data();
