@@ -141,7 +141,7 @@ uint64_t ScreenScatter::bytesFor(uint32_t width, uint32_t height, bool radii) {
 }
 
 void ScreenScatter::describeLevels(uint32_t width, uint32_t height, bool radii) {
-    const std::vector<PelPyramidLevel> before(std::begin(frame_.level), std::end(frame_.level));
+    const auto before = std::to_array(frame_.level);
     const uint64_t floats = layOutLevels(width, height, radii, frame_.level);
     if (pyramid_.bytes() && sums_.bytes() && !std::memcmp(frame_.level, before.data(), sizeof frame_.level))
         return;

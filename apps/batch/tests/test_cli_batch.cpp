@@ -333,6 +333,23 @@ TEST_F(BatchCommand, SeveralDevicesShareAManifest) {
     EXPECT_EQ(batch(text, "--device abacus").exitCode, 4);
 }
 
+TEST_F(BatchCommand, AFullDiskIsAClearError) {
+    fs::create_directories(path("out"));
+    if (std::system("unshare -rm true 2>/dev/null") != 0)
+        GTEST_SKIP() << "no right to mount a small file system of one's own";
+    const std::string text = "[[grid]]\nsize = [40, 44, 48, 52, 56, 60, 64, 68]\n",
+                      full = "unshare -rm sh -c 'mount -t tmpfs -o size=64k none \"" + path("out") +
+                             "\" && { \"$0\" $*; echo $? >\"" + path("code") + "\"; ls -A -I \"*.json\" \"" +
+                             path("out") + "\" >\"" + path("left") + "\"; }'";
+    const auto result = batch(text, "", full);
+    EXPECT_EQ(read(path("code")), "3\n") << result.err;
+    EXPECT_TRUE(contains(result.err, "cannot be written: No space left on device"));
+    const std::string left = read(path("left"));
+    EXPECT_EQ(left.find(".curvature"), std::string::npos) << "no leftovers";
+    EXPECT_EQ(result.json()["made"].get<long>(), std::count(left.begin(), left.end(), '\n'));
+    EXPECT_EQ(made(text)["made"], 8) << "with room it goes on";
+}
+
 TEST_F(BatchCommand, ProgressIsInPlaceOnATerminalAndLinesElsewhere) {
     const std::string m = write("m.toml", "[[grid]]\nsize = 16\n" + radii(1500, 0.001));
     const auto plain = cli("batch '" + m + "' -o @out");

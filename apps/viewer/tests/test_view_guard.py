@@ -7,7 +7,7 @@ import socket
 import pytest
 
 from pellucid.view.__main__ import address, free_port, main
-from pellucid.view.guard import Guard, Keys
+from pellucid.view.guard import Guard, Keys, cookie_values
 
 
 @pytest.mark.parametrize("unit", ["0", "-1", "nan"])
@@ -100,7 +100,11 @@ def test_a_chosen_token_stays_valid(guard):
 
 
 def test_cookies_of_another_viewer_or_site_are_refused(guard):
+    assert cookie_values('n=1; m=2; n="3";n', "n") == ["1", "3"]
     own = let_in(guard)
+    # Another program on this host may set a cookie of this name.
+    for cookies in (f"{own}; pellucid_view_8350=x", f"pellucid_view_8350=x; {own}"):
+        assert ask(guard, cookie=cookies)[0] == 200
     assert ask(guard, cookie=own.replace("8350", "8351"))[0] == 403
     assert ask(guard, cookie=own, kind="websocket", origin="http://127.0.0.1:8350")[0] == 200
     assert ask(guard, cookie=own, kind="websocket", origin="http://elsewhere.example")[0] == 1008

@@ -13,6 +13,16 @@ from starlette.requests import HTTPConnection
 from starlette.responses import PlainTextResponse, RedirectResponse, Response
 
 
+def cookie_values(header: str, name: str) -> list[str]:
+    """The values of the cookie `name`. Cookies of other programs on this host, of any form, are skipped."""
+    found = []
+    for part in header.split(";"):
+        key, equals, value = part.partition("=")
+        if equals and key.strip() == name:
+            found.append(value.strip().strip('"'))
+    return found
+
+
 def _same(a: str, b: str) -> bool:
     return hmac.compare_digest(a.encode("utf-8", "replace"), b.encode("utf-8", "replace"))
 
@@ -43,6 +53,10 @@ class Keys:
             self._used(self.key)
         return True
 
+    def holds(self, header: str) -> bool:
+        """Whether the cookies of a request include the viewer's own."""
+        return any(_same(value, self.value) for value in cookie_values(header, self.cookie))
+
 
 class Guard:
     """ASGI middleware that lets in requests with the key or the cookie."""
@@ -55,7 +69,7 @@ class Guard:
             await self.app(scope, receive, send)
             return
         request = HTTPConnection(scope)
-        known = _same(request.cookies.get(self.keys.cookie, ""), self.keys.value)
+        known = self.keys.holds(";".join(request.headers.getlist("cookie")))
         # A page of another origin may open a socket, and the browser then sends the cookie along.
         origin = request.headers.get("origin", "")
         if known and (not origin or origin.split("://", 1)[-1] == request.headers.get("host")):
