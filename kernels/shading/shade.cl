@@ -62,6 +62,7 @@ static inline __attribute__((always_inline)) Vec3w shadeMaterial(const Scene* sc
         diffuse = ambientOfPixels(scene, vload3(0, material->normalBlend), p);
         if (PEL_FORMAT_AMBIENT_OCCLUSION) diffuse = scale3(diffuse, p->occlusion);
         if (PEL_FORMAT_INDIRECT) diffuse = add3(diffuse, p->indirect);
+        diffuse = withGain(material, p, diffuse);
         if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = diffuse;
     }
     if (HAS(PEL_BIT_AMBIENT_SCATTER) && (material->needs & PEL_BIT_AMBIENT_SCATTER)) {

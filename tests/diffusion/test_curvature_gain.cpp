@@ -77,14 +77,15 @@ std::vector<float> gainsOf(const Surface& surface, uint32_t side, double size, c
     f.options.millimetresPerUnit = float(look.unit);
     f.giveIrradiance = false;
     scatter_scene::ShownImages shown(look.on, 1, 1);
-    if (look.method == PEL_SCATTERING_PREINTEGRATED) {  // its gain is one of direct light
+    const bool byTables = look.method == PEL_SCATTERING_PREINTEGRATED;
+    if (byTables) {  // half of it is direct
         f.lamps.resize(1);
         f.lamps[0].light.toLight[0] = f.lamps[0].light.toLight[1] = 0, f.lamps[0].light.toLight[2] = 1;
-    } else {
-        PelAmbient ambient = pelAmbientDefaults();
-        std::fill_n(ambient.constant, 3, 1.0f);
-        shown.shader.set(ambient);
+        std::fill_n(f.lamps[0].light.color, 3, 0.5f);
     }
+    PelAmbient ambient = pelAmbientDefaults();
+    std::fill_n(ambient.constant, 3, byTables ? 0.5f : 1.0f);
+    shown.shader.set(ambient);
     return f.shade(shown).light;
 }
 
