@@ -199,7 +199,7 @@ void LightSpace::enqueueSums(const ScatterImages& images, const ScreenMemory& sc
         device_->launch(events, screen.program, kernel,
                         groupRange(*device_, groupsFor(*device_, (items / each - 1) / group + 1)),
                         screen.frame, screen.pyramid, screen.tables, screen.nodes, parts_, mapUpload_,
-                        cl_uint(maps_.size()), pyramid_, out..., screen.counters);
+                        cl_uint(maps_.size()), pyramid_, images.thickness, out..., screen.counters);
     };
     if (half_) launch("sample_light", pixels / 4, samples_);
     launch("scatter_light", pixels, samples_, images.out);

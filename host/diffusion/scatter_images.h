@@ -9,6 +9,7 @@ struct ScatterImages {
     ImageView irradiance, positions, depth, ids, out;
     ImageView curvature{};  // mean, 1/length: for materials with a gain
     ImageView radii{};      // times the profile's radius
+    ImageView thickness{};  // length, of the body: for light from texels, if the irradiance follows it
     int radiusComponent = 0;
 
     // The second component of an image of weights, if there is one.

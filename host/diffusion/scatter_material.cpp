@@ -7,7 +7,8 @@ ScreenScatter::Material profileOf(const ShaderMaterial& material) {
                            : material.curvatureLut ? material.curvatureLut->profile()
                                                    : Profile::skin();
     const double radius = profile->radius();
-    return {std::move(profile), material.params.diffusionRadius / radius, std::to_array(material.gain)};
+    return {std::move(profile), material.params.diffusionRadius / radius, std::to_array(material.gain),
+            material.params.thinThickness > 0};
 }
 
 ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Buffer>& out, bool inPlace) {

@@ -49,7 +49,10 @@ class ScatterPass final : public Pass {
         for (const auto& [id, material] : plan.state.materials)
             if (scatters(plan.state, material, alone) && material.params.diffusionRadius > 0) {
                 materials_[id] = profileOf(material);
-                if (material.gain[0] > 0) images_.curvature = plan.state.images[PEL_SLOT_MEAN_CURVATURE];
+                if (!(material.gain[0] > 0)) continue;
+                images_.curvature = plan.state.images[PEL_SLOT_MEAN_CURVATURE];
+                if (alone && plan.features & PEL_FEATURE_MAKE_IRRADIANCE)
+                    images_.thickness = plan.state.images[PEL_SLOT_THICKNESS];
             }
     }
     size_t bytes() const override { return (out_ ? out_->bytes() : 0) + (scatter_ ? scatter_->bytes() : 0); }

@@ -93,6 +93,10 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
         for (int c = 0; c < 3; ++c)
             nodes.table.perCurvature[c] = float(nodes.table.directed / 2 * nodes.meanDistance[c] *
                                                 (lights_.alone ? 1 : nearerByLevels));
+        for (int c = 0; c < 3; ++c) {
+            nodes.table.path[c] = material.sheet ? 0 : material.gain[size_t(c)];
+            nodes.table.absorption[c] = float(mediumAbsorption(*material.profile, c));
+        }
         tables.push_back(nodes.table);
         narrowest_ = narrowest_ > 0 ? std::min(narrowest_, double(nodes.table.reach)) : nodes.table.reach;
         widest_ = std::max(widest_, double(nodes.table.reach));
@@ -187,6 +191,7 @@ void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const
     frame_.view = sight.view == PEL_VIEW_DIRECTION && !sight.away ? PEL_VIEW_UNKNOWN : sight.view;
     frame_.tolerance = view.tolerance;
     frame_.curvature = describeImage(images.curvature);
+    frame_.thickness = describeImage(images.thickness);
     sendTables(materials);
     describeLevels(frame_.width, frame_.height, bool(images.radii));
     const PelPyramidLevel& pairs = frame_.level[1];
@@ -218,6 +223,7 @@ std::vector<cl::ProgramKey> ScreenScatter::programs(const ScatterImages& images)
         for (cl::ProgramKey* key : {&pyramids, &classify}) key->defines["PEL_RADII"] = 1;
     }
     cl::ProgramKey sums{{"diffusion/scatter_level.cl", "diffusion/scatter_screen.cl"}, pyramids.defines};
+    pyramids.defines["PEL_FORMAT_THICKNESS"] = code(images.thickness);
     if (!light_.empty()) light_.addFiles(pyramids);
     return {std::move(pyramids), std::move(sums), std::move(classify)};
 }

@@ -80,8 +80,10 @@ class ScreenScatter {
         Ref<Profile> profile;
         double scale;
         std::array<float, 3> gain{};  // length: as ShaderMaterial has it; 0: the medium is not known
+        bool sheet = false;           // reflects its albedo, however thin it is
         bool operator==(const Material& other) const {
-            return profile.get() == other.profile.get() && scale == other.scale && gain == other.gain;
+            return profile.get() == other.profile.get() && scale == other.scale && gain == other.gain &&
+                   sheet == other.sheet;
         }
     };
     // Sets the lights, before `programs` is called; none by default.

@@ -5,11 +5,13 @@
 // weights, is blended in where it is the more reliable one. At the receiver itself irradiance is known.
 // Input: both pyramids, the flags of light_classify. Output: the flagged parts, in an image like the
 // irradiance; other pixels keep their value. One work-item: one pixel, with several lanes a part of
-// a tile. Variants: PEL_HIDDEN is 0, PEL_FORMAT_OUT; PEL_HALF: sample_light first sums at every second pixel
-// along both axes, and scatter_light only at pixels without a sample beside them.
+// a tile. Variants: PEL_HIDDEN is 0, PEL_FORMAT_OUT; PEL_FORMAT_THICKNESS: of the body, which the irradiance
+// of pixels includes already; PEL_HALF: sample_light first sums at every second pixel along both axes, and
+// scatter_light only at pixels without a sample beside them.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/lit_surface.clh"
 #include "lib/diffusion/windowed.clh"
+#include "lib/shading/kept_by_slab.clh"
 #include "lib/shading/material_id.clh"
 
 #define PART (1 << PEL_PART_LEVEL)         // pixels along a side
@@ -110,13 +112,30 @@ static inline float3 trustInPixels(float3 byPixels, float3 byTexels, float3 weig
     return fmax(clamp(2.0f - apart * (1.0f / AGREE), 0.0f, 1.0f), finer * whole);
 }
 
-// Scattered light of a pixel. Returns false if the pixel keeps its irradiance.
+// What the body at a pixel keeps of light that falls on its side.
+static inline float3 keptAt(__global const PelDiffusionFrame* frame, __global const PelProfileTable* tables,
+                            __global uchar* thickness, uint x, uint y, uint id) {
+#if PEL_FORMAT_THICKNESS
+    __global const PelProfileTable* table = tables + frame->tableOf[id] - 1;
+    const uint start = vectorStart(x, frame->width);
+    const floatw t = loadScalar(PEL_FORMAT_THICKNESS, imageSpan(thickness, &frame->thickness, start, y));
+    const Vec3w path = loadUniform3(table->path), s = loadUniform3(table->absorption),
+                kept =
+                    vec3(keptBySlab(t, path.x, s.x), keptBySlab(t, path.y, s.y), keptBySlab(t, path.z, s.z));
+    const maskw mine = lanesw() + (int)start == (intw)((int)x);
+    return sumOfLanes3(select3(same3(0.0f), kept, mine));
+#else
+    return (float3)(1.0f);
+#endif
+}
+
+// Scattered light of a pixel; `kept`: keptAt. Returns false if the pixel keeps its irradiance.
 static PEL_OUT_OF_LINE bool scatterPixel(__global const PelDiffusionFrame* frame,
                                          __global const float* pyramid,
                                          __global const PelProfileTable* tables, __global const float* nodes,
                                          __global const PelLightMap* maps, uint mapCount,
                                          __global const float* lights, int x, int y, const Pixel* here,
-                                         uint* blocks, uint* texels, float3* result) {
+                                         float3 kept, uint* blocks, uint* texels, float3* result) {
     const uint stride = frame->level[0].stride;
     __global const float* at = pyramid + pyramidRow(&frame->level[0], y) + x;
     const PelProfileTable table = tableAt(tables + frame->tableOf[here->id] - 1, at, stride);
@@ -160,15 +179,18 @@ static PEL_OUT_OF_LINE bool scatterPixel(__global const PelDiffusionFrame* frame
         LitSums sums;
         clearLitSums(&sums);
         const uint number = maps[k].light;
-        const float3 color = vload3(0, maps[k].color);
+        float3 color = vload3(0, maps[k].color);
+        float faced = 0.0f;
         for (; k < mapCount && maps[k].light == number; ++k) {
             const Texel t = texelAt(maps + k, here->p, normal);
             const float3 along = t.toLight - normal * dot(normal, t.toLight);
             lit.slab = slabOf(table, receiver.normal, t.toLight);
+            faced = table.slab > 0.0f ? facing(receiver.normal, t.toLight) : 1.0f;
             lit.along = along * rsqrt(fmax(dot(along, along), 1e-12f));
             lit.parts = (uint)(fmin(1.0f / fmax(t.cosine, 0.01f), MAX_PARTS) + 0.5f);
             *texels += addLitSurface(&sums, maps + k, lights, nodes, table, &lit);
         }
+        if (PEL_FORMAT_THICKNESS) color *= 1.0f + (kept - 1.0f) * faced;
         far += color * sumOfLanes3(sums.far);
         const float3 light = color * sumOfLanes3(sums.between), weight = sumOfLanes3(sums.weight);
         between += light;
@@ -248,7 +270,8 @@ __kernel PEL_WORK_GROUP(PEL_GROUP) void sample_light(
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global const uint* restrict parts, __global const PelLightMap* restrict maps, uint mapCount,
-    __global const float* restrict lights, __global float* samples, __global uint* restrict counters) {
+    __global const float* restrict lights, __global uchar* thickness, __global float* samples,
+    __global uint* restrict counters) {
     const uint each = EACH(PART * PART / 4), runs = max(SAMPLES / (PEL_GROUP * each), 1u),
                count = frame->tilesX * frame->tilesY * runs;
     uint pixels = 0, blocks = 0, texels = 0;
@@ -262,8 +285,9 @@ __kernel PEL_WORK_GROUP(PEL_GROUP) void sample_light(
             const Pixel here = pixelIn(frame, pyramid, x, y);
             float3 s;
             float4 sample = (float4)(0.0f);
-            if (here.area > 0.0f && scatterPixel(frame, pyramid, tables, nodes, maps, mapCount, lights,
-                                                 (int)x, (int)y, &here, &blocks, &texels, &s)) {
+            if (here.area > 0.0f &&
+                scatterPixel(frame, pyramid, tables, nodes, maps, mapCount, lights, (int)x, (int)y, &here,
+                             keptAt(frame, tables, thickness, x, y, here.id), &blocks, &texels, &s)) {
                 s -= ownLightOf(frame, pyramid, tables, nodes, x, y, &here);
                 sample = (float4)(fmax(s, (float3)(0.0f)), 1.0f);
                 ++pixels;
@@ -280,8 +304,8 @@ __kernel PEL_WORK_GROUP(PEL_GROUP) void scatter_light(
     __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
     __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
     __global const uint* restrict parts, __global const PelLightMap* restrict maps, uint mapCount,
-    __global const float* restrict lights, __global const float* restrict samples, __global uchar* out,
-    __global uint* restrict counters) {
+    __global const float* restrict lights, __global uchar* thickness, __global const float* restrict samples,
+    __global uchar* out, __global uint* restrict counters) {
     // Tiles, part by part, in runs of as many work-items as a group has.
     const uint size = PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE, each = EACH(PART * PART),
                runs = max(size / (PEL_GROUP * each), 1u), count = frame->tilesX * frame->tilesY * runs;
@@ -303,7 +327,8 @@ __kernel PEL_WORK_GROUP(PEL_GROUP) void scatter_light(
 #endif
             {
                 if (!scatterPixel(frame, pyramid, tables, nodes, maps, mapCount, lights, (int)x, (int)y,
-                                  &here, &blocks, &texels, &s))
+                                  &here, keptAt(frame, tables, thickness, x, y, here.id), &blocks, &texels,
+                                  &s))
                     continue;
                 ++pixels;
             }

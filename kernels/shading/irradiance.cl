@@ -7,6 +7,7 @@
 // of tiles; one work-item: PEL_WIDTH pixels of a row at a time. Variants: as shade.cl.
 #define IMAGES_RESTRICT restrict
 #include "lib/image/planes.clh"
+#include "lib/shading/kept_by_slab.clh"
 #include "lib/shading/tiles.clh"
 #include "shading/scene.clh"
 
@@ -21,20 +22,6 @@ static inline Vec3w ofMaterials(__global const float* field, uintw id, maskw wan
 #undef PEL_GREEN_
 #undef PEL_BLUE_
 }
-
-#if PEL_FORMAT_THICKNESS
-// Reflectance of a slab of this thickness over that of a half-space: the rest leaves on the far side (section
-// 12 of the mathematics, "Slabs"). `path`: the mean free path; `s`: sqrt(1 - albedo of the medium). 1 where
-// thickness or path is unknown. Never 0: later passes take a pixel without irradiance for one without light.
-static inline floatw keptBySlab(floatw thickness, floatw path, floatw s) {
-    const floatw t = thickness / path * -1.44269504f, p = s * (0.194f + 0.033f * s),
-                 e = (1.0f - p) * exp2(s * (3.504f - 0.498f * s * s) * t) +
-                     p * exp2((4.123f + 5.501f * s) * t),
-                 r = (1.0f - s) * (1.0f - 0.139f * s) / (1.0f + 1.17f * s);
-    const floatw kept = fmax(1.0f - e, (floatw)(1e-7f)) / (1.0f - r * r * e);
-    return selectw((floatw)(1.0f), kept, (thickness > 0.0f) & (path > 0.0f));
-}
-#endif
 
 // Irradiance at PEL_WIDTH pixels from (x, y) on. Where no light arrives its shadow does not matter.
 static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMaterial* materials, uintw id,

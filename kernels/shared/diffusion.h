@@ -84,6 +84,8 @@ typedef struct PelProfileTable {
     float slab;             // 0 to 1: the share of light through the body that counts as through a slab
     float spread[3];   // 1/sqrt(length): how much narrower light leaves a slab by the root of its thickness
     float perRadius2;  // factor of squared lengths: 1, or 1 / the receiver's squared radius factor
+    float path[3];     // length: mean free path where a slab of the medium keeps less light; 0: it does not
+    float absorption[3];  // sqrt(1 - albedo of the medium)
 } PelProfileTable;
 
 typedef struct PelPyramidLevel {
@@ -112,7 +114,7 @@ typedef struct PelDiffusionFrame {
     float origin[3];     // length, world; of the pyramid's positions
     float direction[3];  // unit, away from the camera
     float inverseViewProjection[16];
-    PelShadeImage irradiance, position, ids, out, curvature, radii;  // position: or depth
+    PelShadeImage irradiance, position, ids, out, curvature, radii, thickness;  // position: or depth
     PelPyramidLevel level[PEL_PYRAMID_LEVELS];
     PelUint32 tableOf[PEL_DIFFUSION_IDS];  // 1 + the table of an id; 0: the id does not scatter
 } PelDiffusionFrame;
@@ -128,7 +130,7 @@ typedef struct PelDiffusionFrame {
 #define PEL_DIFFUSION_COUNTERS 7
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(PelProfileTable) == 56 && sizeof(PelPyramidLevel) == 16);
+static_assert(sizeof(PelProfileTable) == 80 && sizeof(PelPyramidLevel) == 16);
 static_assert(sizeof(PelDiffusionFrame) ==
-              4 * (10 + 3 + 3 + 16 + PEL_DIFFUSION_IDS) + 6 * 32 + PEL_PYRAMID_LEVELS * 16);
+              4 * (10 + 3 + 3 + 16 + PEL_DIFFUSION_IDS) + 7 * 32 + PEL_PYRAMID_LEVELS * 16);
 #endif

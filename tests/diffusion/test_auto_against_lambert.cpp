@@ -22,7 +22,8 @@ struct Contender {
 };
 const Contender contenders[] = {{"auto, traced", {.traced = true, .gain = 1}},
                                 {"auto", {.gain = 1}},
-                                {"auto, thickness", {.gain = 1}, true}};
+                                {"auto, thickness", {.gain = 1}, true},
+                                {"light, thickness", {.scattering = PEL_SCATTERING_LIGHT, .gain = 1}, true}};
 
 // Cases in which both are worse than Lambert: root of the difference of the squared errors, 1e-4 of white:
 // red, green, blue; 0: not worse.

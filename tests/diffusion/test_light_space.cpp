@@ -427,21 +427,30 @@ TEST(LightSpace, SlabsReflectWhatRandomWalksDo) {
         const float albedo[] = {kind.albedo, kind.albedo, kind.albedo};
         f.profile = Profile::burley(path, albedo, PEL_BURLEY_SEARCHLIGHT);
         f.material.curvatureGain = 1;
-        f.lamps.resize(1);
-        std::copy_n(std::array{0.0f, 0.6f, 0.8f}.data(), 3, f.lamps[0].light.toLight);
+        f.lamps = {lampFromBehind(24)};
+        f.lamps[0].light.toLight[2] = 1;  // from above, and 10 mm away
+        setRow(f.lamps[0].light.worldToShadow, 2, {0, 0, -0.05}, 0.5);
+        if (method == byLight)
+            f.lamps[0].maps = {texelsOf(f.lamps[0].width, [](double, double, int) { return 0.5; })};
         return f;
     };
+    const auto shade = [](Frame& f) {
+        ShownImages shown(device(), 1, 1);
+        shown.shader.set(standingAt({0, 0, 60}));
+        return f.shade(shown).light;
+    };
+    constexpr PelScattering methods[] = {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE, byAuto, byLight};
     for (const Kind& kind : kinds) {
         const double half = reflected(kind.single, INFINITY);
         EXPECT_NEAR(half, kind.albedo, testsAreSmall() ? 0.1 : 2 * tolerance::walkReflected);
         std::map<double, double> slabs;  // by the thickness in mean free paths
-        for (const PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE, byAuto}) {
+        for (const PelScattering method : methods) {
             Frame f = sheetOf(method, kind);
             const PelProfileInfo info = f.profile.info();
-            const std::vector<float> endless = f.shade().light;
+            const std::vector<float> endless = shade(f);
             for (float thickness : {0.1f, 1.0f, 10.0f}) {
                 f.images[PEL_SLOT_THICKNESS].assign(f.picture.pixels(), thickness);
-                const std::vector<float> light = f.shade().light;
+                const std::vector<float> light = shade(f);
                 for (size_t c = 0; c < 3; ++c) {
                     const double paths = thickness * std::sqrt(7.0) / (kind.paths * info.width[c]);
                     if (!slabs.contains(paths)) slabs[paths] = reflected(kind.single, paths) / half;
@@ -453,18 +462,25 @@ TEST(LightSpace, SlabsReflectWhatRandomWalksDo) {
             }
         }
     }
-    for (const PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE, byAuto}) {
+    for (const PelScattering method : methods) {
         Frame f = sheetOf(method, kinds[1]);
-        const std::vector<float> endless = f.shade().light;
+        const std::vector<float> endless = shade(f);
         const auto lightOf = [&](float thickness) {
             f.images[PEL_SLOT_THICKNESS].assign(f.picture.pixels(), thickness);
-            return f.shade().light;
+            return shade(f);
         };
         for (float unknown : {0.0f, -1.0f, notANumber, infinity, 1e30f})
             EXPECT_EQ(lightOf(unknown), endless) << unknown << ", method " << int(method);
         f.material.curvatureGain = 0;
         EXPECT_EQ(lightOf(0.3f), endless) << "no medium, method " << int(method);
     }
+    Frame behind = sheetOf(byLight, kinds[1]);  // what comes through does not change
+    behind.lamps = {lampFromBehind(24)};
+    behind.lamps[0].maps = {texelsOf(behind.lamps[0].width, [](double, double, int) { return 0.95; })};
+    const std::vector<float> through = shade(behind);
+    behind.images[PEL_SLOT_THICKNESS].assign(behind.picture.pixels(), 1);
+    EXPECT_GT(through[middle], 0);
+    EXPECT_EQ(shade(behind), through);
 }
 
 // Too thin for the share that stays to differ from 0 in single precision: dark, but lit.
