@@ -151,17 +151,18 @@ static inline floatw penumbraOfLight(__global const PelWideShadow* light, __glob
                                      __global uchar* map, Vec3w p, Vec3w n, floatw bias, maskw on) {
     if (!isArea(from) || !(light->maxTexels > 0.0f) || light->projection == PEL_MAP_PARALLEL || !anyw(on))
         return (floatw)(0.0f);
+    const floatw radius = areaRadius(from, p);
     if ((PEL_FEATURES & PEL_BIT_SHADOW_CUBE) && light->projection >= PEL_MAP_CUBE) {
         __global const float* m = light->worldToShadow;
-        return penumbraInCube(PEL_FORMAT_SHADOW_MAP, firstTexel(map, &light->map), from, cubePosition(m, p),
-                              cubeTurned(m, n), bias, on);
+        return penumbraInCube(PEL_FORMAT_SHADOW_MAP, firstTexel(map, &light->map), from, radius,
+                              cubePosition(m, p), cubeTurned(m, n), bias, on);
     }
     const Receiver r = receiverInMap(light, p, n);
     const floatw tilt = 1.0f / fmax(r.cosine, (floatw)(PEL_SHARP_FLATTEST));
     const floatw dzdx = dot3(n, loadUniform3(light->right)) * tilt * r.texelU * r.zPerLength,
                  dzdy = dot3(n, loadUniform3(light->down)) * tilt * r.texelV * r.zPerLength;
-    return penumbraInMap(PEL_FORMAT_SHADOW_MAP, firstTexel(map, &light->map), &light->map, from, r.x, r.y,
-                         r.z, dzdx, dzdy, 1.0f / r.texelU, 1.0f / r.texelV,
+    return penumbraInMap(PEL_FORMAT_SHADOW_MAP, firstTexel(map, &light->map), &light->map, from, radius, r.x,
+                         r.y, r.z, dzdx, dzdy, 1.0f / r.texelU, 1.0f / r.texelV,
                          bias + PEL_SHARP_TEXELS * fmax(r.texelU, r.texelV) * tilt,
                          on & comparable(&r, p, n));
 }
@@ -267,7 +268,9 @@ static PEL_OUT_OF_LINE uint2 shadowTile(__global const PelShadeFrame* frame,
 #if PEL_AREA_LIGHTS
         // If only the light's centre is below the horizon, its map does not show the occluders of the rest:
         // no shadow. If all of it is, shading normals may still face it: shadow.
-        if (isArea(from)) left &= (dot3(n, sample.direction) > 0.0f) | notw(facesLight(from, sample, p, n));
+        if (isArea(from))
+            left &= (dot3(n, sub3(loadUniform3(from->position), p)) > 0.0f) |
+                    notw(facesLight(from, sample, p, n));
         const floatw penumbra =
             penumbraOfLight(wideShadow, from, PEL_LIGHT_BUFFER_OF(from->mapBuffer), p, n, shape.bias, left);
         shape.width = sqrt(fma(shape.width, shape.width, penumbra * penumbra));

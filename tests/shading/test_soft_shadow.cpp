@@ -8,7 +8,7 @@ using namespace shade_test;
 namespace {
 
 constexpr uint32_t columns = 256, rows = 16;
-constexpr float lightHeight = 300, extent = 120;  // of the light; length of the row of pixels
+constexpr float lightHeight = 300, extent = 120, rowY = rows / 2;  // of the light; of the row of pixels
 
 float columnX(size_t column) {
     return (float(column) + 0.5f) / columns * extent - extent / 2;
@@ -22,6 +22,8 @@ struct Edge {
     bool cube = false;
     PelScattering scattering = PEL_SCATTERING_NONE;
     float slope[2] = {0, 0};
+    float side = 0;    // of a square in place of the edge, if not 0; its middle is over the row of pixels
+    float turned = 1;  // cosine, of a rectangle that is longer by as much
     float planeAt(float x, float y) const { return slope[0] * x + slope[1] * y; }
 };
 
@@ -32,7 +34,8 @@ Light lightOver(const Edge& edge, uint32_t size = 512) {
     l.position[2] = lightHeight;
     std::fill_n(l.color, 3, lightHeight * lightHeight);
     if (edge.type == PEL_LIGHT_RECTANGLE)
-        l.halfWidth[0] = edge.radius, l.halfHeight[1] = -edge.radius;  // downwards
+        l.halfWidth[0] = edge.radius, l.halfHeight[1] = -edge.radius,  // downwards
+            l.halfHeight[2] = edge.radius * std::sqrt(1 - edge.turned * edge.turned) / edge.turned;
     else
         l.radius = edge.radius;
     const float near = 50, far = 1000, a = 1 / far - 1 / near, b = 1 / near;
@@ -40,8 +43,10 @@ Light lightOver(const Edge& edge, uint32_t size = 512) {
     const auto depthOf = [&](float alongX, float alongY) {
         // Of the plane, or of what is over x below 0.
         const float over = lightHeight - edge.height,
-                    distance = lightHeight / (1 + edge.planeAt(alongX, alongY));
-        return (1 / (alongX < 0 ? std::min(distance, over) : distance) - b) / a;
+                    distance = lightHeight / std::max(1 + edge.planeAt(alongX, alongY), lightHeight / far);
+        const bool beside = edge.side > 0 && (alongX < -edge.side / over ||
+                                              std::abs(alongY - rowY / lightHeight) > edge.side / 2 / over);
+        return (1 / (alongX < 0 && !beside ? std::min(distance, over) : distance) - b) / a;
     };
     const auto middle = [&](uint32_t texel) { return 2 * (float(texel) + 0.5f) / float(size) - 1; };
     if (edge.cube) {
@@ -91,7 +96,7 @@ Frame edgeFrame(const Edge& edge) {
 
 // The part of the light that a point sees: of a disk or square beyond -x (H - h) / h.
 double visible(const Edge& edge, double x) {
-    const double below = edge.height - edge.planeAt(float(x), rows / 2),
+    const double below = edge.height - edge.planeAt(float(x), rowY),
                  t = std::clamp(x * (lightHeight - edge.height) / (below * edge.radius), -1.0, 1.0);
     if (edge.type == PEL_LIGHT_RECTANGLE) return (1 + t) / 2;
     return 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / reference::pi;
@@ -155,6 +160,26 @@ TEST(SoftShadow, OfAnEdgeIsThePartOfTheLightAboveIt) {
                 expectPartAbove({type, radius, height, cube});
         for (const auto& [x, y] : {std::pair{0.4f, 0.0f}, {-0.4f, 0.0f}, {0.0f, 0.8f}, {0.0f, -0.8f}})
             expectPartAbove({PEL_LIGHT_SPHERE, 20, 60, cube, PEL_SCATTERING_NONE, {x, y}});
+        // Part of the sampled disk is beyond the plane's horizon, where the map is empty.
+        expectPartAbove({PEL_LIGHT_SPHERE, 40, 60, cube, PEL_SCATTERING_NONE, {0, 2}});
+        // A rectangle of 1:2 that is seen as a square.
+        expectPartAbove({PEL_LIGHT_RECTANGLE, 20, 60, cube, PEL_SCATTERING_NONE, {0, 0}, 0, 0.5f});
+    }
+}
+
+// Small beside the disk that is sampled.
+TEST(SoftShadow, OfASquareUnderALargeLight) {
+    for (const bool cube : {false, true}) {
+        const Edge square{PEL_LIGHT_RECTANGLE, 100, 60, cube, PEL_SCATTERING_NONE, {0, 0}, 20};
+        const double across = square.side * lightHeight / (2 * square.radius * square.height),
+                     shift = square.side * lightHeight / (lightHeight - square.height);
+        expectRms(
+            shadowOf(square),
+            [&](size_t x) {
+                const double at = columnX(x);
+                return 1 - across * (visible(square, at + shift) - visible(square, at));
+            },
+            4 * tolerance::softShadow);
     }
 }
 
@@ -223,18 +248,21 @@ TEST(SoftShadow, NothingIsBeyondAMap) {
 
 // If the horizon hides the light's centre, the map does not show the occluders of the rest.
 TEST(SoftShadow, OfAPointThatSeesTheRimAlone) {
-    for (const bool cube : {false, true}) {
-        Frame f = edgeFrame({PEL_LIGHT_SPHERE, 100, 60, cube});
-        f.slots[PEL_SLOT_NORMAL_GEOMETRIC] = f.slots[PEL_SLOT_NORMAL_SHADING];
-        for (int slot : {PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_GEOMETRIC})
-            for (size_t i = 0; i < f.pixels(); ++i) f.slots[slot].set(i, {0.995, 0, -0.0998});
-        const auto lit = shade(f), all = withoutMap(f);
-        for (size_t x = 0; x < columns; ++x)
-            if (const float at = columnX(x); at < 0 && 0.995f * -at - 0.0998f * lightHeight < 0) {
-                EXPECT_EQ(lit[3 * x], all[3 * x]) << at;
-                EXPECT_GT(all[3 * x], 0.01f);
-            }
-    }
+    // A rectangle's light comes from beside its centre, here from above the horizon.
+    for (const auto& [type, normal] : {std::pair{PEL_LIGHT_SPHERE, Vec3{0.995, 0, -0.0998}},
+                                       {PEL_LIGHT_RECTANGLE, Vec3{-0.9889, 0, 0.1483}}})
+        for (const bool cube : {false, true}) {
+            Frame f = edgeFrame({type, type == PEL_LIGHT_SPHERE ? 100.0f : 200.0f, 60, cube});
+            f.slots[PEL_SLOT_NORMAL_GEOMETRIC] = f.slots[PEL_SLOT_NORMAL_SHADING];
+            for (int slot : {PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_GEOMETRIC})
+                for (size_t i = 0; i < f.pixels(); ++i) f.slots[slot].set(i, normal);
+            const auto lit = shade(f), all = withoutMap(f);
+            for (size_t x = 0; x < columns; ++x)
+                if (const float at = columnX(x); at < 0 && normal.z * lightHeight < normal.x * at) {
+                    EXPECT_EQ(lit[3 * x], all[3 * x]) << at;
+                    EXPECT_GT(all[3 * x], 0.01f);
+                }
+        }
 }
 
 // Where the surface is turned from all of the light, and its shading normal is not, as the map has it.
