@@ -2,10 +2,13 @@
 #pragma once
 #include <pellucid/pellucid.h>
 
+#include <charconv>
 #include <locale>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <type_traits>
 
 namespace pel {
 
@@ -18,12 +21,20 @@ class Error : public std::runtime_error {
     PelError code_;
 };
 
-// Joins values into one text, the same in every locale.
+// Joins values into one text, the same in every locale. Floats have all their digits: one just beyond a limit
+// must not look like the limit.
 template <class... Parts>
 std::string text(const Parts&... parts) {
     std::ostringstream out;
     out.imbue(std::locale::classic());
-    (out << ... << parts);
+    const auto add = [&out]<class Part>(const Part& part) {
+        char digits[32];
+        if constexpr (std::is_same_v<Part, float>)
+            out << std::string_view(digits, std::to_chars(digits, digits + sizeof digits, part).ptr);
+        else
+            out << part;
+    };
+    (add(parts), ...);
     return out.str();
 }
 

@@ -127,8 +127,8 @@ static void checkRectangle(const PelLight& l, const std::string& name) {
     const Three across = threeAt(l.halfWidth), up = threeAt(l.halfHeight);
     const double width = length(across), height = length(up);
     if (!(std::min(width, height) >= PEL_TINY && std::max(width, height) <= PEL_HUGE))
-        invalidArgument(name, ".halfWidth and halfHeight have the lengths ", width, " and ", height,
-                        "; each must be at least ", PEL_TINY, " and at most ", PEL_HUGE);
+        invalidArgument(name, ".halfWidth and halfHeight have the lengths ", float(width), " and ",
+                        float(height), "; each must be at least ", PEL_TINY, " and at most ", PEL_HUGE);
     const double cosine = dot(across, up) / (width * height);
     if (!(std::abs(cosine) <= 1e-3))
         invalidArgument(

@@ -329,6 +329,7 @@ TEST(AreaLights, SizesThatAreNone) {
     refused("halfHeight", [](PelLight& l) { l.halfHeight[1] = INFINITY; });
     refused("lengths", [](PelLight& l) { l.halfWidth[0] = 0; });
     refused("lengths", [](PelLight& l) { l.halfHeight[1] = 1e30f; });
+    refused("9.999999e-07", [](PelLight& l) { l.halfHeight[1] = 9.999999e-7f; });
     refused("right angles", [](PelLight& l) { l.halfHeight[0] = 0.01f; });
     refused("position", [](PelLight& l) { l.position[2] = NAN; });
 }
