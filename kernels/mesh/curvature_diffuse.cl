@@ -84,6 +84,18 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffus
 #if !DIFFUSE_AREA
     area = nearest;
 #endif
+    // An edge of three or more triangles has one weight, that of all its entries, or its ends would disagree.
+    for (ring.row = begin; ring.row < ring.end; ++ring.row) {
+        if (!anyw((ringEntry(&ring, rings, runs).bits & (uintw)(PEL_MESH_REPEAT)) != 0)) continue;
+        for (uint i = 0; i < PEL_WIDTH; ++i) {
+            const uint at = ring.row * PEL_MESH_LANES + ring.lane + i;
+            uint earlier = begin * PEL_MESH_LANES + ring.lane + i;
+            while ((rings[earlier] ^ rings[at]) & PEL_MESH_SLOT) earlier += PEL_MESH_LANES;
+            if (earlier == at) continue;
+            weights[earlier] += weights[at];
+            weights[at] = 0.0f;
+        }
+    }
     const floatw half_ = selectw(zero, 0.5f / area, area > zero);
     floatw rate = zero, moment = zero;
     for (ring.row = begin; ring.row < ring.end; ++ring.row) {
