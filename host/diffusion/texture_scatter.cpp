@@ -135,12 +135,15 @@ void TextureScatter::checkSize(const ImageView& view, const char* name) const {
 void TextureScatter::setPositions(const VertexView& positions) {
     events_.clear();
     const cl::Program map = program("diffusion/texture_map.cl", {}, {}, {});
-    if (!stretch_) {
+    const bool isFirst = !stretch_;
+    if (isFirst) {
         stretch_ = device_->allocate(texels() * texelBytes);
         device_->fill(stretch_.get(), 0, texels() * texelBytes, 0);
-        launch(map, "texture_edges", width_ + height_, frameMemory_, islands_, owners_, stretch_);
     }
     launch(map, "texture_stretch", texels(), frameMemory_, indices_, uvs_, positions, owners_, stretch_);
+    if (isFirst)
+        launch(map, "texture_edges", width_ + height_, frameMemory_, indices_, uvs_, positions, islands_,
+               owners_, stretch_);
     placed_ = true;
 }
 

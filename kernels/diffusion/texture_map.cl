@@ -2,9 +2,10 @@
 //
 // texture_owner: 1 + the last triangle that holds the centre of each texel, borders included; one work-item
 // is one triangle. texture_tiles: flags of tiles with such a texel; one work-item is one tile.
-// texture_edges: how far the island of each texel extends along its row and column, into the third and fourth
-// number of its stretch; one work-item is one row or column. texture_stretch: length of a texel along u and
-// v; texture_draw: values of vertices; one work-item is one texel. Lengths are in the unit of positions.
+// texture_stretch: length of a texel along u and v. texture_edges, after it: how far the island of each texel
+// extends along its row and column, into the third and fourth number of its stretch; one work-item is one row
+// or column. texture_draw: values of vertices; one work-item is one texel. Lengths are in the unit of
+// positions.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/texels.clh"
 #include "lib/image/image.clh"
@@ -47,25 +48,49 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_til
     atomic_add(&counters[PEL_COUNT_TEXELS_COVERED], covered);
 }
 
+static inline float3 valueAt(__global const PelTextureFrame* frame, __global const uint* indices,
+                             __global const float* uvs, __global const float* values, VertexLayout layout,
+                             uint triangle, float x, float y) {
+    const UvTriangle t = uvTriangle(frame, indices, uvs, triangle);
+    const uint3 v = vload3(triangle, indices);
+    const float3 share = sharesAt(&t, x, y);
+    return share.x * vertexLoad3(values, layout, v.x) + share.y * vertexLoad3(values, layout, v.y) +
+           share.z * vertexLoad3(values, layout, v.z);
+}
+
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_edges(
-    __global const PelTextureFrame* restrict frame, __global const uint* restrict islands,
-    __global const uint* restrict owners, __global uint* bits) {
+    __global const PelTextureFrame* restrict frame, __global const uint* restrict indices,
+    __global const float* restrict uvs, __global const float* restrict positions, VertexLayout layout,
+    __global const uint* restrict islands, __global const uint* restrict owners, __global uint* stretch) {
     const uint line = itemOfFolded();
     if (line >= frame->height + frame->width) return;
     const bool down = line >= frame->height;
     const uint count = down ? frame->height : frame->width;
     const size_t first = down ? line - frame->height : (size_t)line * frame->width,
                  step = down ? frame->width : 1;
-    uint begin = 0, island = 0;  // of the present run; 0: no island
+    uint begin = 0, before = 0;  // of the present run: its first texel, and the owner of its last one
     for (uint k = 0; k <= count; ++k) {
-        const uint owner = k < count ? owners[first + k * step] : 0, here = owner ? islands[owner - 1] : 0;
-        if (here == island) continue;
-        for (uint i = begin; island && i < k; ++i) {
-            const uint run = PEL_TEXEL_COVERED | (i - begin) | (k - 1 - i) << 16;
-            // Alone, for another work-item writes the number beside it.
-            bits[(first + i * step) * 4 + (down ? 3 : 2)] = run;
+        const size_t at = first + k * step;
+        const uint owner = k < count ? owners[at] : 0;
+        bool goesOn = owner && before;
+        if (goesOn && islands[owner - 1] != islands[before - 1]) {
+            // The surface goes on where vertices are split but the texture is not: the texels are neighbours.
+            const float x = (float)(at % frame->width), y = (float)(at / frame->width);
+            const float3 apart =
+                valueAt(frame, indices, uvs, positions, layout, owner - 1, x, y) -
+                valueAt(frame, indices, uvs, positions, layout, before - 1, x - !down, y - down);
+            goesOn = length(apart) <=
+                     2.0f * (as_float(stretch[at * 4 + down]) + as_float(stretch[(at - step) * 4 + down]));
         }
-        begin = k, island = here;
+        if (!goesOn) {
+            for (uint i = begin; before && i < k; ++i) {
+                const uint run = PEL_TEXEL_COVERED | (i - begin) | (k - 1 - i) << 16;
+                // Alone, for another work-item writes the number beside it.
+                stretch[(first + i * step) * 4 + (down ? 3 : 2)] = run;
+            }
+            begin = k;
+        }
+        before = owner;
     }
 }
 
@@ -114,11 +139,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_dra
     const uint owner = nearestOwner(frame, owners, (int)x, (int)y);
     float3 value = (float3)(0.0f);
     if (owner) {
-        const UvTriangle t = uvTriangle(frame, indices, uvs, owner - 1);
-        const uint3 v = vload3(owner - 1, indices);
-        const float3 share = sharesAt(&t, (float)x, (float)y);
-        value = share.x * vertexLoad3(values, layout, v.x) + share.y * vertexLoad3(values, layout, v.y) +
-                share.z * vertexLoad3(values, layout, v.z);
+        value = valueAt(frame, indices, uvs, values, layout, owner - 1, (float)x, (float)y);
         if (unit) value *= rsqrt(fmax(dot(value, value), FLT_MIN));
     }
     storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, x, y), vec3(value.x, value.y, value.z), 1);

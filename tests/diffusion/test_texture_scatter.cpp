@@ -123,6 +123,25 @@ TEST(TextureScatter, LightDoesNotCrossASlit) {
             ASSERT_NEAR(s[3 * (128 * y + x)], x < 64 ? 1 : 0, 1e-5) << x << " " << y;
 }
 
+// Vertices that are split where the texture is not, as at hard edges, are no seam. Parts of the mesh that
+// touch only in the texture have one.
+TEST(TextureScatter, SplitVerticesAreNoSeam) {
+    for (float gap : {0.0f, 50.0f})
+        for (bool down : {false, true}) {
+            TexturedMesh m;
+            addPlate(m, 0, 0, down ? 20 : 10, down ? 10 : 20, 0, 0, down ? 1 : 0.5f, down ? 0.5f : 1);
+            addPlate(m, down ? 0 : 10 + gap, down ? 10 + gap : 0, 20 + gap * !down, 20 + gap * down,
+                     down ? 0 : 0.5f, down ? 0.5f : 0, 1, 1);
+            Texture t(m, 128, 128);
+            std::vector<float> e;
+            for (size_t i = 0; i < t.texels(); ++i)
+                e.insert(e.end(), 3, (down ? i / 128 : i % 128) < 64 ? 1.0f : 0.0f);
+            const auto s = t.run(e, Profile::skin()),
+                       whole = Texture(plate(20, 20), 128, 128).run(e, Profile::skin());
+            for (size_t i = 0; i < e.size(); ++i) ASSERT_NEAR(s[i], gap > 0 ? e[i] : whole[i], 1e-5) << i;
+        }
+}
+
 TEST(TextureScatter, VariancesAddToTheProfile) {
     Texture t(plate(16, 16), 48, 48);
     Picture p(48, 48);
