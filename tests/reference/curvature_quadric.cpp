@@ -243,7 +243,7 @@ std::vector<QuadricCurvature> quadricCurvature(const Mesh& mesh) {
         const bool doubtful = chart.steepness > 0.05 || chart.slope2 > 0.01 || chart.thin;
         Vec3 sum;
         for (int b : ring) sum = sum + normalized(mesh.normals[b]);
-        const double cosine = dot(normalized(sum), given);
+        const double cosine = length(sum) > 1e-3 ? dot(normalized(sum), given) : 1;  // 1: they cancel out
         if (cosine < 0.99) {
             nearer(out.margin, chart.steepness, 0.05);
             nearer(out.margin, chart.slope2, 0.01);
