@@ -11,7 +11,10 @@
 #include "lib/image/image.clh"
 #include "lib/mesh/mesh_vertex.clh"
 
-#define INSIDE -1e-5f  // barycentric coordinate at a border, less the rounding of texture coordinates
+// How far beyond an edge a texel may lie for the rounding of coordinates, as a share of the triangle's height
+// there, and of the texture's sides, for slivers.
+#define BEYOND 1e-5f
+#define BEYOND_OF_SIDES 1e-6f
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_owner(
     __global const PelTextureFrame* restrict frame, __global const uint* restrict indices,
@@ -23,12 +26,14 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void texture_own
     const float2 low = fmin(t.a, fmin(t.a + t.ab, t.a + t.ac)),
                  high = fmax(t.a, fmax(t.a + t.ab, t.a + t.ac));
     const int x0 = max((int)floor(low.x), 0), x1 = min((int)ceil(high.x), (int)frame->width - 1);
+    const float texels = BEYOND_OF_SIDES * (float)(frame->width + frame->height);
+    const float3 edges = (float3)(length(t.ac - t.ab), length(t.ac), length(t.ab)),
+                 beyond = fmax((float3)(BEYOND), edges * (texels / fabs(t.twice)));
     const int y0 = max((int)floor(low.y), 0), y1 = min((int)ceil(high.y), (int)frame->height - 1);
     for (int y = y0; y <= y1; ++y)
         for (int x = x0; x <= x1; ++x) {
             const float3 share = sharesAt(&t, (float)x, (float)y);
-            if (share.x >= INSIDE && share.y >= INSIDE && share.z >= INSIDE)
-                atomic_max(&owners[(size_t)y * frame->width + x], triangle + 1);
+            if (all(share >= -beyond)) atomic_max(&owners[(size_t)y * frame->width + x], triangle + 1);
         }
 }
 

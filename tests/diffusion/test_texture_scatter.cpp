@@ -220,6 +220,20 @@ TEST(TextureScatter, SeamsNeitherDarkenNorLeak) {
     const PelTextureScatterStats stats = t.scatter.stats();
     EXPECT_EQ(stats.texelsCovered, 40u * 90 + 49 * 90);
     EXPECT_EQ(stats.tilesBlurred, 6u * 36);  // of 49
+    // Slivers leave no holes: a fan of them covers what one triangle does.
+    const auto covered = [](uint32_t slivers) {
+        TexturedMesh fan;
+        fan.uvs = {0.1237f, 0.3713f};
+        for (uint32_t i = 0; i <= slivers; ++i) {
+            fan.uvs.insert(fan.uvs.end(), {1, 0.3f + 0.08f * float(i) / float(slivers)});
+            if (i > 0) fan.triangles.insert(fan.triangles.end(), {0, i, i + 1});
+        }
+        fan.positions.resize(fan.uvs.size() / 2 * 3);
+        Texture drawn(fan, 2000, 1000);
+        drawn.run(std::vector<float>(3 * drawn.texels(), 0.5f), Profile::skin());
+        return drawn.scatter.stats().texelsCovered;
+    };
+    EXPECT_EQ(covered(1000), covered(1));
     // A corner of the texture costs a corner.
     Texture small(plate(4, 4, 0.125f, 0.125f), 256, 256);
     small.run(std::vector<float>(3 * small.texels(), 0.5f), Profile::skin());
