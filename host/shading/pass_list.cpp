@@ -1,14 +1,26 @@
+#include "shading/image_slots.h"
 #include "shading/pass.h"
 
 namespace pel {
 namespace {
+
+// Whether a band would overwrite pixels that passes read around the next one.
+bool overwritesSurface(const ShaderState& state) {
+    for (const PelImageSlot read : {PEL_SLOT_MATERIAL, PEL_SLOT_POSITION, PEL_SLOT_DEPTH,
+                                    PEL_SLOT_NORMAL_GEOMETRIC, PEL_SLOT_NORMAL_SHADING})
+        for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
+            if ((slot == PEL_SLOT_RADIANCE || isOutput(slot)) && state.images[slot] && state.images[read] &&
+                sharesBytes(state.images[slot], state.images[read]))
+                return true;
+    return false;
+}
 
 // How many rows of tiles fit into the budget.
 void chooseBand(ShaderPlan& plan, const PassScratch& scratch, uint32_t mostRows) {
     const ImageView& frame = plan.state.images[PEL_SLOT_RADIANCE];
     plan.scratch = scratch.pixelBytes > 0;
     plan.haloRows = scratch.haloRows;
-    plan.wholeFrame = scratch.wholeFrame;
+    plan.wholeFrame = scratch.wholeFrame || (plan.scratch && overwritesSurface(plan.state));
     // A pass over the whole frame writes all rows of its images, whatever band the others work on.
     plan.bandRows =
         std::max(1u, plan.scratch && !plan.wholeFrame ? std::min(plan.tileRows, mostRows) : plan.tileRows);

@@ -132,7 +132,7 @@ ShaderPlan Shader::plan(const ShaderState& given, uint64_t& autoPixels) {
 void Shader::allocate(ShaderPlan plan, uint32_t mostRows) {
     // Old images are released before new ones are made: both together could exceed the budget. After a
     // failure nothing is held.
-    committed_ = false;
+    committed_ = executed_ = false;
     plan_ = ShaderPlan();
     PassList passes = std::exchange(passes_, PassList());
     if (passes.empty()) passes = PassList(passKinds_);

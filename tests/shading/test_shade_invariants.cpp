@@ -350,6 +350,8 @@ TEST(ShadeBands, BlurredNormalsWithTheirHalo) {
         EXPECT_EQ(some.pixelsWideShadow, whole.pixelsWideShadow);
         EXPECT_EQ(some.tilesTotal, whole.tilesTotal);
         EXPECT_EQ(run(s, options, &some, shader), right) << "what the bands left behind does not matter";
+        shader.set(s.frame.options).commit();
+        EXPECT_EQ(shader.stats().bands, 0u) << "nothing was executed since";
     }
 }
 
@@ -363,6 +365,15 @@ TEST(ShadeBands, ABudgetThatIsTooSmallSaysWhatWouldDo) {
                   [&] { shader.commit(); });
     f.options.scratchBudget = 150 * 48 * 61 + 2 * 400 * 40;
     shader.set(f.options).commit().execute();
+    // Filters across bands would read what the band before has overwritten.
+    Frame tall = passesFrame(1, 70, 1000);
+    tall.options.scratchBudget = 968 * 70 * 48 + 2 * 400 * 40;
+    FrameShader over = shaderOf(tall);
+    over.shader.commit();
+    const Buffer both(device(), tall.slots[PEL_SLOT_NORMAL_SHADING].values);
+    for (const auto slot : {PEL_SLOT_NORMAL_SHADING, PEL_SLOT_RADIANCE})
+        over.shader.set(slot, imageDesc(both, PEL_FORMAT_RGB32F, 70, 1000));
+    expectRefused(PEL_ERROR_OUT_OF_MEMORY, {"1000 rows"}, [&] { over.shader.commit(); });
     // Without passes there is no scratch memory to limit.
     f.options.blurNormals = 0;
     f.options.scratchBudget = 1;

@@ -1191,7 +1191,8 @@ typedef enum PelFeature {
     PEL_FEATURE_ENVIRONMENT = 1 << 30         /* specular light of the surroundings */
 } PelFeature;
 
-/* Statistics of a shader: counts of its last execution unless marked as total. */
+/* Statistics of a shader: counts of its last execution unless marked as total; 0 from a commit to the next
+ * execution. */
 typedef struct PelShaderStats {
     uint32_t structSize;
     uint32_t features;      /* PelFeature bits, derived at commit */
@@ -1297,8 +1298,8 @@ typedef struct PelShaderOptions {
      * so that few taps give noise, not bands (docs/guide/shading.md, "Rotated disk of taps") */
     uint32_t rotateTaps;
     /* limit in bytes for images that the passes make (blurred normals, wide shadows): larger frames are
-     * shaded in bands of rows, with the same bits as a result. 0: no limit, and bands only when memory runs
-     * out */
+     * shaded in bands of rows, with the same bits as a result, unless an output overwrites ids, positions,
+     * depth or normals. 0: no limit, and bands only when memory runs out */
     uint64_t scratchBudget;
     PelTileLists tileLists;
     /* for methods that leave out small contributions: the error that they may make, as a share of white, 0 to
