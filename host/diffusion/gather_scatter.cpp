@@ -36,6 +36,7 @@ enum Program { SURFACE, GATHER, HISTORY };
 void GatherScatter::sendMaterials(const std::map<uint32_t, Material>& materials) {
     const std::vector<Material> distinct = distinctOf(materials, frame_.materialOf);
     if (materials == materials_ && described_) return;
+    described_ = cl::Memory();  // until all are sent
     std::vector<PelGatherMaterial> described;
     std::vector<PelGatherTap> taps;
     std::vector<float> values;
@@ -64,9 +65,9 @@ void GatherScatter::sendMaterials(const std::map<uint32_t, Material>& materials)
         described.push_back(m);
     }
     if (described.empty()) described.emplace_back(), taps.emplace_back(), values.resize(8);
-    described_ = device_->upload(described);
     taps_ = device_->upload(taps);
     nodes_ = device_->upload(values);
+    described_ = device_->upload(described);
     tableBytes_ =
         described.size() * sizeof described[0] + taps.size() * sizeof taps[0] + values.size() * sizeof(float);
     materials_ = materials;

@@ -80,6 +80,7 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
     frame_.tables = uint32_t(distinct.size());
     const bool hasSides = frame_.view != PEL_VIEW_UNKNOWN && frame_.curvature.rowStride;
     if (materials == materials_ && hasSides == hasSides_ && lights_.alone == byTexels_ && tables_) return;
+    tables_ = cl::Memory();  // until all are sent
     narrowest_ = widest_ = 0;
     std::vector<PelProfileTable> tables;
     std::vector<float> values;
@@ -103,8 +104,8 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
         values.insert(values.end(), nodes.values.begin(), nodes.values.end());
     }
     if (tables.empty()) tables.emplace_back(), values.resize(12);
-    tables_ = device_->upload(tables);
     nodes_ = device_->upload(values);
+    tables_ = device_->upload(tables);
     nodeBytes_ = tables.size() * sizeof tables[0] + values.size() * sizeof(float);
     materials_ = materials;
     hasSides_ = hasSides, byTexels_ = lights_.alone;

@@ -82,8 +82,9 @@ class SkinMapsPass final : public Pass {
             const std::vector<float> table = skinTable(skin, oxygenations());
             values.insert(values.end(), table.begin(), table.end());
         }
+        const size_t sent = tables_.update(device, values);
         skins_ = std::move(skins), tabulated_ = oxygenations();
-        return sizeof maps + tables_.update(device, values);
+        return sizeof maps + sent;
     }
 
     void enqueueFrame(PassWork& work) override {

@@ -111,8 +111,8 @@ void TextureScatter::describe(const ImageView& irradiance, const ImageView& albe
     frame.albedo = describeImage(albedo);
     frame.out = describeImage(out);
     if (frameMemory_ && !std::memcmp(&frame, &frame_, sizeof frame)) return;
+    frameMemory_ = device_->allocate(sizeof frame, &frame);
     frame_ = frame;
-    frameMemory_ = device_->allocate(sizeof frame, &frame_);
 }
 
 cl::Program TextureScatter::program(const char* file, const ImageView& irradiance, const ImageView& albedo,
@@ -135,15 +135,16 @@ void TextureScatter::checkSize(const ImageView& view, const char* name) const {
 void TextureScatter::setPositions(const VertexView& positions) {
     events_.clear();
     const cl::Program map = program("diffusion/texture_map.cl", {}, {}, {});
-    const bool isFirst = !stretch_;
-    if (isFirst) {
-        stretch_ = device_->allocate(texels() * texelBytes);
-        device_->fill(stretch_.get(), 0, texels() * texelBytes, 0);
+    cl::Memory stretch = stretch_;
+    if (!stretch_) {
+        stretch = device_->allocate(texels() * texelBytes);
+        device_->fill(stretch.get(), 0, texels() * texelBytes, 0);
     }
-    launch(map, "texture_stretch", texels(), frameMemory_, indices_, uvs_, positions, owners_, stretch_);
-    if (isFirst)
+    launch(map, "texture_stretch", texels(), frameMemory_, indices_, uvs_, positions, owners_, stretch);
+    if (!stretch_)
         launch(map, "texture_edges", width_ + height_, frameMemory_, indices_, uvs_, positions, islands_,
-               owners_, stretch_);
+               owners_, stretch);
+    stretch_ = std::move(stretch);
     placed_ = true;
 }
 

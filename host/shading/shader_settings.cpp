@@ -14,9 +14,12 @@ static uint64_t nextNumber() {
 
 void Shader::setOptions(const PelShaderOptions& options) {
     checkOptions(options);
-    if (options.millimetresPerUnit != state_.options.millimetresPerUnit)
-        for (auto& [id, material] : state_.materials)
-            resolveMaterial(material, device_, options, profileTables_);
+    if (options.millimetresPerUnit != state_.options.millimetresPerUnit) {
+        auto materials = state_.materials;
+        for (auto& [id, material] : materials) resolveMaterial(material, device_, options, profileTables_);
+        state_.materials = std::move(materials);
+        profileTables_.keepOnly(state_.materials);
+    }
     state_.options = options;
     committed_ = false;
 }

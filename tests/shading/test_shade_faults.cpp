@@ -7,9 +7,10 @@
 #include "test.h"
 
 #include "cl/cl_spy.h"
-#include "pass_scene.h"
+#include "scattering_frame.h"
 
 using namespace shade_test;
+using pellucid::Profile;
 
 namespace {
 
@@ -121,6 +122,92 @@ TEST_P(ShadeFaults, EachAllocationInTurn) {
         EXPECT_GT(recovered, 2);
     }
     EXPECT_GT(failures, 3);
+}
+
+// Each buffer in turn cannot be made while `change` is committed; then `before` gives its picture again, and
+// so it does after a failure of a shader's first commit.
+void expectTakenBack(const Frame& f, const std::function<void(Shader&)>& before,
+                     const std::function<void(Shader&)>& change) {
+    libraryBase = nullptr;
+    const Buffer target(device(), f.pixels() * 12);
+    const auto shade = [&](Shader& shader, const std::function<void(Shader&)>& set) {
+        set(shader);
+        shader.commit().execute();
+        return target.readAll<float>();
+    };
+    const auto made = [&] {
+        Shader shader(device());
+        setFrame(shader, f, target);
+        return shader;
+    };
+    Shader first = made();
+    const std::vector<float> right = shade(first, before), other = shade(first, change);
+    EXPECT_NE(right, other);
+    for (const bool anew : {false, true})
+        for (int n = 1; n < 100; ++n) {
+            Shader shader = made();
+            if (!anew) shade(shader, before);
+            spy::failAt(spy::Call::createBuffer, n);
+            try {
+                (anew ? before : change)(shader);
+                shader.commit();
+            } catch (const pellucid::Error& e) {
+                EXPECT_EQ(e.code(), PEL_ERROR_OUT_OF_MEMORY);
+            }
+            const bool struck = spy::callsUntilFailure() <= 0;
+            spy::failAt(spy::Call::none, 0);
+            EXPECT_EQ(shade(shader, before), right) << "call " << n << (anew ? " of the first commit" : "");
+            if (!struck) break;
+        }
+}
+
+TEST(ShadeChanges, FailAndAreTakenBack) {
+    PelSkin thick = pelSkinDefaults();
+    thick.epidermis *= 3;
+    const Profile skin = Profile::skinLayers(pelSkinDefaults()), other = Profile::skinLayers(thick);
+    for (const auto& [scattering, taps] : {std::pair{PEL_SCATTERING_SCREEN, 0u},
+                                           {PEL_SCATTERING_SCREEN, 16u},
+                                           {PEL_SCATTERING_SEPARABLE, 0u},
+                                           {PEL_SCATTERING_LIGHT, 0u},
+                                           {PEL_SCATTERING_AUTO, 0u}}) {
+        SCOPED_TRACE(testing::Message() << scattering << ", taps " << taps);
+        Frame f = scatteringFrame(scattering, 96, 40);
+        if (scattering == PEL_SCATTERING_SCREEN && !taps)  // whose tables take long
+            f.slots[PEL_SLOT_SKIN] = {2, std::vector<float>(2 * f.pixels(), 0.05f)};
+        const auto set = [&f, taps = taps](const Profile& profile) {
+            return [&, taps](Shader& shader) {
+                for (auto [id, m] : f.materials) {
+                    m.profile = profile.get(), m.scatterTaps = taps;
+                    shader.setMaterial(id, m);
+                }
+            };
+        };
+        expectTakenBack(f, set(skin), set(other));
+    }
+}
+
+TEST(ShadeChanges, AnotherUnitFailsForAllMaterials) {
+    Frame f = scatteringFrame(PEL_SCATTERING_SCREEN, 96, 40);
+    const Profile skin = Profile::skin();
+    for (auto& [id, m] : f.materials) m.profile = skin.get(), m.shadowFilterWidth = float(id);
+    f.curvatureLut = f.shadowLut = false;
+    const auto unit = [&f](float unit) {
+        return [&f, unit](Shader& shader) {
+            PelShaderOptions options = f.options;
+            options.millimetresPerUnit = unit;
+            shader.set(options);
+        };
+    };
+    expectTakenBack(f, unit(1), unit(3));
+    // Tables of former units are released.
+    FrameShader made = shaderOf(f);
+    int64_t first = 0;
+    for (int i = 1; i < 20; ++i) {
+        unit(float(i))(made.shader);
+        made.shader.commit().execute();
+        if (i == 2) first = spy::counts().memory;
+    }
+    EXPECT_EQ(spy::counts().memory, first);
 }
 
 std::string nameOf(const testing::TestParamInfo<Case>& info) {
