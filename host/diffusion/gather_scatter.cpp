@@ -100,8 +100,7 @@ void GatherScatter::prepare(const std::map<uint32_t, Material>& materials, const
     const size_t samples = images.half ? size_t((frame_.width + 1) / 2) * ((frame_.height + 1) / 2) : 0;
     samples_.resize(*device_, samples * 4 * sizeof(float));
     for (SizedMemory& one : history_)
-        one.resize(*device_, history.weight > 0 ? pixels * 4 * sizeof(float) : 0);
-    if (!(history.weight > 0)) sequence_.reset();
+        if (one.resize(*device_, history.weight > 0 ? pixels * 4 * sizeof(float) : 0)) sequence_.reset();
     tiles_.resize(*device_, size_t(frame_.tilesX) * frame_.tilesY * sizeof(cl_uint));
     if (!counters_) counters_ = device_->allocate(PEL_DIFFUSION_COUNTERS * sizeof(cl_uint));
     constants_.update(*device_, frame_);

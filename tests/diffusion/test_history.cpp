@@ -209,9 +209,11 @@ TEST(History, BeginsAnew) {
         const char* name;
         std::function<void(ClipFrame&)> change;
         bool between = false;  // a frame without a history comes first
+        bool commits = false;  // a commit of another size comes first
     } cases[] = {{"a cut", [](ClipFrame& c) { c.frame.options.historyCut = 7; }},
                  {"another size", [&](ClipFrame& c) { c = clipFrame(other, screen, 8, 3, {}); }},
                  {"a frame without a history", [](ClipFrame&) {}, true},
+                 {"another size without a frame", [](ClipFrame&) {}, false, true},
                  {"surfaces that came from far away",
                   [](ClipFrame& c) {
                       for (Vec3& m : c.motion) m.z = 100;
@@ -228,6 +230,11 @@ TEST(History, BeginsAnew) {
             ClipFrame without = c;
             without.frame.options.historyWeight = 0;
             shade(without, shown);
+        }
+        if (one.commits) {
+            PelShaderOptions part = c.frame.options;
+            part.regionWidth = part.regionHeight = 20;
+            shown.shader.set(part).commit();
         }
         const Shown now = shade(c, shown);
         EXPECT_EQ(now.light, alone(c)) << one.name;
