@@ -71,6 +71,7 @@ class Irises final : public Pass {
             }
             made = now;
         }
+        made_.resize(eye);  // others may be overwritten
     }
 
   private:

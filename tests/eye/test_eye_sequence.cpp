@@ -152,6 +152,26 @@ TEST(EyeSequence, EqualsNewShaders) {
     }
 }
 
+// With a region, memory that is too long is kept, and the next irises lie elsewhere in it.
+TEST(EyeSequence, IrisesInKeptMemory) {
+    Sequence sequence;
+    EyeFrame& frame = *sequence.frames[0];
+    Shader shader(frame.device);
+    frame.prepare(shader);
+    PelShaderOptions options = pelShaderOptionsDefaults();
+    options.regionWidth = frame.width, options.regionHeight = frame.height;
+    shader.set(options).setEye(2, pelEyeDefaults());
+    const auto withWall = [&] {
+        shader.setEye(1, pelEyeDefaults())
+            .setIrisTexture(1, imageDesc(sequence.textures[0], PEL_FORMAT_RGB32F, 16, 16));
+        return frame.execute(shader);
+    };
+    const std::vector<float> both = withWall();
+    shader.clearEye(1);
+    frame.execute(shader);
+    EXPECT_TRUE(withWall() == both);
+}
+
 // Tables one after another on one device equal the same tables in the reverse order.
 TEST(EyeSequence, TablesInAnyOrder) {
     const Profile skin = Profile::skin();
