@@ -44,6 +44,8 @@ DiffusionRates measureRates(MeshTopology& topology, const SlotData& data, PelSmo
     std::vector<float> values(topology.slots());
     topology.device().read(scratch(MeshTopology::scratchRates, 0).get(), 0, values.size() * sizeof(float),
                            values.data(), true);
+    std::erase_if(values, [](float rate) { return !(rate > 0); });  // vertices without neighbours
+    if (values.empty()) return {};
     std::vector<float> sample;
     for (size_t i = 0, step = 1 + values.size() / 65536; i < values.size(); i += step)
         sample.push_back(values[i]);

@@ -119,6 +119,20 @@ TEST(CurvatureSmoothing, MeshesTooSmallForTheirAreasStayFinite) {
                 valuesOf(sampled(reference::torusSurface(3 * size, size), 24, 12), smoothed(size, weights)));
 }
 
+// As of a part of a larger vertex buffer.
+TEST(CurvatureSmoothing, VerticesInNoTriangleChangeNothing) {
+    const Mesh mesh = irregularTorus(sized(40, 20), sized(20, 16));
+    for (auto weights : bothWeights)
+        for (const size_t times : {3, 200}) {
+            Mesh more = mesh;
+            more.positions.resize(times * mesh.positions.size());
+            more.normals.resize(times * mesh.normals.size());
+            std::vector<float> values = valuesOf(more, smoothed(0.5, weights));
+            values.resize(mesh.vertices());
+            EXPECT_EQ(values, valuesOf(mesh, smoothed(0.5, weights))) << times;
+        }
+}
+
 TEST(CurvatureSmoothing, SpreadsNoNaNAndNamesWrongParameters) {
     Mesh mesh = irregularTorus(sized(40, 20), sized(20, 16));
     mesh.positions[300] = NAN;
