@@ -75,12 +75,11 @@ bool warn(const std::string& lines) {
     if (lines.empty()) return true;
     const std::string object = nameInCall();  // callbacks may call the library
     bool heard = false;
-    call([&](const Callbacks& to) {
-        heard = to.log != nullptr;
-        std::istringstream each(lines);
-        for (std::string line; to.log && std::getline(each, line);)
-            to.log(to.logUser, PEL_LOG_WARNING, object.c_str(), line.c_str());
-    });
+    std::istringstream each(lines);
+    for (std::string line; std::getline(each, line);)
+        call([&](const Callbacks& to) {
+            if (to.log) to.log(to.logUser, PEL_LOG_WARNING, object.c_str(), line.c_str()), heard = true;
+        });
     return heard;
 }
 
@@ -94,8 +93,11 @@ PelError report(PelError code, const char* what) noexcept {
     }
     const char* const said = whole.empty() ? what : whole.c_str();
     keep(said);
+    // One by one: the first may remove the second.
     call([&](const Callbacks& to) {
         if (to.error) to.error(to.errorUser, code, said);
+    });
+    call([&](const Callbacks& to) {
         if (to.log) to.log(to.logUser, PEL_LOG_ERROR, object.c_str(), what);
     });
     keep(said);

@@ -145,18 +145,18 @@ PelLiveMeshStats LiveMesh::stats() {
     return stats;
 }
 
-static std::vector<uint32_t> readBack(Device& device, const cl::Memory& memory) {
+static std::vector<uint32_t> readBack(Device& device, const cl::Memory& memory, size_t count) {
     if (!memory) return {};
-    std::vector<uint32_t> values(cl::info<size_t>(memory.get(), CL_MEM_SIZE) / sizeof(uint32_t));
+    std::vector<uint32_t> values(count);
     device.readOnSideQueue(memory.get(), values.size() * sizeof(uint32_t), values.data());
     return values;
 }
 
 MeshReacher::MeshReacher(const MeshTopology& topology)
     : slots_(topology.slots()),
-      slices_(readBack(topology.device(), topology.slices())),
-      rings_(readBack(topology.device(), topology.rings())),
-      slotOf_(readBack(topology.device(), topology.slotOf())),
+      slices_(readBack(topology.device(), topology.slices(), topology.sliceEntries())),
+      rings_(readBack(topology.device(), topology.rings(), topology.ringEntries())),
+      slotOf_(readBack(topology.device(), topology.slotOf(), topology.vertices())),
       slotMarks_(slots_),
       sliceMarks_((slots_ + PEL_MESH_LANES - 1) / PEL_MESH_LANES) {}
 

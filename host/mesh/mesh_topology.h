@@ -65,8 +65,9 @@ class MeshTopology final : public Object {
     std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
     const cl::Memory& scratch(Scratch which, size_t bytes) { return scratch_[which].grow(*device_, bytes); }
 
-    // Entries of the rings, including fillers.
+    // Entries of the rings, including fillers; and of the slices.
     size_t ringEntries() const { return ringEntries_; }
+    size_t sliceEntries() const { return (size_t(slots()) + PEL_MESH_LANES - 1) / PEL_MESH_LANES + 1; }
     // As measured last, by weights. Guarded by lock().
     DiffusionRates diffusionRates[2];
     // Starts, points and rounds of the two-rings (shared/mesh.h), made or queued; empty: not yet. Guarded

@@ -45,22 +45,26 @@ bool rising(const std::vector<uint32_t>& values, size_t last) {
 }  // namespace
 
 std::vector<char> MeshTopology::save() const {
-    const cl::Memory* arrays[6] = {&indices_, &slotOf_, &memberOffsets_, &members_, &slices_, &rings_};
+    // The host's memory may be longer than what was asked for.
+    const std::pair<const cl::Memory*, size_t> arrays[6] = {
+        {&indices_, 3 * size_t(triangles())}, {&slotOf_, vertices()},
+        {&memberOffsets_, slots() + 1},       {&members_, vertices()},
+        {&slices_, sliceEntries()},           {&rings_, ringEntries_}};
     Header header{};
     std::memcpy(header.magic, magic, sizeof magic);
     header.version = version;
     header.report = report_;
     size_t total = 0;
     for (int a = 0; a < 6; ++a) {
-        if (*arrays[a])
-            header.words[a] = uint32_t(cl::info<size_t>(arrays[a]->get(), CL_MEM_SIZE) / sizeof(uint32_t));
+        if (*arrays[a].first) header.words[a] = uint32_t(arrays[a].second);
         total += header.words[a];
     }
     std::vector<uint32_t> words(total);
     size_t at = 0;
     for (int a = 0; a < 6; ++a) {
         if (header.words[a] > 0)
-            device_->readOnSideQueue(arrays[a]->get(), header.words[a] * sizeof(uint32_t), words.data() + at);
+            device_->readOnSideQueue(arrays[a].first->get(), header.words[a] * sizeof(uint32_t),
+                                     words.data() + at);
         at += header.words[a];
     }
     header.checksum = checksumOf(words.data(), words.size());

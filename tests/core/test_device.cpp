@@ -266,7 +266,13 @@ TEST(Errors, TheLogHearsNamesErrorsAndWarnings) {
         warnings += (i > 3 ? "\n" : "") + heard.lines[i].substr(7);
     }
     EXPECT_EQ(warnings, shader.warnings());
+    // The error callback, which is called first, removes the other one.
+    pelSetLogCallback(&Heard::hear, &heard);
+    pelSetErrorCallback([](void*, PelError, const char*) { pelSetLogCallback(nullptr, nullptr); }, nullptr);
+    heard.lines.clear();
     expectRefused("cannot be named", [] { return pelSetName(nullptr, "nothing"); });
+    pelSetErrorCallback(nullptr, nullptr);
+    EXPECT_TRUE(heard.lines.empty());
 }
 
 TEST(Device, MemoryComesFromTheHost) {
@@ -277,7 +283,8 @@ TEST(Device, MemoryComesFromTheHost) {
             Host& host = *static_cast<Host*>(user);
             if (host.full) return nullptr;
             host.bytes += bytes;
-            cl_mem memory = clCreateBuffer(cl_context(context), CL_MEM_READ_WRITE, bytes, nullptr, nullptr);
+            cl_mem memory =
+                clCreateBuffer(cl_context(context), CL_MEM_READ_WRITE, bytes + 64, nullptr, nullptr);
             const cl_uchar garbage = 0xab;
             const auto queue = cl_command_queue(host.queue);
             clEnqueueFillBuffer(queue, memory, &garbage, 1, 0, bytes, 0, nullptr, nullptr);
@@ -297,6 +304,11 @@ TEST(Device, MemoryComesFromTheHost) {
     EXPECT_EQ(device.stats().bytesAllocated, host.bytes);
     EXPECT_EQ(zeros.readAll<float>(), std::vector<float>(1024));
     EXPECT_EQ(ones.readAll<float>(), std::vector<float>(100, 1));
+    const uint32_t corners[] = {0, 1, 2};
+    PelMeshTopologyDesc triangle = pelMeshTopologyDescDefaults();
+    triangle.numVertices = 3, triangle.indices = corners, triangle.numIndices = 3;
+    const std::vector<char> saved = pellucid::MeshTopology(device, triangle).save();
+    pellucid::MeshTopology::load(device, saved.data(), saved.size());  // the memory is longer than that
     host.full = true;
     expectRefused(PEL_ERROR_OUT_OF_MEMORY, {"PelDeviceDesc.allocate could not provide 64 bytes"},
                   [&] { Buffer(device, 64); });

@@ -8,8 +8,10 @@ py::object errorCallback = py::none(), logCallback = py::none();
 template <class... Arguments>
 void tell(const py::object& callback, const char* what, Arguments... arguments) {
     WithGil gil;
+    const py::object now = callback;  // which may replace itself, or has just been removed
+    if (now.is_none()) return;
     try {
-        callback(arguments...);
+        now(arguments...);
     } catch (py::error_already_set& error) {
         error.discard_as_unraisable(what);
     }
