@@ -174,7 +174,10 @@ PelError pelBufferWrite(PelBuffer buffer, size_t offset, size_t bytes, const voi
 }
 
 PelError pelBufferMap(PelBuffer buffer, void** memory) {
-    return entry([&] { output(memory, "memory") = fromHandle<Buffer>(buffer)->map(); });
+    return entry([&] {
+        void*& at = output(memory, "memory");
+        at = fromHandle<Buffer>(buffer)->map();
+    });
 }
 
 PelError pelBufferUnmap(PelBuffer buffer) {

@@ -54,7 +54,7 @@ PelError pelMeshOrient(const PelMeshTopologyDesc* desc, const float* normals, ui
     return entry([&] {
         const auto full = readStruct(desc, pelMeshTopologyDescDefaults());
         PelMeshOrientation counts = pelMeshOrientationDefaults();
-        if (found) writeStruct(found, counts);  // an error comes before anything is written
+        if (found) checkStructSize<PelMeshOrientation>(found->structSize);
         const std::vector<uint32_t> turned = orientTriangles(full, normals, normalStride, counts);
         if (!turned.empty()) std::copy(turned.begin(), turned.end(), &output(indices, "indices"));
         if (found) writeStruct(found, counts);
@@ -77,7 +77,7 @@ PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* pa
         const VertexView n = normals ? view(normals, "normals", 3) : VertexView{};
         const VertexView out = view(curvature, "curvature", quantityFloats(full.quantity));
         PelMeshReport found = mesh->report();
-        if (report) writeStruct(report, found);  // an error comes before any work
+        if (report) checkStructSize<PelMeshReport>(report->structSize);
         MeshCounts counts{};
         submitted(mesh->device(), submit, [&](bool blocks) {
             meshCurvature(*mesh, full, p, n, out, report ? &counts : nullptr, blocks || report);

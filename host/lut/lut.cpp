@@ -45,6 +45,7 @@ PelLutInfo resolved(PelLutInfo info, const Profile& profile) {
         std::memset(info.profile, 0, sizeof info.profile);
         std::strncpy(info.profile, profile.name().c_str(), sizeof info.profile - 1);
     }
+    info.profile[sizeof info.profile - 1] = '\0';
     const PelProfileInfo lengths = profile.info();
     info.curvature = pelCurvatureLutDescFilled(info.curvature, &lengths);
     info.shadow = pelShadowLutDescFilled(info.shadow, &lengths);

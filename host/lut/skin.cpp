@@ -433,11 +433,13 @@ PelSkinInfo skinInfo(const PelSkin& skin) {
 void skinReflectance(const PelSkin& skin, std::span<const float> nanometres, float* reflectance) {
     const auto values = compute(skin, false).reflectance;
     const float first = skinSpectra[0].nanometres, step = skinSpectra[1].nanometres - first;
-    for (size_t i = 0; i < nanometres.size(); ++i) {
-        const double at = (nanometres[i] - first) / step;
-        if (!(at >= 0 && at <= skinWavelengths - 1))
+    const auto place = [&](size_t i) { return double((nanometres[i] - first) / step); };
+    for (size_t i = 0; i < nanometres.size(); ++i)
+        if (!(place(i) >= 0 && place(i) <= skinWavelengths - 1))
             invalidArgument("wavelength ", i, " is ", nanometres[i], " nm; it must be from ", first, " to ",
                             skinSpectra[skinWavelengths - 1].nanometres);
+    for (size_t i = 0; i < nanometres.size(); ++i) {
+        const double at = place(i);
         const int cell = std::min(int(at), skinWavelengths - 2);
         reflectance[i] = float(values[cell] + (values[cell + 1] - values[cell]) * (at - cell));
     }

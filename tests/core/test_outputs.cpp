@@ -38,6 +38,11 @@ TEST(Outputs, AReportOfNoSizeIsRefusedBeforeAnyWork) {
     report = pelMeshReportDefaults();
     check(pelMeshCurvature(topology.get(), &params, &p, &n, &c, &report, nullptr));
     for (const float value : out.readAll<float>()) ASSERT_NE(value, -7.0f);
+    PelCurvatureParams endless = params;
+    endless.smoothingRadius = 1e30f;
+    report.vertices = 7;
+    EXPECT_NE(pelMeshCurvature(topology.get(), &endless, &p, &n, &c, &report, nullptr), PEL_SUCCESS);
+    EXPECT_EQ(report.vertices, 7u);
 }
 
 // With all else as it should be.
@@ -125,5 +130,6 @@ TEST(Outputs, NowhereToPutAResultIsRefused) {
         {"pelScatterCreate", pelScatterCreate(device.get(), nullptr)},
         {"pelTextureScatterCreate", pelTextureScatterCreate(device.get(), &texture, nullptr)}};
     for (const auto& [name, code] : calls) EXPECT_EQ(code, PEL_ERROR_INVALID_ARGUMENT) << name;
+    EXPECT_EQ(pelBufferUnmap(buffer.get()), PEL_ERROR_INVALID_STATE) << "it was mapped all the same";
     pelEventRelease(event);
 }

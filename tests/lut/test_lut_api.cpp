@@ -131,6 +131,8 @@ TEST(LutApi, TexelsFromOutsideComeBackBitForBit) {
     broken.pop_back();
     EXPECT_THROW(Lut(device(), info, broken), Error);
     PelLutInfo wrong = info;
+    std::fill_n(wrong.profile, sizeof wrong.profile, 'x');
+    EXPECT_EQ(Lut(device(), wrong, texels).info().profile[63], '\0');
     wrong.kind = PelLutKind(7);
     EXPECT_THROW(Lut(device(), wrong, texels), Error);
     wrong = info;

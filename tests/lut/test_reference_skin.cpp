@@ -246,9 +246,10 @@ TEST(Skin, RefusesWhatIsOutOfRangeByName) {
     PEL_EACH_SKIN_FIELD(CHECK)
 #undef CHECK
     const PelSkin skin = pelSkinDefaults();
-    const float beyond = 721;
-    float value;
-    EXPECT_EQ(pelSkinReflectance(&skin, &beyond, 1, &value), PEL_ERROR_INVALID_ARGUMENT);
+    const float beyond[] = {500, 721};
+    float values[] = {-1, -1};
+    EXPECT_EQ(pelSkinReflectance(&skin, beyond, 2, values), PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(values[0], -1);
 }
 
 TEST(Skin, IsAProfile) {

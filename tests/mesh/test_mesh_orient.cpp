@@ -195,7 +195,10 @@ TEST(MeshOrient, SaysWhatIsWrong) {
     Triangles out(mesh.indices.size());
     PelMeshTopologyDesc desc = topologyDesc(mesh);
     const auto refused = [&](const char* word, const float* normals, uint32_t stride, uint32_t* indices) {
-        expectRefused(word, [&] { return pelMeshOrient(&desc, normals, stride, indices, nullptr); });
+        PelMeshOrientation found = pelMeshOrientationDefaults();
+        found.parts = 7;
+        expectRefused(word, [&] { return pelMeshOrient(&desc, normals, stride, indices, &found); });
+        EXPECT_EQ(found.parts, 7u);
     };
     refused("indices", nullptr, 0, nullptr);
     refused("normalStride is 10", mesh.normals.data(), 10, out.data());
