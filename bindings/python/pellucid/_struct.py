@@ -78,7 +78,7 @@ class Struct(metaclass=_PublicNames):
     _c_name: ClassVar[str]
     _dtype: ClassVar[np.dtype[Any]]
     _data: NDArray[Any]
-    _profile: Any = None  # kept alive for the handle in _data
+    _kept: dict[str, Any]  # profiles by field, alive for the handles in _data
 
     def __new__(cls: type[S], *_: Any, **fields: Any) -> S:
         for name in fields:
@@ -94,12 +94,13 @@ class Struct(metaclass=_PublicNames):
     def __init__(self, **fields: Any) -> None:
         # A writable copy of the library's own defaults, structSize included.
         self._data = np.frombuffer(bytearray(_native.struct_defaults(self._c_name)), self._dtype)
+        self._kept = {}
         for name, value in fields.items():
             if value is not None:
                 setattr(self, name, value)
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if name not in ("_data", "_profile") and name not in self.field_names():
+        if name not in ("_data", "_kept") and name not in self.field_names():
             raise AttributeError(self._unknown(name))
         super().__setattr__(name, value)
 
@@ -135,7 +136,7 @@ class Struct(metaclass=_PublicNames):
         made = cls()
         if given is not None:
             made._data[...] = cls._bytes_of(given)
-            made._profile = given._profile
+            made._kept = dict(given._kept)
         for name, value in fields.items():
             setattr(made, name, value)
         return made
@@ -176,6 +177,7 @@ class Field(Generic[T]):
         if of is not None and issubclass(of, Struct):
             inner = of()
             inner._data[0] = stored
+            inner._kept = dict(owner._kept.get(self.name, {}))
             return inner
         if of is not None:
             return of(int(stored))  # type: ignore[call-arg]
@@ -198,6 +200,7 @@ class Field(Generic[T]):
             if not isinstance(value, kind):
                 raise wrong(f"a {kind.__name__}")
             stored = value._data[0]
+            owner._kept[self.name] = dict(value._kept)
         elif kind is not None:
             stored = int(to_enum(kind, value, name))  # type: ignore[type-var]
         elif dtype.kind == "S":
@@ -224,11 +227,11 @@ class ProfileField(Field[Any]):
     """A diffusion profile, or the name of one of the library; None for none."""
 
     def __get__(self, owner: Struct | None, kind: Any) -> Any:
-        return self if owner is None else owner._profile
+        return self if owner is None else owner._kept.get(self.name)
 
     def __set__(self, owner: Struct, value: Any) -> None:
         from .profile import as_profile
 
         profile = as_profile(value, f"{type(owner).__name__}.{self.name}")
-        owner._profile = profile
+        owner._kept[self.name] = profile
         owner._data[self.name] = 0 if profile is None else profile._handle.address()

@@ -325,8 +325,9 @@ class LiveMesh(OfThisProcess):
         views = [vertex_view(device, positions, 3, "positions"),
                  None if normals is None else vertex_view(device, normals, 3, "normals"), self._target(out)]
         ranges = None
-        if changed is not None:  # a negative number becomes one beyond any mesh, which the library refuses
-            ranges = np.array(list(changed), np.int64).reshape(-1, 2).astype(np.uint32)
+        if changed is not None:  # numbers beyond 32 bits become one that the library refuses
+            given = np.array(list(changed), np.int64).reshape(-1, 2)
+            ranges = np.minimum(given.view(np.uint64), 2**32 - 1).astype(np.uint32)
         count = 0 if ranges is None else len(ranges)
         return submit(device, views, waits,
                       lambda p, n, c, w: self._handle.update(p, n, c, address(ranges), count, w),

@@ -16,6 +16,8 @@ def test_texels_go_there_and_back(device):
         pel.Lut.from_texels(device, lut.info, texels[:-1])
     with pytest.raises(ValueError, match="float64"):
         pel.Lut.from_texels(device, lut.info, texels.astype(np.float64))
+    jade = pel.LutInfo(kind="shadow", shadow=pel.ShadowLutDesc(profile="jade", width=16, height=4)).copy()
+    assert jade.shadow.profile.info.name == pel.Lut.from_texels(device, jade, texels).info.profile == "jade"
 
 
 @pytest.mark.parametrize("use, error, message", [

@@ -171,7 +171,7 @@ def test_a_part_gives_the_bits_of_the_whole(device, moving_device, make_sphere, 
         launches = device.stats().launches
         live.update(positions, normals, out, [])
         assert device.stats().launches == launches and live.stats().launches == 0
-    for wrong in (len(positions), 1), (-1, 2):
+    for wrong in (len(positions), 1), (-1, 2), (2**32, 1), (0, 2**32 + 1):
         with pytest.raises(pel.PellucidError, match="range 0"):
             live.update(positions, normals, out, [wrong])
     both = pel.CurvatureParams(quantity="principal")
