@@ -189,7 +189,8 @@ std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(
         to.lobeMix = m.lobeMix;
         to.deepScatterAmbient = m.deepScatterAmbient;
         if (materialNeeds(state, from) & PEL_FEATURE_TRANSMISSION) {
-            const double reach = transmissionReach(*from.profile) / state.options.millimetresPerUnit;
+            const double reach =
+                transmissionReach(*from.profile) * m.diffusionRadius / float(from.profile->radius());
             to.transmission = describe(from.transmission.get(), 1);
             to.transmission.radiusRatio = 1;
             to.transmissionPerLength = float(1 / reach);

@@ -197,6 +197,22 @@ TEST(ShadeProfile, TransmissionIsTheSlabsAndNeverAdded) {
     for (size_t i = 0; i < less.size(); ++i) EXPECT_LE(less[i], radiance[i]);
 }
 
+// A radius that differs from the profile's stretches all of it.
+TEST(ShadeProfile, ARadiusOfTwiceIsAProfileOfTwiceTheSize) {
+    const auto sized = [](float k) {
+        return Profile::gaussians({{0.1f * k * k, {0.2f, 0.5f, 0.7f}}, {k * k, {0.8f, 0.5f, 0.3f}}});
+    };
+    const Profile one = sized(1), two = sized(2);
+    PelMaterial material = materialOf(two);
+    material.shadowFilterWidth = 3;
+    const auto expected = Shading(material, Inputs{}).execute();
+    material.profile = one.get();
+    material.diffusionRadius = 2 * one.info().radius;
+    const auto stretched = Shading(material, Inputs{}).execute();
+    for (size_t i = 0; i < expected.size(); ++i)
+        EXPECT_NEAR(stretched[i], expected[i], tolerance::unitRoundTrip);
+}
+
 TEST(ShadeProfile, NothingIsKnownToComeThroughFromALightWithoutAMap) {
     Shading shading(materialOf(burley()), {.thickness = false, .position = true});
     const PelLight below = directionalLight({0, 0, -1}, {1, 1, 1});
