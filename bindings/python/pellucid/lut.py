@@ -145,7 +145,7 @@ class Lut(OfThisProcess):
     def info(self) -> LutInfo:
         """The table's description."""
         info = _filled(LutInfo, self._handle.info())
-        # The library's copy points to the table's profile, which this structure would outlive.
+        # The handle of a profile that this structure may outlive.
         for part in ("curvature", "shadow", "eye"):
             info._data[part]["profile"] = 0
         return info

@@ -802,7 +802,7 @@ typedef struct PelLutInfo {
     char profile[64];              /* name of the profile, also for tables from texels; "skin" by default */
     PelEyeLutDesc eye;             /* of a PEL_LUT_EYE */
 } PelLutInfo;
-/* The description with all defaults resolved; a profile in it belongs to the table. */
+/* The description with all defaults resolved; a profile in it is the handle that the caller gave. */
 PEL_API PelError pelLutGetInfo(PelLut lut, PelLutInfo* info);
 
 typedef enum PelLutEncoding {
@@ -1425,7 +1425,7 @@ PEL_API PelError pelShaderExecute(PelShader shader, const PelSubmit* submit);
  * method. profile is NULL. */
 PEL_API PelError pelShaderGetMaterial(PelShader shader, uint32_t id, PelMaterial* material);
 /* Warnings of the last commit: settings without effect, and unlikely values. One sentence a line; "" if none.
- * Valid until the shader's next commit or its release. */
+ * Valid until the shader's next commit or execution, or its release. */
 PEL_API PelError pelShaderGetWarnings(PelShader shader, const char** warnings);
 /* Waits for the last execution. */
 PEL_API PelError pelShaderGetStats(PelShader shader, PelShaderStats* stats);
