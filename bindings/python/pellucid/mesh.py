@@ -227,8 +227,10 @@ def orient_mesh(indices: ArrayLike, num_vertices: Optional[int] = None, *,
     oriented = packed.copy()
     given, normal_stride = (None, 0) if normals is None else _rows(normals, "normals", count)
     found = MeshOrientation()
-    _native.orient_mesh(count, oriented.ctypes.data, oriented.size, int(to_enum(Weld, weld, "weld")),
-                        weld_tolerance, address(held), stride, address(given), normal_stride, found._data)
+    kind = int(to_enum(Weld, weld, "weld"))
+    _in_flight.interruptible(lambda: _native.orient_mesh(
+        count, oriented.ctypes.data, oriented.size, kind, weld_tolerance, address(held), stride,
+        address(given), normal_stride, found._data), oriented, held, given, found)
     return oriented, found
 
 

@@ -285,7 +285,8 @@ def compare(a: Any, b: Any, mask: Any = None) -> dict[str, Any]:
     within = None if mask is None else np.ascontiguousarray(np.asarray(mask) != 0, np.uint8)
     if within is not None and within.shape != one.shape[:-1]:
         raise ValueError(f"mask has shape {within.shape}; {one.shape[:-1]} is needed")
-    return _native.compare_images(address(one), address(two), one.size // 3, address(within))
+    return _in_flight.interruptible(lambda: _native.compare_images(
+        address(one), address(two), one.size // 3, address(within)), one, two, within)
 
 
 def flip(a: Any, b: Any) -> float:
@@ -300,4 +301,5 @@ def flip(a: Any, b: Any) -> float:
     one, two = _pictures(a, b)
     if one.ndim != 3 or one.size == 0:
         raise ValueError(f"the pictures have shape {one.shape}; (height, width, 3) is needed")
-    return _native.flip(one.ctypes.data, two.ctypes.data, one.size, one.shape[1])
+    return _in_flight.interruptible(
+        lambda: _native.flip(one.ctypes.data, two.ctypes.data, one.size, one.shape[1]), one, two)

@@ -6,7 +6,7 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _native
+from . import _in_flight, _native
 from ._types import Skin, SkinInfo
 from .device import _filled
 
@@ -44,7 +44,8 @@ def skin_from_albedo(albedo: ArrayLike, skin: Optional[Skin] = None, **fields: A
     if a.ndim < 1 or a.shape[-1] != 3:
         raise ValueError(f"albedo has the shape {a.shape}; (..., 3) is needed")
     maps = np.empty((3, a.size // 3), np.float32)
-    _native.skin_from_albedo(Skin._with(skin, fields)._data, a.ctypes.data, a.size // 3,
-                             *(m.ctypes.data for m in maps))
+    made = Skin._with(skin, fields)
+    _in_flight.interruptible(lambda: _native.skin_from_albedo(
+        made._data, a.ctypes.data, a.size // 3, *(m.ctypes.data for m in maps)), made, a, maps)
     melanin, blood, difference = maps.reshape(3, *a.shape[:-1])
     return melanin, blood, difference

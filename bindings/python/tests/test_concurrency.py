@@ -157,6 +157,7 @@ EVERY_CALL = textwrap.dedent("""
         "evaluate": lambda: burley.evaluate(distances),
         "shade": shader.execute, "screen": lambda: pel.screen_curvature(device, image.copy(), image.copy()),
         "buffer": lambda: pel.Buffer(device, np.zeros(1 << 26, np.uint8)), "finish": finish,
+        "colours": lambda: pel.skin_from_albedo(np.random.default_rng(1).random((1 << 17, 3), np.float32)),
     }
 
     class Alarm(Exception):
@@ -183,7 +184,7 @@ def test_ctrl_c_reaches_every_long_call():
     child = subprocess.run([sys.executable, "-c", EVERY_CALL], stdout=subprocess.PIPE, text=True, timeout=300)
     assert child.returncode == 0
     seen = {name: float(value) for name, value in (line.split() for line in child.stdout.splitlines())}
-    assert seen.pop("same") == 1 and len(seen) == 14
+    assert seen.pop("same") == 1 and len(seen) == 15
     limit = at_once()
     assert not {name: seconds for name, seconds in seen.items() if seconds > limit}
 
