@@ -101,7 +101,7 @@ class Pass:
                     self.shader.set_iris_texture(id, iris)
             self._set.pop("texture", None)  # removed with its material
 
-        state = {k: (m._data.tobytes(), id(m._profile)) for k, m in materials.items()}
+        state = {k: (m._data.tobytes(), id(m.profile)) for k, m in materials.items()}
         self._update("materials",
                    (state, {k: (e._data.tobytes(), look.iris_profile) for k, e in eyes.items()}, id(iris)),
                    set_materials)
