@@ -49,7 +49,7 @@ static inline __attribute__((always_inline)) float4 gatherDisk(
         const float stretch = dot(between, between) / (u * u + v * v);
         const float4 brings = flows * tapBrings(nodes, table, &taps[i], stretch) * (q.w * perArea);
         light += brings * f, weight += brings;
-        if (!(flows.x + flows.y + flows.z > 0.0f)) missing += share;
+        missing += select(share, (float4)(0.0f), flows > 0.0f);
     }
     light += missing * e, weight += missing;
     return select(light / weight, e, isless(weight, (float4)(1e-6f)));

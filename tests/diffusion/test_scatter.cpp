@@ -269,6 +269,13 @@ TEST(Scatter, NothingFlowsBetweenIdsUnlessAsked) {
         // Sizes of pixels next to the border are measured on one side.
         EXPECT_LT(difference(p, open, joined).rms, 2e-3);
         EXPECT_GT(difference(p, open, apart).rms, 0.02);
+        // A channel without flow is as if no channel had any.
+        PelScatterControls red = controlsOf(method, taps);
+        red.borderColor[0] = 1;
+        const auto some = scatterBy(scene(), 1, red).scattered,
+                   none = scatterBy(scene(), 1, controlsOf(method, taps)).scattered;
+        for (size_t i = 0; i < some.size(); ++i)
+            if (i % 3) ASSERT_NEAR(some[i], none[i], 1e-6) << int(method) << " " << i;
         // Teeth, eyes, clothes: no light flows to or from an id that does not scatter.
         for (uint8_t& id : p.ids) id = id == 2 ? 9 : id;
         EXPECT_EQ(scatterBy(p, 1, controlsOf(method, taps, 1)).scattered, p.irradiance);

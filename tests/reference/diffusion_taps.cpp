@@ -140,15 +140,14 @@ std::vector<Rgb> scatterOnDisk(const TapScene& s, const Profile& profile) {
                     if (picture.holds(u, v) && (dx || dy) && all[picture.at(u, v)].there) {
                         const size_t there = picture.at(u, v);
                         const Rgb flows = picture.ids[there] == picture.ids[here] ? Rgb{1, 1, 1} : s.border;
-                        if (flows.x + flows.y + flows.z > 0) {
-                            const double stretch =
-                                length(all[there].p - own.p) / (std::hypot(dx, dy) * own.pixel);
-                            brings = share * flows *
-                                     ratio(profile.radial(radii[i] * stretch), profile.radial(radii[i]),
-                                           all[there].area / (own.pixel * own.pixel));
-                            if (radii[i] * stretch > reach) brings = Rgb{};
-                            e = picture.irradiance[there];
-                        }
+                        const double stretch =
+                            length(all[there].p - own.p) / (std::hypot(dx, dy) * own.pixel);
+                        Rgb gain = ratio(profile.radial(radii[i] * stretch), profile.radial(radii[i]),
+                                         all[there].area / (own.pixel * own.pixel));
+                        if (radii[i] * stretch > reach) gain = Rgb{};
+                        for (int c = 0; c < 3; ++c)
+                            if (flows[c] > 0)
+                                brings[c] *= flows[c] * gain[c], e[c] = picture.irradiance[there][c];
                     }
                     sum = sum + brings * e;
                     weights = weights + brings;
