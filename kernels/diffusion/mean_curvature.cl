@@ -65,21 +65,24 @@ static inline maskw insideAt(const Images* in, int x, int y) {
 }
 
 // Lane k takes the value of lane k - by.
-static inline floatw laterLanes(floatw v, int by) {
+static inline floatw movedLanes(floatw v, int by) {
     float lanes[PEL_WIDTH];
     storew(v, 0, lanes);
-#define LATER(k, s) lanes[max((k)-by, 0)]
-    return PEL_LANES(LATER);
-#undef LATER
+#define MOVED(k, s) lanes[clamp((k)-by, 0, PEL_WIDTH - 1)]
+    return PEL_LANES(MOVED);
+#undef MOVED
 }
 
-// The same from an x that may be negative: its lanes outside the row have no pixel.
+// The same from an x that may be less than a vector from an end of the row, or negative: lanes outside the
+// row have no pixel.
 static inline Point pointFrom(const Images* in, int x, uint y) {
-    Point point = pointAt(in, (uint)max(x, 0), y);
-    if (PEL_WIDTH == 1 || x >= 0) return point;
-    point.p = vec3(laterLanes(point.p.x, -x), laterLanes(point.p.y, -x), laterLanes(point.p.z, -x));
-    point.n = vec3(laterLanes(point.n.x, -x), laterLanes(point.n.y, -x), laterLanes(point.n.z, -x));
-    point.id = as_uintw(laterLanes(as_floatw(point.id), -x));
+    const uint start = vectorStart((uint)max(x, 0), in->frame->width);
+    const int by = (int)start - x;
+    Point point = pointAt(in, start, y);
+    if (PEL_WIDTH == 1 || by == 0) return point;
+    point.p = vec3(movedLanes(point.p.x, by), movedLanes(point.p.y, by), movedLanes(point.p.z, by));
+    point.n = vec3(movedLanes(point.n.x, by), movedLanes(point.n.y, by), movedLanes(point.n.z, by));
+    point.id = as_uintw(movedLanes(as_floatw(point.id), by));
     return point;
 }
 

@@ -87,7 +87,8 @@ static inline floatw distance2(Vec3w a, Vec3w b) {
 // Squared distance to a direct neighbour; Inf if there is no comparable one.
 static inline floatw neighbourDistance2(const Field* f, int x, int y, int offset, size_t at, Vec3w p,
                                         floatw id, maskw mask) {
-    mask = withinImage(f, x, y, offset, mask) & (loadw(at, f->tags) == id);
+    mask = withinImage(f, x, y, offset, mask);
+    if (anyw(mask)) mask &= loadw(at, f->tags) == id;  // beyond the first and last row lies no guard
     if (!anyw(mask)) return (floatw)(INFINITY);
     return selectw((floatw)(INFINITY), distance2(loadPlanes(f->positions, f->plane, at), p), mask);
 }
@@ -128,8 +129,10 @@ static inline Vec3w blurAlong(const Field* f, int x, int y, floatw id, floatw ra
             for (int k = 1; k <= PEL_BLUR_TAPS; ++k) {
                 const int offset = side * k * step;
                 const size_t at = centre + (size_t)(offset * pixel);
+                on = withinImage(f, x, y, offset, on);
+                if (!anyw(on)) break;
                 const floatw tag = loadw(at, f->tags);
-                on = withinImage(f, x, y, offset, on) & (fabs(tag) == id);
+                on &= fabs(tag) == id;
                 if (!anyw(on)) break;
                 const Vec3w q = loadPlanes(f->positions, f->plane, at),
                             n = loadPlanes(f->normals, f->plane, at);

@@ -2,11 +2,13 @@
 
 #include <CL/cl.h>
 #include <dlfcn.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <map>
 #include <memory_resource>
 #include <mutex>
@@ -25,6 +27,25 @@ std::atomic<spy::Call> failing{spy::Call::none};
 std::atomic<int> untilFailure{0};
 std::atomic<bool> failsOn{false};
 std::atomic<bool> warned;  // the compiler, about a kernel
+
+// Memory of a buffer at the begin or the end of its pages, between pages that end a program which reads them.
+struct Fence {
+    static constexpr size_t around = size_t(1) << 20;
+    size_t bytes;
+    char *map, *at;
+    Fence(size_t size, const void* from, bool atEnd)
+        : bytes((size + 4095) / 4096 * 4096 + 2 * around),
+          map(static_cast<char*>(mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0))),
+          at(map + (atEnd ? bytes - around - (size + 15) / 16 * 16 : around)) {
+        if (map == MAP_FAILED || mprotect(map + around, bytes - 2 * around, PROT_READ | PROT_WRITE))
+            std::abort();
+        if (from) std::memcpy(at, from, size);
+    }
+    static void CL_CALLBACK end(cl_mem, void* fence) {
+        munmap(static_cast<Fence*>(fence)->map, static_cast<Fence*>(fence)->bytes);
+        delete static_cast<Fence*>(fence);
+    }
+};
 
 // Never destroyed: the library may launch until the very end.
 struct Seen {
@@ -241,7 +262,12 @@ cl_command_queue clCreateCommandQueue(cl_context context, cl_device_id device,
 cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t bytes, void* host, cl_int* code) {
     if (spy::strikes(spy::Call::createBuffer))
         return refused<_cl_mem>(CL_MEM_OBJECT_ALLOCATION_FAILURE, code);
-    cl_mem buffer = REAL(clCreateBuffer)(context, flags, bytes, host, code);
+    const char* const side = std::getenv("PELLUCID_FENCE");
+    Fence* const fence = side && bytes ? new Fence(bytes, host, side[0] == 'e') : nullptr;
+    cl_mem buffer =
+        fence ? REAL(clCreateBuffer)(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, fence->at, code)
+              : REAL(clCreateBuffer)(context, flags, bytes, host, code);
+    if (fence && buffer) REAL(clSetMemObjectDestructorCallback)(buffer, Fence::end, fence);
     if (buffer) {
         const std::lock_guard lock(heldMutex);
         heldBuffers()[buffer] = {bytes, 1};

@@ -1,6 +1,7 @@
 // Counts the library's calls of OpenCL, between it and the loader (cl_spy.cpp is linked before the loader
 // into each test program). If OpenCL objects are left at the end of the program, or a kernel compiled with
-// warnings, the spy fails the program.
+// warnings, the spy fails the program. With PELLUCID_FENCE=begin or =end a kernel on the CPU that reads
+// before or behind a buffer ends the program.
 #pragma once
 #include <cstdint>
 

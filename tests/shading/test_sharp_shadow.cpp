@@ -2,6 +2,7 @@
 // lengths.
 #include "pass_scene.h"
 #include "test.h"
+#include "variable.h"
 
 using namespace shade_test;
 
@@ -177,6 +178,10 @@ TEST(SharpShadow, NoShadowFromWhatIsNotThere) {
     for (float& z : s.light.light.map.values) z = NAN;
     const std::vector<float> e = lit(s);
     for (size_t i = 0; i < e.size(); ++i) EXPECT_NEAR(e[i], cosine(s, i), 1e-6) << i;
+    const Variable fence("PELLUCID_FENCE", "end");
+    s.points.assign(32, {1e4, 1e4, 0}), s.normals.assign(32, {0, 0, 1});
+    s.light.light.mapSize = 2, s.light.light.map.values.assign(4, 0.5f);
+    for (const float each : lit(s)) EXPECT_NEAR(each, cosine(s, 0), 1e-6);
 }
 
 }  // namespace
