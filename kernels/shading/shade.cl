@@ -88,12 +88,13 @@ static inline __attribute__((always_inline)) Vec3w shadeMaterial(const Scene* sc
         inEye = beginEye(scene, eye, p, active & p->valid, counts);
         outside &= inEye.view.cornea < 1.0f;
     }
-    const bool lit = !SKIPPING || !scattered || PEL_FORMAT_OUT_THICKNESS ||
-                     (material->needs & (PEL_BIT_SPECULAR | PEL_BIT_DEEP_SCATTER | PEL_BIT_EYE));
+    const bool readsShadow =
+        !scattered || (material->needs & (PEL_BIT_SPECULAR | PEL_BIT_DEEP_SCATTER | PEL_BIT_EYE));
+    const bool lit = !SKIPPING || readsShadow || PEL_FORMAT_OUT_THICKNESS;
     for (uint i = 0; lit && i < frame->lights; ++i) {
         __global const PelShadeLight* light = &scene->lights[i];
         const floatw w = loadWideShadow(scene, light, x, y);
-        p->valid &= finitew(w);
+        if (readsShadow) p->valid &= finitew(w) | notw(active);
         addLight(scene, material, light, p, w, outside & p->valid, scattered, &diffuse, &specular, parts,
                  counts);
         if (isEye) addToEye(scene, material, eye, light, p, w, active & p->valid, &inEye, counts);

@@ -92,6 +92,14 @@ TEST(ShadeVariants, InputsThatAMaterialDoesNotReadMayBeNan) {
             image.values[at * image.components + c] = std::nanf("");
     }
     EXPECT_EQ(shade(f, nullptr, noTables), right);
+    // The light's shadow, where the host's irradiance already has its light.
+    f.materials[2].scattering = PEL_SCATTERING_NONE;
+    f.slots[PEL_SLOT_IRRADIANCE] = {3, std::vector<float>(3 * f.pixels(), 0.5f)};
+    const auto scattered = shade(f, nullptr, noTables);
+    f.lights[0].wide.values[at] = std::nanf("");
+    EXPECT_EQ(shade(f, nullptr, noTables), scattered);
+    f.options.disableSkipping = 1;
+    EXPECT_EQ(shade(f, nullptr, noTables), scattered);
 }
 
 }  // namespace
