@@ -53,15 +53,18 @@ TEST(EyeTiles, TilesWithoutAnEyeHaveNoCodeForEyes) {
     EXPECT_EQ(frame.shade([&](Shader& s) { withEye(s), s.clearEye(2); }), plain);
 }
 
-// Among others the footprints of pixels on the iris, which a lane finds from its neighbour's position.
+// Among others the footprints of pixels on the iris, which a lane finds from its neighbour's position, also
+// where the last vector of a row begins in an odd column.
 TEST(EyeTiles, OneLaneShowsWhatSixteenDo) {
-    const auto shown = [](int lanes) {
-        EyeFrame frame(512, 256, 0.25f, 400, 128, lanes::deviceOf(lanes));
-        return frame.shade([](Shader& s) { s.setEye(2, pelEyeDefaults()); });
-    };
-    const std::vector<float> one = shown(1), sixteen = shown(16);
-    for (size_t i = 0; i < one.size(); ++i)
-        ASSERT_NEAR(one[i], sixteen[i], 1e-4) << i / 3 % 512 << ", " << i / 3 / 512;
+    for (const uint32_t width : {512u, 397u}) {
+        const auto shown = [&](int lanes) {
+            EyeFrame frame(width, 256, 0.25f, width == 512 ? 400 : 384, 128, lanes::deviceOf(lanes));
+            return frame.shade([](Shader& s) { s.setEye(2, pelEyeDefaults()); });
+        };
+        const std::vector<float> one = shown(1), sixteen = shown(16);
+        for (size_t i = 0; i < one.size(); ++i)
+            ASSERT_NEAR(one[i], sixteen[i], 1e-4) << i / 3 % width << ", " << i / 3 / width;
+    }
 }
 
 // The table of a small iris takes long; only a caller who waits for a table may cancel it meanwhile.
