@@ -154,6 +154,7 @@ class Expansion {
 
     void add(TomlReader& reader, LutPreset preset) {
         Request r = readRequest(reader, preset);
+        stack_ = {};  // of an entry that failed
         skins_.insert(r.skins.begin(), r.skins.end());
         reader.finish();  // an unknown key makes the entry an error before any table is taken from it
         refuseTooMany(reader, r);

@@ -214,6 +214,8 @@ TEST_F(BatchCommand, AStackHoldsTheTexelsOfItsTables) {
         EXPECT_EQ(texels(file), expected);
     }
     EXPECT_EQ(made(stacked)["kept"], 2);
+    const auto after = batch("[[grid]]\nsize = 16\nstack = 3\nprofile = [\"skin\", \"none\"]\n" + stacked);
+    EXPECT_EQ(after.json()["kept"], 2) << "nothing of an entry that failed: " << after.err;
     const std::string damaged = path("out/" + std::string(files[1]["file"]));
     fs::resize_file(damaged, fs::file_size(damaged) - 1);
     report = made(stacked);
