@@ -3,10 +3,11 @@ import json
 
 import numpy as np
 import pytest
-from view_session import files, renders_again
+from view_session import files, renders_again, reset
 
 from pellucid.view.export import export
 from pellucid.view.look import SKIN, Lamp, Look
+from pellucid.view.passes import Pass
 from pellucid.view.scene_session import SceneSession
 from pellucid.view.session import Session
 
@@ -29,6 +30,22 @@ def test_what_is_exported_renders_to_the_same_bits(session, tmp_path, profile):
         assert "iris.exr" in written
         known.iris_texture = "iris.exr"
     assert Look.from_dict(json.loads((tmp_path / "look/look.json").read_text())) == known
+
+
+def test_changes_meanwhile_do_not_show_in_what_is_written(session, monkeypatch, tmp_path):
+    known, real = session.smooth(96, 54), Pass.shade
+
+    def shade(self, *rest):
+        made = real(self, *rest)
+        session.orbit.azimuth += 5
+        session.look.pores, session.look.mode = 0.5, "normals"
+        return made
+
+    monkeypatch.setattr(Pass, "shade", shade)
+    export(session, tmp_path, 96, 54)
+    assert renders_again(tmp_path) and session.look.mode == "normals"
+    reset(session)
+    np.testing.assert_array_equal(session.still().smooth(96, 54), known)
 
 
 def test_a_scene_file_is_shown_as_it_was_exported(session, tmp_path):

@@ -58,47 +58,44 @@ def export(session: Session, folder: Any, width: int = 1280, height: int = 720,
     `pictures_only` leaves the EXR files out.
     """
     with session.complete():
-        return _export(session, Path(folder), width, height, pictures_only)
+        return _export(session.still(), Path(folder), width, height, pictures_only)
 
 
 def _export(session: Session, out: Path, width: int, height: int, pictures_only: bool) -> list[Path]:
     out.mkdir(parents=True, exist_ok=True)
     look, shown = session.look.copy(), session.look.copy()  # `shown`: with the names of files in the folder
-    mode, session.look.mode = session.look.mode, "final"
+    session.look.mode = "final"
     images: dict[str, Any] = {}
-    try:
-        radiance = images["picture.exr"] = session.radiance(look, width, height)
-        g = session.gbuffer(width, height)
-        slots = {"material": g.material[..., None], "position": g.position,
-                 "normal_geometric": g.normal_geometric, "normal_shading": g.normal_shading,
-                 "curvature": g.curvature[..., None], "albedo": tinted(g, look)}
-        if look.method == "texture":
-            slots["uv"] = np.stack([g.u, g.v], 2)
-            images["scattered.exr"] = session.texture(look).light
-        for i, (_, map) in enumerate(session.lights(look)):
-            if map is not None:
-                images[f"shadow_{i}.exr"] = map.depth
-        iris = session.iris(look)
-        if iris is not None:
-            images["iris.exr"], shown.iris_texture = iris, "iris.exr"
-        around = session.surroundings(look)
-        if around is not None:
-            images["surroundings.exr"] = around[0]
-            if look.surroundings != STUDIO:
-                shown.surroundings, shown.surroundings_light = "surroundings.exr", 1.0
-        if not pictures_only:
-            names = [f"{CHANNELS[key][0]}.{c}" for key in slots for c in CHANNELS[key][1]]
-            write_image(out / "gbuffer.exr", np.concatenate(list(slots.values()), 2), channels=names)
-            for name, image in images.items():
-                write_image(out / name, image, channels=["Z"] if name.startswith("shadow") else None)
-        write_image(out / "picture.png", radiance, exposure=look.exposure, shoulder=look.shoulder,
-                    curve=look.curve)
-        texts = {"look.json": json.dumps(shown.to_dict(), indent=2) + "\n"}
-        if look.profile in ("custom", "pigments"):
-            texts["profile.toml"] = profile_text(look)
-        for name, text in texts.items():
-            (out / name).write_text(text, encoding="utf-8")
-        write_scene(out / "scene.toml", session, look, width, height)
-    finally:
-        session.look.mode = mode
+    radiance = images["picture.exr"] = session.radiance(look, width, height)
+    g = session.gbuffer(width, height)
+    slots = {"material": g.material[..., None], "position": g.position,
+             "normal_geometric": g.normal_geometric, "normal_shading": g.normal_shading,
+             "curvature": g.curvature[..., None], "albedo": tinted(g, look)}
+    if look.method == "texture":
+        slots["uv"] = np.stack([g.u, g.v], 2)
+        images["scattered.exr"] = session.texture(look).light
+    for i, (_, map) in enumerate(session.lights(look)):
+        if map is not None:
+            images[f"shadow_{i}.exr"] = map.depth
+    iris = session.iris(look)
+    if iris is not None:
+        images["iris.exr"], shown.iris_texture = iris, "iris.exr"
+    around = session.surroundings(look)
+    if around is not None:
+        images["surroundings.exr"] = around[0]
+        if look.surroundings != STUDIO:
+            shown.surroundings, shown.surroundings_light = "surroundings.exr", 1.0
+    if not pictures_only:
+        names = [f"{CHANNELS[key][0]}.{c}" for key in slots for c in CHANNELS[key][1]]
+        write_image(out / "gbuffer.exr", np.concatenate(list(slots.values()), 2), channels=names)
+        for name, image in images.items():
+            write_image(out / name, image, channels=["Z"] if name.startswith("shadow") else None)
+    write_image(out / "picture.png", radiance, exposure=look.exposure, shoulder=look.shoulder,
+                curve=look.curve)
+    texts = {"look.json": json.dumps(shown.to_dict(), indent=2) + "\n"}
+    if look.profile in ("custom", "pigments"):
+        texts["profile.toml"] = profile_text(look)
+    for name, text in texts.items():
+        (out / name).write_text(text, encoding="utf-8")
+    write_scene(out / "scene.toml", session, look, width, height)
     return sorted(out.iterdir())

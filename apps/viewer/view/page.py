@@ -172,7 +172,7 @@ class ExportPanel(Panel):
         def draw() -> bytes:
             with tempfile.TemporaryDirectory() as folder:
                 path = Path(folder) / "picture.png"
-                files.write_image(path, self.viewer.session.smooth(1920, 1080))
+                files.write_image(path, self.viewer.session.still().smooth(1920, 1080))
                 return path.read_bytes()
 
         def look() -> bytes:
