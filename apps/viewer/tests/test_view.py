@@ -256,6 +256,7 @@ def test_another_device_shows_the_same(session):
     before = session.frame(160, 90).pixels
     again = session.restarted(Device())
     assert np.array_equal(again.frame(160, 90).pixels, before)
+    assert again.read == session.read == {"subdivide": 1, "up": "auto"}
 
 
 def test_pictures_are_as_small_as_the_time_asks():
@@ -337,6 +338,7 @@ def test_presets_and_looks():
     for name, values in PRESETS.items():
         look = Look.from_dict(values)
         assert Look.from_dict(json.loads(json.dumps(look.to_dict()))) == look, name
+    assert type(Look.from_dict({"exposure": 1}).exposure) is float  # sliders keep a value's type
     for wrong, message in (({"gloss": 1}, "no 'gloss'"), ([], "JSON object"), ({"albedo": [1, 1]}, "albedo"),
                            ({"albedo": 1}, "albedo of a look"), ({"roughness": "x"}, "roughness"),
                            ({"lamps": []}, "lamps"), ({"lamps": [1]}, "a lamp is"),

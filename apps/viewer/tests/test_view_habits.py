@@ -46,6 +46,11 @@ def test_the_probe_names_what_the_pixel_holds(session):
     assert "radiance {:.4f}, {:.4f}, {:.4f}".format(*radiance) in facts
     cosine = session.shown.normal_shading[row, column] @ session.to_light(session.look.lamps[0])
     assert f"N·L of the key light {cosine:.3f}" in facts and "scattering: screen" in facts
+    session.set_unit(1000.0)
+    try:
+        assert "leaves this tile as it is" in describe_pixel(session, x, y)
+    finally:
+        session.set_unit(1.0)
     for nowhere in ((0.001, 0.001), (1.5, 0.5), (-0.1, 0.5), (0.5, float("nan"))):
         assert describe_pixel(session, *nowhere) == ""
 

@@ -24,9 +24,10 @@ def test_irradiance_is_the_mean_over_the_hemisphere():
     even = surroundings.irradiance(np.ones((32, 64, 3), np.float32), rows, normals)
     np.testing.assert_allclose(even, 1, atol=0.01)
     # 1 + d.y of the image: 1 + 2/3 of the cosine with its y axis, the world's z.
-    slope = np.repeat((1 + surroundings.directions(32)[..., 1:2]), 3, 2).astype(np.float32)
-    seen = surroundings.irradiance(slope, rows, normals)[:, 0]
-    np.testing.assert_allclose(seen, 1 + 2 / 3 * normals[:, 2], atol=0.02)
+    for height in (32, 31, 20):
+        slope = np.repeat((1 + surroundings.directions(height)[..., 1:2]), 3, 2).astype(np.float32)
+        seen = surroundings.irradiance(slope, rows, normals)[:, 0]
+        np.testing.assert_allclose(seen, 1 + 2 / 3 * normals[:, 2], atol=0.04)
 
 
 def test_the_shader_and_the_reference_see_the_same_light(alone):

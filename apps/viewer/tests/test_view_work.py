@@ -112,6 +112,13 @@ def test_the_reference_has_the_light_of_the_lamps(session):
     assert np.allclose(light * (1, 2, 4), light[:, :1], atol=1e-6)
 
 
+def test_the_reference_follows_the_pigments(session):
+    session.look.mode, session.look.profile = "reference", "pigments"
+    before = session.frame(96, 54).pixels
+    session.look.blood = 0.2
+    assert not np.array_equal(session.frame(96, 54).pixels, before)
+
+
 def test_a_reference_is_coarse_first_and_can_be_cancelled():
     points = np.zeros((40, 60, 3), np.float32)
     points[..., 0], points[..., 1] = np.meshgrid(np.arange(60), np.arange(40))

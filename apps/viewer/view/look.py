@@ -62,7 +62,7 @@ def filled(made: T, given: Any, what: str) -> T:
         number = type(value) in (int, float) and abs(value) < 1e30
         if not (number if isinstance(own, float) else type(value) is type(own)):
             raise ValueError(f"{name} of {what} is {value!r}; {own!r} would do")
-        return value
+        return float(value) if isinstance(own, float) else value
 
     if not isinstance(given, dict):
         raise ValueError(f"{what} is a JSON object with keys and values")

@@ -108,8 +108,8 @@ def reference(session: Session, name: str, look: Look, width: int, height: int,
     g = session.gbuffer(width, height, small)
     lamps = [dataclasses.astuple(lamp) for lamp in look.lamps]
     key = (session.drawn_state(width, height, small), lamps, look.ambient, look.surroundings,
-           look.surroundings_light, look.surroundings_turn, look.profile, look.distance,
-           look.radius_scale, look.shadow_size)
+           look.surroundings_light, look.surroundings_turn, session.profile(look), look.radius_scale,
+           look.shadow_size)
     made = session.references.get(name)
     if made is None or made.key != key:
         session.cancel_reference(name)

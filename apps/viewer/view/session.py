@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import contextlib
+import copy
 import time
 from concurrent.futures import Future, wait
 from dataclasses import dataclass, field, fields
@@ -211,7 +212,7 @@ class Session:
         """Drops everything that was derived from the previous mesh."""
         for made in (self._maps, self._gbuffers, self._textures):
             made.clear()
-        self._rest = self._detailed = self._shaded = None
+        self._rest = self._detailed = self._shaded = self._scattered = None
 
     def _take_curvature(self) -> None:
         if self._curvature is not None and (self._curvature.done() or not self.background):
@@ -237,6 +238,12 @@ class Session:
             yield
         finally:
             self._complete = before
+
+    def still(self) -> Session:
+        """The same, which the page does not change meanwhile: for what takes long."""
+        held = copy.copy(self)
+        held.look, held.other, held.orbit = copy.deepcopy((self.look, self.other, self.orbit))
+        return held
 
     def size(self) -> float:
         """Largest extent of the mesh, mm."""
@@ -279,7 +286,7 @@ class Session:
             setattr(fresh, name, getattr(self, name))
         fresh.report = self.report
         fresh._draw(self.mesh, self.paint)
-        fresh._bare, fresh.told = self._bare, self.told
+        fresh._bare, fresh.told, fresh.read = self._bare, self.told, self.read
         fresh.orbit = self.orbit
         return fresh
 

@@ -66,12 +66,19 @@ def axes(up: Any, front: Any, turn: float) -> NDArray[np.float32]:
     return np.array([np.cross(y, z), y, z], np.float32)
 
 
+def _cells(n: int, of: int) -> NDArray[np.float32]:
+    """Weights of pixels in the means of n even cells, (n, of)."""
+    edges, at = np.linspace(0, of, n + 1)[:, None], np.arange(of)
+    shares = np.minimum(edges[1:], at + 1) - np.maximum(edges[:-1], at)
+    return (np.maximum(shares, 0) * n / of).astype(np.float32)
+
+
 def irradiance(image: NDArray[np.float32], rows: NDArray[np.float32],
                normals: NDArray[Any]) -> NDArray[np.float32]:
     """Irradiance / pi along normals, (n, 3): the sum over 16 rows of the image."""
     height = min(16, len(image))
-    step = len(image) // height
-    small = image[:height * step, :2 * height * step].reshape(height, step, 2 * height, step, 3).mean((1, 3))
+    small = np.einsum("ai,bj,ijc->abc", _cells(height, image.shape[0]), _cells(2 * height, image.shape[1]),
+                      image, optimize=True)
     d = directions(height)
     solid = np.sin(np.pi * (np.arange(height) + 0.5) / height)[:, None] * (np.pi / height)**2
     light = (small * (solid / np.pi)[..., None]).reshape(-1, 3).astype(np.float32)
