@@ -152,7 +152,7 @@ class Scene {
         namespace fs = std::filesystem;
         const fs::path folder = fs::absolute(path).parent_path();
         for (std::string* file : io::filesOf(scene))
-            if (!file->empty() && fs::exists(*file))
+            if (!io::extensionOf(*file).empty() && fs::exists(*file))  // names of the library have none
                 *file = fs::absolute(*file).lexically_relative(folder).string();
         io::writeScene(path, scene);
     }

@@ -156,12 +156,14 @@ def test_outputs_and_counters(folder, device):
     assert list(theirs["pixels_by_choice"]) == [m.name.lower() for m in pel.Scattering]
 
 
-def test_what_is_saved_shades_the_same(folder, device, tmp_path_factory):
+def test_what_is_saved_shades_the_same(folder, device, monkeypatch):
     scene = pel.load_scene(folder / "scene.toml")
     scene.materials[1].specular, scene.profiles[1] = 0.7, "skin-pale"
     scene.options.target_error = 0.01
     made = pel.shade(scene, device).radiance
-    (folder / "deeper").mkdir()
+    for name in ("deeper", "skin-pale"):  # the latter is a profile of the library none the less
+        (folder / name).mkdir()
+    monkeypatch.chdir(folder)
     scene.save(folder / "deeper/changed.toml")
     assert 'file = "../map.exr"' in (folder / "deeper/changed.toml").read_text()
     again = pel.load_scene(folder / "deeper/changed.toml", folder / "gbuffer.exr")
