@@ -99,7 +99,9 @@ std::map<std::string, std::string> profilesOf(const std::vector<std::string>& wo
         findProfile(profile);  // or an error that lists them
         bool found = at == std::string::npos;
         for (const GltfMaterial& m : materials)
-            if (at == std::string::npos || m.name == word.substr(0, at))
+            if (at == std::string::npos)
+                chosen.try_emplace(m.name, profile);  // one that names the material wins, in any order
+            else if (m.name == word.substr(0, at))
                 chosen[m.name] = profile, found = true;
         if (!found)
             throw std::invalid_argument("profile " + word + ": there is no such material; there are " +
@@ -130,6 +132,8 @@ void addMaterials(ImportedGltf& made, const std::vector<std::string>& words) {
 }
 
 void toMillimetres(GltfScene& gltf, double unitMm) {
+    for (GltfMaterial& m : gltf.materials)  // in metres
+        m.thickness *= unitMm / 1000, m.attenuationDistance *= unitMm / 1000;
     for (float& p : gltf.mesh.positions) {
         p = float(p * unitMm);
         if (!std::isfinite(p))
@@ -229,8 +233,8 @@ ImportedGltf importGltf(const std::string& path, const GltfImportOptions& option
 ImportedGltf importScene(GltfScene scene, const GltfImportOptions& options) {
     ImportedGltf made;
     made.gltf = std::move(scene);
-    addMaterials(made, options.profiles);
     toMillimetres(made.gltf, options.unitMm);
+    addMaterials(made, options.profiles);
     dropDistantCameras(made.gltf);
     addLights(made, options);
     if (!made.gltf.cameras.empty())

@@ -123,7 +123,8 @@ TEST_F(Import, LightsCamerasAndProfilesOfOnesOwn) {
                 {"extensions": {"KHR_lights_punctual": {"light": 1}}, "translation": [0, 0, 0.1]},
                 {"extensions": {"KHR_lights_punctual": {"light": 2}}, "translation": [0.1, 0, 0.1]}]})"_json);
     write("head.glb", file);
-    const nlohmann::json report = reportOf("import @head.glb -o @out --profile Head=skin --lights 1");
+    const nlohmann::json report =
+        reportOf("import @head.glb -o @out --profile Head=skin --profile jade --lights 1");
     write("named.glb", ball(R"({"name": "a\u001b[1m\nb"})"_json));
     EXPECT_TRUE(contains(done("import @named.glb -o @named --size 8x8").out, "material 1: a\\x1b[1m\\x0ab,"));
     EXPECT_TRUE(

@@ -68,6 +68,8 @@ def test_a_scene_as_arrays_and_structures(glb):
     assert mesh.high == pytest.approx((70, 20, 20), abs=0.1) and mesh.uvs.shape == (len(mesh.positions), 2)
     assert set(mesh.ids) == {1, 2} and (mesh.positions[mesh.ids == 2, 0] > 29).all()
     assert wax.profile.info.width[0] > 1.5 * wax.profile.info.width[2] > 0 and plaster.profile is None
+    small = pel.load_gltf(glb, unit_mm=10).materials[1].profile.info.width
+    assert small == pytest.approx(wax.profile.info.width / 100, rel=1e-3)
     assert plaster.f0 == pytest.approx(0.04) and wax.roughness == pytest.approx(0.36)
     assert scene.textures == {1: PNG}
     assert light.color == pytest.approx((1, 1, 1)) and light.to_light == pytest.approx((0, 0, 1))
