@@ -76,8 +76,11 @@ def test_a_scene_file_is_shown_as_it_was_exported(session, tmp_path):
         change()
         assert not np.array_equal(shown.frame().pixels, before)
     assert shown.device.stats().programs_built == built
-    now = shown.frame().pixels
+    shown.look.ambient, shown.report = 1.5, print
+    assert shown.restarted(shown.device).report is print
     shown.save(folder / "changed.toml")
+    shown.report = None
+    now = shown.frame().pixels
     again = SceneSession(folder / "changed.toml", folder / "gbuffer.exr", session.device)
     again.look.exposure, again.look.shoulder = 1.3, 0.7
     assert np.array_equal(again.frame().pixels, now)

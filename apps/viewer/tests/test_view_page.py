@@ -198,8 +198,11 @@ def test_keys_frame_turn_undo_and_explain(page):
     assert differ(front, side) and front.max() > 150
     assert not differ(front, act_and_compare(page, lambda: press(page, Keys.CONTROL, "z"))[1])
     assert not differ(side, act_and_compare(page, lambda: press(page, Keys.CONTROL, "y"))[1])
-    press(page, "1")
     canvas = page.find_element(By.ID, "pel-canvas")
+    page.execute_script("arguments[0].width = arguments[0].height = 64", canvas)
+    shot = np.asarray(Image.open(io.BytesIO(canvas.screenshot_as_png)))
+    assert (shot[-3, -3, :3] == 0x11).all(), "a scene's picture keeps its shape"
+    press(page, "1")
     pivoted = act_and_compare(page, lambda: ActionChains(page, duration=0).move_to_element_with_offset(
         canvas, 0, -60).double_click().perform())[1]
     assert differ(front, pivoted)  # what was above the middle is the middle

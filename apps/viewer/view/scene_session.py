@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .. import files
 from .._types import Material, Scattering
 from ..device import Device
-from ..scene import Shaded, load_scene, shade
+from ..scene import Scene, Shaded, load_scene, shade
 from .look import MODES as MESH_MODES
 from .session import Frame
 
@@ -62,13 +62,17 @@ class SceneSession:
         kept, names = self.materials, self.profiles
         scene.materials = {id: self._plain(m) for id, m in kept.items()} if plain else kept
         scene.profiles = dict.fromkeys(names, "") if plain else names
-        for light, color, factor in zip(scene.lights, self._colors, self.look.lights):
-            light.color = color * factor
-        scene.ambient.constant, scene.ambient.sh = (v * np.float32(self.look.ambient) for v in self._ambient)
+        self._light(scene)
         try:
             return shade(scene, self.device, outputs, self.count, wait=self.report is None)
         finally:
             scene.materials, scene.profiles = kept, names
+
+    def _light(self, scene: Scene) -> None:
+        """Gives it the lights of the page."""
+        for light, color, factor in zip(scene.lights, self._colors, self.look.lights):
+            light.color = color * factor
+        scene.ambient.constant, scene.ambient.sh = (v * np.float32(self.look.ambient) for v in self._ambient)
 
     @staticmethod
     def _plain(material: Material) -> Material:
@@ -119,6 +123,7 @@ class SceneSession:
 
     def save(self, path: Any) -> None:
         """Writes the scene as it is shown."""
+        self._light(self.scene)  # the last picture may have been a small one
         self.scene.save(path)
 
     def restarted(self, device: Device) -> SceneSession:
@@ -128,5 +133,5 @@ class SceneSession:
             setattr(fresh, name, getattr(self, name))
             setattr(fresh.scene, name, getattr(self, name))
         fresh.scene.options = self.scene.options
-        fresh.look, fresh.count = self.look, self.count
+        fresh.look, fresh.count, fresh.report = self.look, self.count, self.report
         return fresh
