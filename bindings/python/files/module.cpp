@@ -127,6 +127,8 @@ Bytes toneMapped(const Pixels& rgb, float exposure, float shoulder, const std::s
     const auto known = std::ranges::find(io::toneCurves, curve);
     if (known == std::end(io::toneCurves))
         throw py::value_error("curve is '" + curve + "'; it must be soft, none, filmic or agx-like");
+    if (curve == "agx-like" && (rgb.ndim() == 0 || rgb.shape(rgb.ndim() - 1) != 3))
+        throw py::value_error("agx-like mixes red, green and blue: the shape (..., 3) is needed");
     std::vector<uint8_t> bytes;
     {
         const std::span<const float> values(rgb.data(), size_t(rgb.size()));

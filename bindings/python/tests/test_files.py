@@ -67,6 +67,7 @@ def test_images_come_back(tmp_path):
     (lambda f: files.write_image(f / "no" / "a.png", np.zeros((2, 2, 3))), files.FileError, "a.png"),
     (lambda f: files.read_image(f / "missing.exr"), files.FileError, "missing.exr"),
     (lambda f: files.tonemap(np.zeros((4, 3)), curve="sepia"), ValueError, "soft, none, filmic or agx-like"),
+    (lambda f: files.tonemap(np.zeros((4, 4)), curve="agx-like"), ValueError, r"shape \(..., 3\)"),
     (lambda f: files.load_mesh(f / "a.off", up="x"), ValueError, "'auto', 'y' or 'z'"),
     (lambda f: files.load_mesh(f / "a.off", subdivide=7), ValueError, "from 0 to 6"),
     (lambda f: files.load_mesh(f / "a.off", subdivide=-1), ValueError, "from 0 to 6"),
