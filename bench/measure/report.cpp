@@ -239,8 +239,8 @@ void summarizeBudgets(Json& device) {
         const double took = value(e, "added_ms"), error = value(e, "error_rms");
         double front = error;
         for (const Json& other : device.at("operations"))
-            if (other.value("group", "") == "methods" && other["scene"] == e["scene"] &&
-                other["setting"] != withThickness && value(other, "added_ms") <= took)
+            if (other.value("group", "") == "methods" && value(other, "added_ms") <= took &&
+                other["scene"] == e["scene"] && other["setting"] != withThickness)
                 front = std::min(front, value(other, "error_rms"));
         e["kept"] = took <= 1.15 * value(e, "budget_ms");
         e["front_ratio"] = error / front;

@@ -267,7 +267,12 @@ TEST(BenchReport, FrontAndAnswersFollowFromTheRows) {
     Json device = {
         {"scenes", {{{"name", "s"}, {"pixels", 1000}, {"height", 540}}}},
         {"operations", {row("fast", 1, 0.3), row("slow", 5, 0.1), row("bad", 6, 0.2), row("free", -1, 0.5)}}};
+    Json budget = row("auto", 2, 0.3);
+    budget.update({{"group", "budgets"}, {"budget_ms", 2}});
+    device["operations"].push_back(budget);
+    device["operations"].push_back({{"name", "s: gone"}, {"group", "methods"}, {"failed", "no result"}});
     pellucid::bench::summarize(device, {0.003, 0.03}, {0.2, 0.01});
+    EXPECT_EQ(device["budgets"]["near"], 1) << "beside a method that failed";
     std::map<std::string, bool> front;
     for (const Json& e : device["summary"]) front[e["method"]] = e["pareto"];
     EXPECT_EQ(front,
