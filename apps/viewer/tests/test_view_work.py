@@ -49,6 +49,10 @@ def test_the_reference_leaves_the_session_free(session):
         made = session.references["main"]
         wait_until(lambda: made.fraction == 1)
         assert np.array_equal(session.frame(96, 54).pixels, whole) and session.references["main"] is made
+        session.cancel_reference("main")
+        assert np.array_equal(session.still().frame(96, 54).pixels, whole) and not session.references
+        session.frame(96, 54)
+        made = session.references["main"]
         moving = session.frame(96, 54, small=True).pixels
         assert session.references["main"] is made and not np.array_equal(moving, whole)
     finally:

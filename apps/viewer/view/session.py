@@ -240,8 +240,10 @@ class Session:
             self._complete = before
 
     def still(self) -> Session:
-        """The same, which the page does not change meanwhile: for what takes long."""
+        """The same, which the page does not change meanwhile, and whose pictures are whole at once: for
+        files."""
         held = copy.copy(self)
+        held.report, held.references = None, {}
         held.look, held.other, held.orbit = copy.deepcopy((self.look, self.other, self.orbit))
         return held
 
