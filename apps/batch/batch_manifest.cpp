@@ -126,9 +126,10 @@ Request readRequest(TomlReader& reader, LutPreset preset) {
     reader.number("sharpening", r.shadow.sharpening, range::atLeastOne);
     reader.integer("closed_ends", r.shadow.closedEnds, range::shadowLut::closedEnds);
     const auto reversed = [](float least, float most) { return most != 0 && least > most; };
-    if (reversed(r.curvature.radiusMin, r.curvature.radiusMax))
+    if (r.kind == PEL_LUT_CURVATURE && reversed(r.curvature.radiusMin, r.curvature.radiusMax))
         reader.fail("radius_min", "is greater than radius_max");
-    if (reversed(r.shadow.widthMin, r.shadow.widthMax)) reader.fail("width_min", "is greater than width_max");
+    if (isShadow && reversed(r.shadow.widthMin, r.shadow.widthMax))
+        reader.fail("width_min", "is greater than width_max");
     return r;
 }
 

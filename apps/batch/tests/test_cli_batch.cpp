@@ -181,7 +181,9 @@ TEST_F(BatchCommand, TablesBeginAsTheVersionOrThePresetSays) {
     const std::string small = shadow + "size = 8\n";
     EXPECT_EQ(tables("version = 2\n" + small + "axis = \"linear\"\n")[0]["axis"], "linear");
     EXPECT_EQ(tables(small + "axis = \"root\"\n")[0]["axis"], "linear");
-    EXPECT_EQ(tables("version = 2\n" + small + "closed_ends = 0\n")[0]["closed_ends"], 0);
+    EXPECT_EQ(tables("version = 2\n" + small +
+                     "closed_ends = 0\nradius_min = 5\nradius_max = 1\n")[0]["closed_ends"],
+              0);
 }
 
 // Tables of one size below each other in one file, the last of which is shorter.
