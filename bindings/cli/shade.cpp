@@ -48,17 +48,18 @@ PelImageSlot slotOfPart(const std::string& part) {
 }
 
 // The parts side by side, labelled where there is more than one, lengths as colours with a bar. `frame` was
-// shaded with their slots as outputs.
+// shaded with their slots as outputs. `unit`: mm of a length.
 void writeShadePicture(const std::string& path, const io::Image& gbuffer, const io::SceneFrame& frame,
-                       const std::vector<std::string>& parts, const io::ToneMap& tone) {
+                       float unit, const std::vector<std::string>& parts, const io::ToneMap& tone) {
     const int width = gbuffer.width, height = gbuffer.height;
+    const float most = longest / unit;
     std::vector<io::Tile> tiles;
     for (const std::string& part : parts) {
         const PelImageSlot slot = slotOfPart(part);
         const std::vector<float> values = slot == PEL_SLOT_RADIANCE ? frame.radiance() : frame.output(slot);
         if (slot == PEL_SLOT_OUT_THICKNESS) {
-            const io::Picture map = io::colored(width, height, values, 0, longest, values);
-            tiles.push_back({part, io::withColorBar(map, 0, longest, "length", 1)});
+            const io::Picture map = io::colored(width, height, values, 0, most, values);
+            tiles.push_back({part, io::withColorBar(map, 0, most, "length", 1)});
         } else {
             tiles.push_back({part, io::Picture(width, height, io::toSrgb8(values, tone))});
         }
@@ -309,7 +310,8 @@ void runShade(ShadeArguments a) {
             run.warn(sentence);
         warnOfInvalid(run, stats.pixelsInvalid, stats.pixelsShaded, "black");
         if (picture != a.output) io::writeRadiance(a.output, gbuffer.width, gbuffer.height, frame.radiance());
-        if (!picture.empty()) writeShadePicture(picture, gbuffer, frame, a.show, a.tone);
+        if (!picture.empty())
+            writeShadePicture(picture, gbuffer, frame, scene.options.millimetresPerUnit, a.show, a.tone);
         for (const auto& [slot, file] : files)
             (slot == PEL_SLOT_OUT_THICKNESS ? io::writeThickness : io::writeRadiance)(
                 file, gbuffer.width, gbuffer.height, frame.output(slot));

@@ -87,14 +87,13 @@ ShadowMaps readShadowMaps(const SceneFile& scene, DeviceImages& images) {
     return maps;
 }
 
-Lut LutStore::faceworks(const Profile& profile, PelLutKind kind) {
+Lut LutStore::faceworks(const std::string& source, const Profile& profile, PelLutKind kind) {
     PelCurvatureLutDesc curvature = pelCurvatureLutDescFaceWorks();
     PelShadowLutDesc shadow = pelShadowLutDescFaceWorks();
     curvature.profile = shadow.profile = profile.get();
-    const std::string name = profile.info().name;
     for (const auto& [key, lut] : faceworks_)
-        if (key == std::pair(name, kind)) return lut;
-    faceworks_.emplace_back(std::pair(name, kind),
+        if (key == std::pair(source, kind)) return lut;
+    faceworks_.emplace_back(std::pair(source, kind),
                             kind == PEL_LUT_CURVATURE ? Lut(device_, curvature) : Lut(device_, shadow));
     return faceworks_.back().second;
 }
@@ -323,8 +322,8 @@ void SceneFrame::setMaterial(const SceneFile& scene, const SceneMaterial& m, Lut
     }
     if (m.preset == ScenePreset::faceworks) {
         if (!profile) profile = Profile::skin();
-        if (!curvature) curvature = luts.faceworks(profile, PEL_LUT_CURVATURE);
-        if (!shadow) shadow = luts.faceworks(profile, PEL_LUT_SHADOW);
+        if (!curvature) curvature = luts.faceworks(m.profile, profile, PEL_LUT_CURVATURE);
+        if (!shadow) shadow = luts.faceworks(m.profile, profile, PEL_LUT_SHADOW);
         if (material.scattering == PEL_SCATTERING_AUTO) material.scattering = PEL_SCATTERING_PREINTEGRATED;
         if (material.diffusionRadius == 0)
             material.diffusionRadius = profile.info().radius / scene.options.millimetresPerUnit;

@@ -68,13 +68,13 @@ class LutStore {
     explicit LutStore(const Device& device) : device_(device) {}
     // The name "" gives an empty handle.
     Lut get(const SceneFile& scene, const std::string& name, PelLutKind kind);
-    // A table made by the formulas of FaceWorks.
-    Lut faceworks(const Profile& profile, PelLutKind kind);
+    // A table made by the formulas of FaceWorks, of the profile that this name or file of a scene means.
+    Lut faceworks(const std::string& source, const Profile& profile, PelLutKind kind);
 
   private:
     Device device_;
     std::vector<std::pair<SceneLut, Lut>> luts_;
-    std::vector<std::pair<std::pair<std::string, PelLutKind>, Lut>> faceworks_;  // by the profile's name
+    std::vector<std::pair<std::pair<std::string, PelLutKind>, Lut>> faceworks_;
 };
 
 // Shadow maps by file, already in memory.

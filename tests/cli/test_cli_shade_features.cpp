@@ -1,6 +1,7 @@
 // `pellucid shade`: features of scene files other than plain light: tables, profiles and their units,
 // scattering, parts of the picture, cubes, eyes.
 #include "cli_shade.h"
+#include "io/image/color_map.h"
 
 using namespace pellucid;
 using namespace shade_files;
@@ -81,6 +82,17 @@ TEST_F(ShadeFeatures, TablesOfMaterialsAndProfileFiles) {
     EXPECT_NE(own, shaded());
     with("granite", "");  // no such material
     refuses("granite");
+    // Another file's profile of the same name is another one.
+    scene_.luts.clear();
+    scene_.materials[0].curvatureLut = "";
+    scene_.materials[0].profile = "own.toml";
+    scene_.materials[0].preset = io::ScenePreset::faceworks;
+    const auto alone = shaded();
+    write("too.toml", "name = \"own\"\nsource = \"a test\"\nkind = \"skin\"\n");
+    scene_.materials.insert(scene_.materials.begin(), scene_.materials[0]);
+    scene_.materials[0].id = 2;
+    scene_.materials[0].profile = "too.toml";
+    EXPECT_EQ(shaded(), alone);
 }
 
 // What is measured: tests/shading/test_screen_curvature.cpp.
@@ -138,6 +150,11 @@ TEST_F(ShadeFeatures, PartsOfThePictureAreFiles) {
     const auto thickness = channel("o_thickness.exr", "Thickness.V");
     for (size_t i = 0; i < thickness.size(); ++i) EXPECT_EQ(thickness[i], i % width < 2 ? 0.0f : 3.0f);
     EXPECT_EQ(thickness, channel("own name.exr", "Thickness.V"));
+    scene_.options.millimetresPerUnit = 10;  // colours end at 30 mm
+    shaded("--picture @t.png --show thickness");
+    const io::Image picture = io::readImage(path("t.png"));
+    for (size_t c = 0; c < 3; ++c)
+        EXPECT_EQ(std::lround(255 * picture.channels[c].pixels[width - 1]), io::sequentialColor(1)[c]);
     for (const auto& [file, message] :
          {std::pair{"o.exr", "written twice"}, {"./o.exr", "written twice"}, {"o.png", ".exr"}}) {
         scene_.outputs[PEL_SLOT_OUT_THICKNESS] = file;

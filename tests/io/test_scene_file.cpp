@@ -77,6 +77,8 @@ TEST_F(SceneFileTest, TheDocumentedExampleIsRead) {
     ASSERT_NE(scene.lut("skin", PEL_LUT_CURVATURE), nullptr);
     EXPECT_EQ(scene.lut("skin", PEL_LUT_CURVATURE)->info.curvature.radiusMax, 100.0f);
     EXPECT_EQ(scene.lut("skin", PEL_LUT_SHADOW)->file, path("shadow_lut.exr"));
+    const std::string capital = write("s.toml", example("id = 1", "id = 1\nprofile = \"Mine.TOML\""));
+    EXPECT_EQ(readScene(capital).materials.at(0).profile, path("Mine.TOML"));
 }
 
 TEST_F(SceneFileTest, DirectionsAreMadeUnit) {

@@ -218,7 +218,7 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
     };
     for (std::string* file : imagesOf(scene)) besideScene(*file);
     for (std::string* profile : profilesOf(scene))
-        if (profile->ends_with(".toml")) besideScene(*profile);
+        if (extensionOf(*profile) == "toml") besideScene(*profile);
     for (std::string& output : scene.outputs) besideScene(output);
     return scene;
 }
