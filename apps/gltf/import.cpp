@@ -61,7 +61,7 @@ void runImport(const ImportArguments& a) {
     const int camera = cameraOf(a, gltf.cameras.size());
     uint32_t width = 1024, height = 1024;
     if (!a.size.empty())
-        parseSize(a.size, width, height);
+        parseSize(a.size, {&width, &height});
     else if (camera >= 0 && gltf.cameras[size_t(camera)].aspect > 0)
         height = uint32_t(std::clamp(1024 / gltf.cameras[size_t(camera)].aspect, 1.0, 8192.0));
     checkFolder(a.output, "scene.toml");

@@ -90,11 +90,11 @@ CLI::Validator inRange(double low, double high) {
 }
 
 CLI::Validator isPositive() {
-    return numbers<double>("a number above 0", "above 0", [](double n) { return std::isfinite(n) && n > 0; });
+    return numbers<float>("a number above 0", "above 0", [](float n) { return std::isfinite(n) && n > 0; });
 }
 CLI::Validator isNotNegative() {
-    return numbers<double>("a number from 0 on", "from 0 on",
-                           [](double n) { return std::isfinite(n) && n >= 0; });
+    return numbers<float>("a number from 0 on", "from 0 on",
+                          [](float n) { return std::isfinite(n) && n >= 0; });
 }
 
 bool readNumber(const std::string& text, float& number) {
@@ -278,16 +278,16 @@ std::string installed(const std::string& data) {
     return "";
 }
 
-void parseSize(const std::string& text, uint32_t& width, uint32_t& height) {
-    const char *at = text.data(), *end = at + text.size();
-    uint32_t w = 0, h = 0;
-    auto read = std::from_chars(at, end, w);  // takes no sign and no blanks
-    if (read.ec == std::errc() && read.ptr != end && *read.ptr == 'x')
-        read = std::from_chars(read.ptr + 1, end, h);
-    if (read.ec != std::errc() || read.ptr != end || w == 0 || h == 0)
-        throw UsageError("--size " + text + ": two whole numbers from 1 on are needed, such as 512x512");
-    width = w;
-    height = h;
+void parseSize(const std::string& text, std::initializer_list<uint32_t*> sides) {
+    const char *at = text.c_str(), *end = at + text.size();
+    for (size_t left = sides.size(); uint32_t* const side : sides) {
+        const auto read = std::from_chars(at, end, *side);  // takes no sign and no blanks
+        if (read.ec != std::errc() || *side == 0 || *read.ptr != (--left ? 'x' : '\0'))
+            throw UsageError("--size " + text + ": " + (sides.size() == 2 ? "two" : "three") +
+                             " whole numbers from 1 on are needed, such as 64x64" +
+                             (sides.size() == 2 ? "" : "x32"));
+        at = read.ptr + 1;
+    }
 }
 
 }  // namespace pellucid::cli

@@ -122,7 +122,7 @@ CLI::Validator inRange(double low, double high);
 // Whether the whole text is a number.
 bool readNumber(const std::string& text, float& number);
 
-// Finite numbers above 0; from 0 on.
+// Finite numbers above 0, and from 0 on, that fit a float.
 CLI::Validator isPositive();
 CLI::Validator isNotNegative();
 
@@ -187,8 +187,8 @@ void addRunOptions(CLI::App& command, Run::Options& options);
 // installed, else in the source code. "" if they are not there.
 std::string installed(const std::string& data);
 
-// "WxH" to two numbers; throws UsageError.
-void parseSize(const std::string& text, uint32_t& width, uint32_t& height);
+// "WxH" or "WxHxD" to its numbers; throws UsageError.
+void parseSize(const std::string& text, std::initializer_list<uint32_t*> sides);
 
 // Each file of this folder adds one subcommand.
 void addDevices(CLI::App& app);

@@ -204,7 +204,7 @@ void runCompare(const CompareArguments& a) {
     if (a.gbuffer.empty() != a.scene.empty())
         throw UsageError(
             "--gbuffer and --scene go together: the scene file names the channels of the G-buffer");
-    if (!a.picture.empty()) checkOutput(a.picture, {"png"}, {a.a, a.b});
+    if (!a.picture.empty()) checkOutput(a.picture, {"png"}, {a.a, a.b, a.secondHalf, a.gbuffer});
     const Rgb one = readRgb(a.a, a.channelsA, a.scaleA, false);
     Rgb two = readRgb(a.b, a.channelsB, a.scaleB, true);
     requireSameSize(a.a, one, a.b, two);
@@ -257,7 +257,7 @@ void runCompare(const CompareArguments& a) {
     const bool bound = std::isfinite(a.maxRmse),
                worse = bound && (invalid > 0 || all.pixels == 0 || !(all.rmseAll <= a.maxRmse));
     if (bound) report["within"] = !worse;
-    if (a.json) std::cout << report.dump(2) << std::endl;
+    if (a.json) printJson(report);
     if (!worse) return;
     if (all.pixels == 0)
         std::fprintf(stderr, "pellucid: no pixel could be compared with --max-rmse\n");

@@ -22,7 +22,7 @@ MeshWeldChoice weldChoice(const std::string& text) {
     if (text == "none") return {PEL_WELD_NONE, 0};
     if (text == "exact") return {PEL_WELD_EXACT, 0};
     float tolerance = 0;
-    if (!readNumber(text, tolerance) || !(tolerance > 0))
+    if (!readNumber(text, tolerance) || !(tolerance > 0 && std::isfinite(tolerance)))
         throw UsageError("--weld " + text + ": none, exact, or a tolerance above 0 (a length) is needed");
     return {PEL_WELD_TOLERANCE, tolerance};
 }

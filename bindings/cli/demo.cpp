@@ -72,7 +72,7 @@ DemoHead loadMeshAsHead(Run& run, const DemoArguments& a) {
     io::MeshData& mesh = head.mesh;
     for (const std::string& warning : mesh.warnings) run.warn(warning);
     // Most OBJ files have y up, most scans in the other formats z.
-    const bool y = a.up == "y" || (a.up == "auto" && std::filesystem::path(a.mesh).extension() == ".obj");
+    const bool y = a.up == "y" || (a.up == "auto" && io::extensionOf(a.mesh) == "obj");
     head.pose = sample::poseWithUp(y ? 'y' : 'z');
     io::scaleToHeight(mesh, a.height, y ? 1 : 2);
     try {
@@ -93,7 +93,7 @@ DemoHead loadHead(Run& run, const DemoArguments& a) {
 // A portrait with key, fill and rim light, and one with the key light behind an ear.
 std::vector<DemoViewRequest> requests(const DemoArguments& a) {
     DemoViewRequest key, back;
-    parseSize(a.size, key.width, key.height);
+    parseSize(a.size, {&key.width, &key.height});
     key.name = "key";
     key.framing.azimuth = 25;
     key.lights = {{"Key", 54, 22, {0.92f, 0.845f, 0.76f}, true},

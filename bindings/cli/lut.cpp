@@ -30,13 +30,11 @@ void writeTablePicture(const std::string& path, const Lut& lut, uint32_t width, 
 
 // WxHxD of an eye's table, WxH of the others.
 void parseLutSize(const std::string& text, PelEyeLutDesc& desc) {
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%ux%ux%u%c", &desc.width, &desc.height, &desc.depth, &rest) != 3)
-        throw UsageError("--size: '" + text + "' is not three numbers such as 64x64x32");
+    parseSize(text, {&desc.width, &desc.height, &desc.depth});
 }
 template <class Desc>
 void parseLutSize(const std::string& text, Desc& desc) {
-    parseSize(text, desc.width, desc.height);
+    parseSize(text, {&desc.width, &desc.height});
 }
 
 uint32_t rowsOf(const PelEyeLutDesc& desc) {

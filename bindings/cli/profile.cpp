@@ -114,7 +114,7 @@ void plot(const ProfileArguments& a) {
 }
 
 void fit(const ProfileArguments& a) {
-    if (!a.output.empty()) checkOutput(a.output, {"toml"});
+    if (!a.output.empty()) checkOutput(a.output, {"toml"}, {a.name});
     const io::ProfileFile file = io::findProfile(a.name);
     const io::ProfileFit best = io::fitGaussians(file.profile, a.gaussians);
     nlohmann::ordered_json report{{"name", file.name}, {"gaussians", nlohmann::ordered_json::array()}};

@@ -526,8 +526,6 @@ void runReference(const ReferenceArguments& a) {
                                        ": a picture needs --gbuffer; without one, name a .npy for values at "
                                        "the mesh's vertices"
                                  : "--gbuffer: the picture goes to an .exr, not to " + a.output);
-    if (!a.cut.empty() && a.cut.size() != 3)
-        throw UsageError("--cut: three lengths are needed, one per channel");
     Run run(a.run);
     try {
         withInput(a.mesh + " with " + a.scene, [&] {
@@ -566,9 +564,10 @@ void addReference(CLI::App& app) {
            "scales the profile to this radius, mm; 0: its own", isNotNegative(), shown);
     option(command, "--unit-mm", a.unit, "millimetres per unit of positions (default: the scene's unit_mm)",
            isPositive());
-    CLI::Option* cut = option(
-        command, "--cut", a.cut,
-        "mm per channel where the profile ends, as in renderers that cut it off; 0: nowhere", Count{3});
+    CLI::Option* cut =
+        option(command, "--cut", a.cut,
+               "mm per channel where the profile ends, as in renderers that cut it off; 0: nowhere", Count{3},
+               isNotNegative());
     option(command, "--subdivide", a.subdivide,
            "levels of subdivision, done first: Catmull-Clark of OBJ files, Loop of others", inRange(0, 6),
            shown);

@@ -61,6 +61,7 @@ const Refusal refusals[] = {
     {"curvature @m.off -o @c.npy --smooth-crease 180.5", 2, "is not a number from 0 to 180"},
     {"curvature @m.off -o @c.npy --smooth-crease 30", 2, "--smooth-crease requires --smooth-radius"},
     {"curvature @m.off -o @c.npy --smooth-weights area", 2, "--smooth-weights requires --smooth-radius"},
+    {"curvature @m.off -o @c.npy --weld 1e39", 2, "--weld 1e39"},
     {"curvature @m.off -o @c.npy --range 0 1", 2, "only --picture and a .ply have colours"},
     {"curvature @m.off -o @c.npy --scale nan", 2, "scale"},
     {"curvature @m.off -o @c.npy --picture @c.jpg", 2, ".png"},
@@ -76,6 +77,8 @@ const Refusal refusals[] = {
     {"compare @g.exr @g.exr --unit-mm 10", 2, "--unit-mm requires --gbuffer"},
     {"compare @g.exr @g.exr --scale-a inf", 2, "--scale-a"},
     {"compare @g.exr @g.exr --scale-b 0", 2, "--scale-b"},
+    {"compare @g.exr @g.exr --scale-b 1e-50", 2, "--scale-b"},
+    {"compare @g.exr @g.exr --max-rmse 1e39", 2, "--max-rmse"},
     {"curvature @none.off -o @c.npy", 3, "No such file"},
     {"profile show granite", 3, "granite"},
     {"profile fit skin --gaussians 13", 2, "'13' is not a whole number from 1 to 12"},
@@ -86,6 +89,8 @@ const Refusal refusals[] = {
     {"curvature @in.ply -o @in.ply", 2, "would be lost"},
     {"reference @m.off --scene @s.toml --gbuffer @g.exr -o @g.exr", 2, "would be lost"},
     {"compare @g.exr @in.png --picture @in.png", 2, "would be lost"},
+    {"compare @g.exr @g.exr --second-half @in.png --picture @in.png", 2, "would be lost"},
+    {"profile fit @in.toml -o @in.toml", 2, "would be lost"},
     {"shade @g.exr --scene @s.toml -o @o.exr --show diffuse", 2, "--picture"},
     {"shade @g.exr --scene @s.toml -o @o.exr --picture @p.exr", 2, ".png"},
     {"shade @g.exr --scene @s.toml -o @o.exr --picture @p.png --show final,nothing", 2, "show"},
@@ -101,6 +106,7 @@ const Refusal refusals[] = {
     {"warm-up --luts", 2, "PELLUCID_CACHE_MB is \"much\"",
      "PELLUCID_CACHE=on PELLUCID_CACHE_DIR=@folder PELLUCID_CACHE_MB=much"},
     {"demo @none.off -o @unmade", 3, "No such file"},
+    {"demo @flat.OBJ -o @unmade", 3, "is flat along the axis"},
     {"demo @m.off -o @m.off", 2, "m.off"},
     {"demo @m.off -o @folder --size 0x0", 2, "--size"},
     {"bench --quick", 2, "-o is needed"},
@@ -115,6 +121,7 @@ const Refusal refusals[] = {
 TEST_F(Cli, WrongUseAndBadInputAreRefused) {
     write("m.off", shade_files::octahedron());
     write("nan.off", "OFF\n3 1 0\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n");
+    write("flat.OBJ", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
     write("text.exr", "no image at all");
     const std::string whole = read(path("g.exr"));
     write("cut.exr", whole.substr(0, whole.size() - 30));
@@ -129,6 +136,7 @@ TEST_F(Cli, WrongUseAndBadInputAreRefused) {
     EXPECT_FALSE(std::filesystem::exists(path("unmade")));
     for (const std::string size : {"8", "8x", "0x8", "-1x8", "8x8x8", "eight"})
         refused("lut curvature -o @l.npy --size=" + size, 2, "--size");
+    refused("lut eye -o @l.npy --size 4294967304x8x4", 2, "--size");
     refused(unread + "--tonemap filmc", 2,
             "pellucid: --tonemap: there is no 'filmc'; did you mean filmic? there are soft, none, filmic, "
             "agx-like\n");

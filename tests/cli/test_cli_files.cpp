@@ -190,6 +190,7 @@ TEST_F(Files, NamesThatAreNoUtf8) {
     EXPECT_TRUE(contains(reportOf(line).at("output"), "caf\xef\xbf\xbd.npy"));
     EXPECT_TRUE(std::filesystem::exists(path("caf\xe9.npy")));
     EXPECT_TRUE(contains(done(line).out, "caf\xe9.npy"));
+    EXPECT_TRUE(contains(reportOf("compare @caf\xe9.npy @caf\xe9.npy").at("a"), "caf\xef\xbf\xbd.npy"));
     write("b\xe9.toml", "[[lut]]\nsize = 0\n");
     const Result batch = cli("batch @b\xe9.toml -o @t --json");
     EXPECT_EQ(batch.exitCode, 3);

@@ -285,6 +285,7 @@ TEST_F(CliReference, WrongUseIsRefused) {
     refused(ofBall + "-o @o.jpg", 2, "o.jpg");
     for (const char* surface : {"--cut 1 1 1", "--finest 1", "--coarsest 1", "--tolerance 0.1"})
         refused(ofBall + picture + "-o @o.exr --walk " + surface, 2, "excludes --walk");
+    refused(ofBall + picture + "-o @o.exr --cut 1 -1 1", 2, "--cut");
     refused("compare @a.npy @b.npy", 3, "only pictures of the same size");
     refused("compare @a.npy @none.npy", 3, "none.npy");
     refused("compare @a.npy @a.npy --second-half @none.npy", 3, "none.npy");
