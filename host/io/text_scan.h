@@ -39,7 +39,8 @@ class TextScan {
         if (i >= words_.size())
             fail(concat(what, " is missing: the line has ", words_.size(), " entries, not ", i + 1));
         float value = 0;
-        if (!parse(words_[i], value))
+        double wide = 1;  // what is too small for a float is 0
+        if (!parse(words_[i], value) && !(parse(words_[i], wide) && std::abs(wide) < 1))
             fail(std::string(what) + " '" + std::string(words_[i]) + "' is not a number that fits a float");
         if (!std::isfinite(value))
             fail(std::string(what) + " is '" + std::string(words_[i]) +

@@ -305,6 +305,7 @@ TEST_F(MeshFile, BadFilesSayWhere) {
         {"c.obj", objThree + "f 1/1/1/1 2 3\n", "c.obj:4: a corner has more than the three parts"},
         {"s.stl", cutStl, "is not an STL file"},
         {"n.stl", binaryStl(facets), "facet 1"},
+        {"v.stl", "solid\nfacet\nvertex 5 5 5\n" + textStl({0, 0, 0, 1, 0, 0, 0, 1, 0}), "4 vertices"},
         {"n.ply", asciiPly("0 0 0\n1 nan 0\n0 1 0\n", face), "n.ply:11: y is 'nan'"},
         {"t.ply", ply.substr(0, ply.find("0 1 0\n")), "ends early"},
         {"i.ply", asciiPly(three, "3 0 1 7\n"), "face 0 (counted from 0) refers to vertex 7"},
@@ -344,6 +345,11 @@ TEST_F(MeshFile, GoodFilesOfEveryFormatHaveNoWarning) {
         expectSilent("a.ply", asciiPly(m.vertices, m.faces), m.triangles);
     }
     expectSilent("a.stl", textStl({0, 0, 0, 1, 0, 0, 0, 1, 0}), 1);
+    expectSilent("t.obj", "v 0 0 1e-60\nv 1 0 0\nv 0 1 -1e-60\nf 1 2 3\n", 1);
+    expectSilent("s.ply",  // with a property that nothing reads
+                 std::regex_replace(asciiPly("0 0 0 nan\n1 0 0 1\n0 1 0 2\n", "3 0 1 2\n"),
+                                    std::regex("(property float )z\n"), "$1z\n$1q\n"),
+                 1);
 }
 
 TEST_F(MeshFile, TrianglesThatFaceAnotherWayThanTheirNeighboursAreToldOrTurned) {

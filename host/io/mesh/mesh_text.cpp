@@ -234,7 +234,6 @@ RawMesh readStl(const std::string& path, const std::string& text) {
     bool ended = false;
     while (scan.nextLine()) {
         const std::string_view word = scan.words()[0];
-        if (word == "facet") inFacet = 0;
         if (word == "vertex") {
             std::vector<float> p;
             readPosition(scan, 1, p);
@@ -244,6 +243,7 @@ RawMesh readStl(const std::string& path, const std::string& text) {
         if (word == "endfacet") {
             if (inFacet != 3) scan.fail(concat("a facet has ", inFacet, " vertices; 3 would be right"));
             endFace(mesh);
+            inFacet = 0;
         }
         ended = word == "endsolid";
     }

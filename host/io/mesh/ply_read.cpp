@@ -221,9 +221,7 @@ class AsciiBody {
         ++word_;
         return value;
     }
-    void skip(size_t count, const Property& p) {
-        for (; count > 0; --count) number(p);
-    }
+    void skip(size_t count, const Property&) { word_ += count; }
 
   private:
     std::string_view word() const {
