@@ -296,6 +296,7 @@ void compare(const BenchArguments& a) {
                  lessAccurate = limit(a.lessAccurate, "--fail-if-less-accurate");
     if (a.reports.size() < 2)
         throw UsageError("two or more reports are needed: the first is what others are compared with");
+    if (!a.output.empty()) checkOutput(a.output, {"html"});
     Json reports = Json::array(), results = Json::array();
     for (const std::string& path : a.reports) reports.push_back(readReport(path));
     bool worse = false;
@@ -328,10 +329,7 @@ void compare(const BenchArguments& a) {
                       << measurements().describeComparison(result) << std::flush;
     }
     if (a.json) printJson(results.size() == 1 ? results[0] : Json{{"comparisons", results}});
-    if (!a.output.empty()) {
-        checkOutput(a.output, {"html"});
-        writePage(a.output, reports);
-    }
+    if (!a.output.empty()) writePage(a.output, reports);
     if (worse) throw ExitWith(exitWorse);
 }
 

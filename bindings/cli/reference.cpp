@@ -253,9 +253,9 @@ std::optional<Diffusion> diffusionOf(const ReferenceArguments& a, const io::Scen
                                      const io::SceneMaterial* material) {
     Diffusion d;
     std::string name = a.profile;
-    d.radius = a.diffusionRadius;
+    float radius = 0;  // the scene's own
     d.unit = a.unit > 0 ? a.unit : scene.options.millimetresPerUnit;
-    if (material && name.empty()) name = material->profile;
+    if (material && name.empty()) name = material->profile, radius = material->material.diffusionRadius;
     if (material && name.empty()) {
         const io::SceneLut* lut = scene.lut(material->curvatureLut, PEL_LUT_CURVATURE);
         if (lut && !lut->file.empty())
@@ -264,7 +264,9 @@ std::optional<Diffusion> diffusionOf(const ReferenceArguments& a, const io::Scen
                            " is a file, which does not contain its profile; name one with --profile"));
         if (!lut) return std::nullopt;
         name = lut->profile;
+        if (radius == 0) radius = lut->info.curvature.diffusionRadius;
     }
+    d.radius = a.diffusionRadius > 0 ? a.diffusionRadius : radius * d.unit;
     const io::ProfileFile file = io::findProfile(name.empty() ? "skin" : name);
     d.profile = file.profile;
     d.skin = file.skin;
@@ -561,7 +563,7 @@ void addReference(CLI::App& app) {
            "table)",
            Word{profileWord});
     option(command, "--diffusion-radius", a.diffusionRadius,
-           "scales the profile to this radius, mm; 0: its own", isNotNegative(), shown);
+           "scales the profile to this radius, mm; 0: the material's, else its own", isNotNegative(), shown);
     option(command, "--unit-mm", a.unit, "millimetres per unit of positions (default: the scene's unit_mm)",
            isPositive());
     CLI::Option* cut =

@@ -112,6 +112,7 @@ const Refusal refusals[] = {
     {"bench --quick", 2, "-o is needed"},
     {"bench -o /proc/nowhere", 2, "/proc/nowhere"},
     {"bench compare @none.json @none.json", 3, "none.json: cannot be read"},
+    {"bench compare @none.json @none.json -o @x.jpg", 2, ".html"},
     {"bench compare @a.json @a.json", 3, "not a report"},
     {"bench compare @b.json @b.json", 3, "incomplete report"},
 };

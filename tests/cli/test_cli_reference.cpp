@@ -105,6 +105,14 @@ TEST_F(CliReference, VerticesUnitAndProfile) {
     writeScene();
     done(ofBall + "--finest 0.5 --coarsest 2 -o @own.npy");
     EXPECT_TRUE(read(path("own.npy")) == read(path("named.npy")));
+    // The same of its radius, in the scene's unit.
+    scene_.options.millimetresPerUnit = 2;
+    writeScene();
+    done(ofBall + "--finest 0.5 --coarsest 2 --diffusion-radius 0.6 -o @named.npy");
+    scene_.materials[0].material.diffusionRadius = 0.3f;
+    writeScene();
+    done(ofBall + "--finest 0.5 --coarsest 2 -o @own.npy");
+    EXPECT_TRUE(read(path("own.npy")) == read(path("named.npy")));
 }
 
 TEST_F(CliReference, AmbientLightIsThatOfItsHarmonics) {
