@@ -212,7 +212,7 @@ void apply(CLI::Option& option, Needs needs) {
     option.needs(needs.other);
 }
 void apply(CLI::Option& option, const CLI::Validator& check) {
-    option.check(check);
+    option.transform(check);  // which check() would let pass in capital letters, and leave so
 }
 void apply(CLI::Option& option, Mark mark) {
     if (mark == required) option.required();

@@ -77,7 +77,7 @@ void addToneOptions(CLI::App& command, io::ToneMap& tone) {
             [&tone](const std::string& curve) { tone.curve = chosen<io::ToneCurve>(io::toneCurves, curve); },
             "of pictures: soft (true to radiance up to 0.8, then a soft highlight roll-off), none (cut at "
             "1), filmic or agx-like (default: soft)")
-        ->check(isOneOf(io::toneCurves));
+        ->transform(isOneOf(io::toneCurves));
 }
 
 struct ShadeArguments {

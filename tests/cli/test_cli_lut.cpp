@@ -63,6 +63,7 @@ TEST_F(CliLut, LutFilesHoldTheLibrarysTexels) {
 TEST_F(CliLut, OptionsBecomeDescriptions) {
     EXPECT_STREQ(info("curvature --size 8x6 --profile ketchup").profile, "ketchup");
     EXPECT_EQ(info("shadow --size 8x6 --sharpening 5").shadow.sharpening, 5.0f);
+    EXPECT_EQ(info("curvature --size 8x6 --axis LINEAR").curvature.axis, PEL_AXIS_LINEAR);
     EXPECT_EQ(info("specular --size 8x6").kind, PEL_LUT_SPECULAR);
     done("lut shadow -o @s.tga --size 8x6");
 }

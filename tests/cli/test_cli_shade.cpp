@@ -46,7 +46,7 @@ TEST_F(Shade, PicturesToLookAt) {
     EXPECT_EQ(reportOf(shade_ + " --picture @sheet.png").at("picture"), path("sheet.png"));
     EXPECT_FALSE(reportOf(shade_).contains("picture"));
     for (const std::string name : {"p.png", "p.jpg", "p.bmp", "p.tga"}) {
-        done("shade @g.exr --scene @s.toml --exposure 0.5 --tonemap none -o @" + name);
+        done("shade @g.exr --scene @s.toml --exposure 0.5 --tonemap NONE -o @" + name);
         const io::Image picture = io::readImage(path(name));
         ASSERT_EQ(picture.width, width);
         ASSERT_EQ(picture.channels.size(), 3u);
