@@ -248,7 +248,7 @@ struct ReferenceArguments {
     WalkArguments walk;
 };
 
-// Empty for a material without a profile or a curvature table, which reflects light where it arrives.
+// Empty for a material without a profile, preset or curvature table, which reflects light where it arrives.
 std::optional<Diffusion> diffusionOf(const ReferenceArguments& a, const io::SceneFile& scene,
                                      const io::SceneMaterial* material) {
     Diffusion d;
@@ -262,9 +262,9 @@ std::optional<Diffusion> diffusionOf(const ReferenceArguments& a, const io::Scen
             throw UsageError(
                 io::concat("the curvature table of material ", material->id,
                            " is a file, which does not contain its profile; name one with --profile"));
-        if (!lut) return std::nullopt;
-        name = lut->profile;
-        if (radius == 0) radius = lut->info.curvature.diffusionRadius;
+        if (!lut && material->preset == io::ScenePreset::none) return std::nullopt;
+        if (lut) name = lut->profile;
+        if (lut && radius == 0) radius = lut->info.curvature.diffusionRadius;
     }
     d.radius = a.diffusionRadius > 0 ? a.diffusionRadius : radius * d.unit;
     const io::ProfileFile file = io::findProfile(name.empty() ? "skin" : name);

@@ -217,6 +217,10 @@ TEST_F(CliReference, MaterialsWithoutAProfileReflectWhatArrives) {
     EXPECT_GT(*std::max_element(once.values.begin(), once.values.end()), 0.8f);
     EXPECT_TRUE(std::equal(once.values.begin(), once.values.end(),
                            twice.values.end() - ptrdiff_t(once.values.size())));
+    scene_.materials[0].preset = io::ScenePreset::faceworks;  // the profile is that of skin
+    writeScene();
+    done(ofBall + "-o @p.npy");
+    EXPECT_NE(array("p.npy").values, once.values);
 }
 
 // The corners of a flat square have normals that lean away from the light.
