@@ -37,7 +37,7 @@ class Memory:
             self.values = found
         except FileNotFoundError:
             pass
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, RecursionError) as error:
             self.problem = f"{self.path} was not read: {error}"
 
     def part(self, name: str) -> dict[str, Any]:

@@ -187,7 +187,7 @@ class ExportPanel(Panel):
         async def read(e: events.UploadEventArguments) -> bool:
             try:
                 self.viewer.session.look = Look.from_dict(json.loads(await e.file.read()))
-            except (ValueError, TypeError) as error:
+            except (ValueError, TypeError, RecursionError) as error:
                 fail(f"{e.file.name}: {error}")
                 return False
             self.viewer.rebuild()
