@@ -3,9 +3,9 @@
 // raised again.
 #include <sys/resource.h>
 
-#include "cl/cl_spy.h"
 #include "cl/error.h"
 #include "cl/machine.h"
+#include "cl/refused_buffer.h"
 #include "core/in_fork.h"
 #include "mesh/mesh_calls.h"
 
@@ -222,15 +222,7 @@ TEST(Memory, DriversThatRefuse) {
             const uint64_t before = used().addresses;
             int failures = 0;
             for (int n = 1; n < 100; ++n) {
-                spy::failAt(spy::Call::createBuffer, n);
-                PelError error = PEL_SUCCESS;
-                try {
-                    calls[call]();
-                } catch (const Error& e) {
-                    error = e.code();
-                }
-                const bool struck = spy::callsUntilFailure() <= 0;
-                spy::failAt(spy::Call::none, 0);
+                const auto [struck, error] = refuseBuffer(n, calls[call]);
                 CHILD_EXPECT(error == (struck ? PEL_ERROR_OUT_OF_MEMORY : PEL_SUCCESS));
                 calls[call]();  // as if nothing had been
                 if (!struck) break;

@@ -1,5 +1,5 @@
 // Scattering in texture space, against sums over the surface.
-#include "cl/cl_spy.h"
+#include "cl/refused_buffer.h"
 #include "diffusion/scatter_scene.h"
 #include "reference/shade_passes.h"
 #include "sample/mesh.h"
@@ -335,7 +335,6 @@ TEST(TextureScatter, BadInput) {
     EXPECT_EQ(place.readAll<float>(), again.run(light, Profile::skin()));
 }
 
-// A shader samples it bilinearly at the pixel's coordinates, repeated, times albedo.
 // Each buffer in turn cannot be made; then the same call works.
 TEST(TextureScatter, AfterAFailure) {
     const TexturedMesh mesh = plate(30, 20);
@@ -347,19 +346,14 @@ TEST(TextureScatter, AfterAFailure) {
     const std::vector<float> right = Texture(mesh, 48, 32).run(light, skin, params, albedo);
     for (int n = 1; n < 100; ++n) {
         t.run(light, skin);
-        spy::failAt(spy::Call::createBuffer, n);
-        try {
-            t.run(light, skin, params, albedo);
-        } catch (const pellucid::Error& e) {
-            EXPECT_EQ(e.code(), PEL_ERROR_OUT_OF_MEMORY);
-        }
-        const bool struck = spy::callsUntilFailure() <= 0;
-        spy::failAt(spy::Call::none, 0);
+        const auto [struck, code] = refuseBuffer(n, [&] { t.run(light, skin, params, albedo); });
+        EXPECT_TRUE(code == PEL_SUCCESS || code == PEL_ERROR_OUT_OF_MEMORY) << code;
         EXPECT_EQ(t.run(light, skin, params, albedo), right) << n;
         if (!struck) break;
     }
 }
 
+// A shader samples it bilinearly at the pixel's coordinates, repeated, times albedo.
 TEST(TextureScatter, ShadersSampleIt) {
     const uint32_t side = 24;
     std::vector<float> texture, uvs, normals, irradiance(3 * side * side, 9.0f);

@@ -6,7 +6,7 @@
 #include <dlfcn.h>
 #include "test.h"
 
-#include "cl/cl_spy.h"
+#include "cl/refused_buffer.h"
 #include "scattering_frame.h"
 
 using namespace shade_test;
@@ -147,15 +147,11 @@ void expectTakenBack(const Frame& f, const std::function<void(Shader&)>& before,
         for (int n = 1; n < 100; ++n) {
             Shader shader = made();
             if (!anew) shade(shader, before);
-            spy::failAt(spy::Call::createBuffer, n);
-            try {
+            const auto [struck, code] = refuseBuffer(n, [&] {
                 (anew ? before : change)(shader);
                 shader.commit();
-            } catch (const pellucid::Error& e) {
-                EXPECT_EQ(e.code(), PEL_ERROR_OUT_OF_MEMORY);
-            }
-            const bool struck = spy::callsUntilFailure() <= 0;
-            spy::failAt(spy::Call::none, 0);
+            });
+            EXPECT_TRUE(code == PEL_SUCCESS || code == PEL_ERROR_OUT_OF_MEMORY) << code;
             EXPECT_EQ(shade(shader, before), right) << "call " << n << (anew ? " of the first commit" : "");
             if (!struck) break;
         }
